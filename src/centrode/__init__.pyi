@@ -85,12 +85,8 @@ from .dynamics.reduction_results import ReductionResults as ReductionResults
 # Forces by hand
 from .dynamics.force_polygons.polygons import force_polygons as force_polygons
 from .dynamics.force_polygons.polygons import ForcePolygons as ForcePolygons
-from .study.forces.force_polygons import polygon_about as polygon_about
-from .study.forces.force_polygons import polygon_steps as polygon_steps
-from .study.forces.force_polygons import polygon_rows as polygon_rows
-from .study.forces.force_polygons import polygon_balance_rows as polygon_balance_rows
-from .study.forces.force_polygons import polygon_csv as polygon_csv
-from .present import polygon_figures as polygon_figures
+from .dynamics.force_polygons.results import force_polygon_results as force_polygon_results
+from .dynamics.force_polygons.results import ForcePolygonResults as ForcePolygonResults
 
 # Steady motion of a machine
 from .dynamics.steady_motion.steady import steady_motion as steady_motion

@@ -35,9 +35,9 @@ def test_the_press_at_its_instant(centrode: Centrode, folder: Path) -> None:
     vectors = [row for row in written if row["polygon"] == "group" and row["bodies"] == "AB; CD"]
     assert [row["name"] for row in vectors] == [one.name for one in found.groups[1].polygon.vectors]
     for row, vector in zip(vectors, found.groups[1].polygon.vectors, strict=True):
-        assert complex(float(row["force_x"]), float(row["force_y"])) == vector.force
-        assert complex(float(row["end_x"]), float(row["end_y"])) == vector.end
-        assert float(row["length_mm"]) == found.groups[1].polygon.length(vector)
+        assert complex(float(row["force_x [N]"]), float(row["force_y [N]"])) == vector.force
+        assert complex(float(row["end_x [N]"]), float(row["end_y [N]"])) == vector.end
+        assert float(row["length [mm]"]) == found.groups[1].polygon.length(vector)
 
 
 def test_several_instants(centrode: Centrode, folder: Path) -> None:

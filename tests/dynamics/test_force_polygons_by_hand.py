@@ -12,6 +12,9 @@ import pytest
 import centrode as ct
 from centrode.dynamics.force_polygons import polygons
 from centrode.dynamics.force_polygons.polygons import PAPERS, ROOM, round_scale
+from centrode.dynamics.force_polygons.steps import Step
+from centrode.render.terminal import plain_text
+from centrode.views.force_polygons import step_text
 from mechanisms import EPS, Parts, four_bar, parts_of
 from polygonal import (
     OPERATIONS,
@@ -89,17 +92,23 @@ def test_the_inner_reaction_is_a_chord_of_the_polygon() -> None:
         assert found.reactions[chord.name] == chord.force
 
 
+def told(found: ct.ForcePolygons, step: Step) -> str:
+    """A step as a terminal prints it."""
+    return plain_text(step_text(step), found.mechanism.display)
+
+
 def test_steps_of_the_press() -> None:
     found = ct.force_polygons(ct.example("six-bar-press"), math.radians(120))
     assert found.speed_from == "machine"
-    assert found.steps[0] == (
-        "moments of link 4 about H: R34ᵗ·1.7 + 165.5 (G4) - 5.186 (Φ4) - 14.041 (MΦ4) = 0, R34ᵗ = -86.0431 N"
+    steps = [told(found, step) for step in found.steps]
+    assert steps[0] == (
+        "moments of link 4 about H: R34ᵗ·1.7 + 165.5 (G4) − 5.186 (Φ4) − 14.041 (MΦ4) = 0, R34ᵗ = -86.0431 N"
     )
     lever_arm = 0.85 * math.cos(math.radians(-27.745))
     assert 22 * 10 * lever_arm == pytest.approx(
         165.5, abs=0.06
     )  # the weight's arm about H, read off the source
-    assert "R34ⁿ ∥ DH, R05 ⊥ guide H" in found.steps[1]
+    assert "R34ⁿ ∥ DH, R05 ⊥ guide H" in steps[1]
     assert [group.numbers for group in found.groups] == [(4, 5), (2, 3), (1,)]
 
 
@@ -201,6 +210,6 @@ def test_dead_points_are_singular_and_open_positions_told() -> None:
 
 def test_what_gears_and_kept_wheels_leave_out_is_said() -> None:
     geared = ct.force_polygons(loaded("geared-five-bar"), 1.0)
-    assert any("presses the wheels apart" in line for line in geared.steps)
+    assert any("presses the wheels apart" in told(geared, step) for step in geared.steps)
     kept = ct.force_polygons(loaded("rolling-wheel-rod"), 0.4)
-    assert any("taken as none" in line for line in kept.steps)
+    assert any("taken as none" in told(kept, step) for step in kept.steps)

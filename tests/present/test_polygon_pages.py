@@ -14,9 +14,9 @@ from matplotlib.text import Text
 import centrode as ct
 from boxes import outside, overlapping
 from centrode.dynamics.force_polygons.polygons import PAPERS
-from centrode.present.forces.force_signs import force_name
-from centrode.present.forces.polygon_drawing import SHORT
 from centrode.present.page import INCH
+from centrode.render.force_pages import SHORT
+from centrode.render.force_signs import force_name
 from mechanisms import parts_of
 
 INSTANTS = {
@@ -50,17 +50,24 @@ def heavy(name: str) -> ct.Mechanism:
 
 
 @pytest.fixture(scope="module")
-def found() -> dict[str, ct.ForcePolygons]:
-    return {name: ct.force_polygons(heavy(name), at) for name, at in INSTANTS.items()}
+def results() -> dict[str, ct.ForcePolygonResults]:
+    return {name: ct.force_polygon_results(heavy(name), [at]) for name, at in INSTANTS.items()}
+
+
+def forces_of(results: ct.ForcePolygonResults) -> ct.ForcePolygons:
+    """The forces of the only instant."""
+    (found,) = results.polygons
+    assert found is not None
+    return found
 
 
 @pytest.mark.parametrize("name", INSTANTS)
-def test_no_text_covers_another_or_leaves_the_page(found: dict[str, ct.ForcePolygons], name: str) -> None:
-    figures = ct.polygon_figures(found[name])
-    levers = (
-        ["lever"] if len(found[name].levers) == 1 else [f"lever-{one.drive}" for one in found[name].levers]
-    )
-    assert list(figures) == [*(f"group-{k + 1}" for k in range(len(found[name].groups))), *levers]
+def test_no_text_covers_another_or_leaves_the_page(
+    results: dict[str, ct.ForcePolygonResults], name: str
+) -> None:
+    figures, found = ct.figures(results[name]), forces_of(results[name])
+    levers = ["lever"] if len(found.levers) == 1 else [f"lever-{one.drive}" for one in found.levers]
+    assert list(figures) == [*(f"group-{k + 1}" for k in range(len(found.groups))), *levers]
     for page, figure in figures.items():
         assert overlapping(figure) == [], page
         assert outside(figure) == [], page
@@ -68,7 +75,7 @@ def test_no_text_covers_another_or_leaves_the_page(found: dict[str, ct.ForcePoly
 
 @pytest.mark.parametrize("paper", list(PAPERS))
 def test_pages_have_the_size_of_the_paper(paper: str) -> None:
-    for figure in ct.polygon_figures(ct.force_polygons(heavy("crank-rocker"), 0.9, paper)).values():
+    for figure in ct.figures(ct.force_polygon_results(heavy("crank-rocker"), [0.9], paper)).values():
         assert INCH * np.array(figure.get_size_inches()) == pytest.approx(PAPERS[paper])
         assert outside(figure) == []
         assert overlapping(figure) == []
@@ -82,9 +89,9 @@ def arrows(figure: Figure) -> list[complex]:
 
 
 @pytest.mark.parametrize("name", ["six-bar-press", "whitworth-quick-return", "crank-rocker"])
-def test_vectors_are_as_long_as_the_scale_says(found: dict[str, ct.ForcePolygons], name: str) -> None:
-    figures = ct.polygon_figures(found[name])
-    for number, group in enumerate(found[name].groups, start=1):
+def test_vectors_are_as_long_as_the_scale_says(results: dict[str, ct.ForcePolygonResults], name: str) -> None:
+    figures = ct.figures(results[name])
+    for number, group in enumerate(forces_of(results[name]).groups, start=1):
         drawn = arrows(figures[f"group-{number}"])
         scale = group.polygon.scale
         texts = [text.get_text() for text in figures[f"group-{number}"].findobj(Text)]
@@ -106,5 +113,5 @@ def test_names_of_forces() -> None:
 
 
 def test_dark_pages() -> None:
-    for figure in ct.polygon_figures(ct.force_polygons(heavy("crank-rocker"), 0.9)).values():
+    for figure in ct.figures(ct.force_polygon_results(heavy("crank-rocker"), [0.9])).values():
         assert overlapping(ct.darkened(figure)) == []

@@ -30,7 +30,6 @@ from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.plan import plan
-from centrode.cli.polygons import polygons
 from centrode.cli.report import report
 from centrode.cli.run import run
 from centrode.cli.schema import schema
@@ -52,7 +51,6 @@ OWN: tuple[click.Command, ...] = (
     check,
     describe,
     equations,
-    polygons,
     variants,
     cam,
     diagrams,

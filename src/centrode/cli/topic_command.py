@@ -115,8 +115,8 @@ def _of_option(option: Option) -> Iterator[click.Parameter]:
             )
         case Flag(name, text):
             yield click.Option([_spelled(name)], is_flag=True, help=text)
-        case InstantsOption(text):
-            yield click.Option(["--at"], multiple=True, metavar=mark("VALUE"), help=text)
+        case InstantsOption(text, required=required):
+            yield click.Option(["--at"], multiple=True, required=required, metavar=mark("VALUE"), help=text)
         case MotionRange():
             yield from _made_by([start_option, stop_option, range_option])
         case _:

@@ -27,7 +27,6 @@ from .equations.latex import equations_latex as equations_latex
 from .equations.latex import equations_markdown as equations_markdown
 
 # Forces
-from .forces.polygon_drawing import polygon_figures as polygon_figures
 
 # Cams
 from .cams.bodies import cam_body_figures as cam_body_figures

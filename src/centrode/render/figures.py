@@ -20,12 +20,15 @@ from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
 from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
+from centrode.render.force_pages import group_page
+from centrode.render.levers import lever_page
 from centrode.render.panel_grids import grid_figure
 from centrode.render.scenes import scene_figure
 from centrode.render.span_plots import span_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.plots import (
     Abscissa,
     AreaDiagram,
@@ -108,6 +111,10 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return scene_figure(picture, display)
             case SpanPlot():
                 return span_figure(picture, display)
+            case GroupPage():
+                return group_page(picture)
+            case LeverPage():
+                return lever_page(picture)
             case _:
                 assert_never(picture)
 

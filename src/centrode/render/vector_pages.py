@@ -12,7 +12,6 @@ from centrode.locale import _
 from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
-from centrode.present.forces.force_signs import moment_arc
 from centrode.present.obstacles import lines
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.pictures import caption
@@ -21,6 +20,7 @@ from centrode.present.scene import Scene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.shown import plain, shown_as
 from centrode.present.style import GROUND, INK, pens
+from centrode.render.force_signs import moment_arc
 from centrode.render.spelling import DrawingSpelling
 
 if TYPE_CHECKING:

@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
-from centrode.render.document.blocks import Check, Picture, Table
-from centrode.render.document.figures import picture
+from centrode.render.document.blocks import Check, Table
 from centrode.render.document.numbers import NOTHING, Numbers, spelled_number
 from centrode.render.document.rows import rows_table, told
-from centrode.render.document.scaled import INCH, drawn_to_scale
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_OPERATOR = re.compile(r"(?<= )-(?= )")
 _NUMBER = re.compile(rf"[-−+±]?[\d.,]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?( ?%|°)?|[-–−{NOTHING}]?")
-
-
-def worked(numbers: Numbers, text: str) -> str:
-    """A line of sums of another room, in which a hyphen between spaces is a minus."""
-    return told(_OPERATOR.sub("−", text), numbers)
 
 
 def facts(numbers: Numbers, rows: Iterable[tuple[str, str]], caption: str = "") -> Table:
@@ -59,21 +47,3 @@ def measured(text: str, off: float, size: float, allowed: float) -> Check:
 def share_text(share: float) -> str:
     """A small share as a check tells it."""
     return spelled_number(f"{share:.1e}") if share else "0"
-
-
-TO_SCALE = ("force-vectors",)
-"""Figures whose scales are true on paper; they are pages, of which only what is empty is cut off."""
-
-
-def pictures(figures: Mapping[str, Figure], captions: Mapping[str, str]) -> list[Picture]:
-    """Figures by name as pictures, in the order of their captions; what was not drawn is left out."""
-    return [
-        _to_scale(figures[name], caption) if name in TO_SCALE else picture(figures[name], caption)
-        for name, caption in captions.items()
-        if name in figures
-    ]
-
-
-def _to_scale(figure: Figure, caption: str) -> Picture:
-    width, height = (float(inches) * INCH for inches in figure.get_size_inches())
-    return drawn_to_scale(figure, caption, width, height)

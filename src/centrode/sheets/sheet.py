@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
@@ -29,6 +30,8 @@ Picture: TypeAlias = (
     | AreaDiagram
     | Scene
     | SpanPlot
+    | GroupPage
+    | LeverPage
 )
 Part = TypeVar("Part")
 
@@ -156,9 +159,10 @@ class Check:
 
 @dataclass(frozen=True)
 class Items:
-    """Texts below each other; on a terminal a paragraph before them is their heading."""
+    """Texts below each other; on a terminal a paragraph before them is their heading. Documents number steps."""
 
     texts: tuple[Text, ...]
+    numbered: bool = False
 
 
 @dataclass(frozen=True)

@@ -225,7 +225,7 @@ REACTIONS = Topic(
             Flag("frictionless", mark("Leave out friction that is given by coefficients.")),
             MotionRange(),
         ),
-        ending=Lazily("centrode.study.forces.reached", "refuse_unreached"),
+        ending=Lazily("centrode.study.reached", "refuse_unreached"),
         summary=False,
         complete="complete",
     ),
@@ -444,6 +444,33 @@ REPAIR = Topic(
     flag="repair",
 )
 
+FORCE_POLYGONS = Topic(
+    name="polygons",
+    compute=Lazily("centrode.dynamics.force_polygons.results", "force_polygon_results"),
+    result=Lazily("centrode.dynamics.force_polygons.results", "ForcePolygonResults"),
+    view=Lazily("centrode.views.force_polygons", "sheet"),
+    concerns=Lazily("centrode.dynamics.force_polygons.results", "has_force_polygons"),
+    command=Command(
+        help=mark("Find reactions and the balancing moment by force polygons."),
+        options=(
+            InstantsOption(
+                mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'), required=True
+            ),
+            Given(
+                "paper", mark("SIZE"), mark("Sheet that scales are chosen for: A5, A4 (if left out) or A3.")
+            ),
+        ),
+        samples=False,
+        folder="polygons",
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("force-polygons", mark("Force polygons")),),
+        # drawings on a sheet of this size fit between the margins of a page
+        arguments={"paper": "A5", "complete": False},
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -461,5 +488,6 @@ TOPICS: tuple[Topic, ...] = (
     MOTION_LAWS,
     ROTATABILITY,
     REPAIR,
+    FORCE_POLYGONS,
 )
 """Every topic."""

@@ -93,10 +93,12 @@ class InstantsOption:
     ----------
     help : sentence, marked for the catalogues
     most : more of them are refused
+    required : the command does not begin without one
     """
 
     help: str
     most: int = 100
+    required: bool = False
 
 
 Option: TypeAlias = Choice | Given | Flag | MotionRange | InstantsOption

@@ -22,14 +22,31 @@ from centrode.dynamics.force_polygons.statics import (
     Dyad,
     ForceSide,
     Ledger,
+    MomentTerm,
     StaticJoint,
     across,
     dead_point,
     total,
 )
-from centrode.locale import _
+from centrode.dynamics.force_polygons.steps import (
+    Assumption,
+    AssurPoint,
+    ClosedAlong,
+    ClosedPolygon,
+    ForceLine,
+    ForcesAlongGuide,
+    JointReaction,
+    MomentsOfBase,
+    MomentsOfGroup,
+    MomentsOfLink,
+    Neglect,
+    Outcome,
+    SolvedTogether,
+    Step,
+    Unknown,
+)
 
-# The steps of a group in words: equations of moments with their terms, equations of forces, what follows.
+# The steps of a group: equations of moments with their terms, equations of forces, what follows.
 
 NONE = 1e-14
 """Arms and moments smaller than this part of what they are made of are rounding of none."""
@@ -37,26 +54,22 @@ NONE = 1e-14
 
 @dataclass
 class WorkedSteps:
-    """Lines told so far."""
+    """Steps of a group so far."""
 
-    lines: list[str] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
+
+    def add(self, step: Step) -> None:
+        """Go on with a step."""
+        self.steps.append(step)
 
     def tangential(
         self, side: ForceSide, inner: StaticJoint, ledger: Ledger, arm: float, size: float
     ) -> None:
         """Moments of a link about the inner hinge give the part of the outer reaction square to the arm."""
         symbol = ledger.symbol(side.joint, side.body) + "ᵗ"
-        terms = ledger.told([side.body], inner.place)
-        size = size if terms else 0.0
-        self.about(side.body, inner, ledger, f"{symbol}·{arm:.5g}{terms} = 0, {symbol} = {size:.6g} N")
-
-    def about(self, body: str, joint: StaticJoint, ledger: Ledger, equation: str) -> None:
-        """An equation of moments of one link."""
-        self.lines.append(
-            _("moments of link {link} about {point}: {equation}").format(
-                link=self.link(body, ledger), point=joint_words(joint), equation=equation
-            )
-        )
+        terms = ledger.terms([side.body], inner.place)
+        outcome = Outcome(symbol, size if terms else 0.0)
+        self.add(MomentsOfLink(ledger.bodies.number(side.body), inner, Unknown(symbol, arm), terms, outcome))
 
     def polygon(self, dyad: Dyad, ledger: Ledger) -> None:
         """The forces of the group, and along what the unknown ones lie."""
@@ -64,68 +77,51 @@ class WorkedSteps:
         one, other = (ledger.symbol(side.joint, side.body) for side in (first, second))
         known = names([*ledger.actions[first.body], *ledger.actions[second.body]])
         if dyad.inner.letter == "P":
-            beside = _("⊥ guide {guide}").format(guide=dyad.inner.name)
             before, after = [f"{one}ⁿ", f"{one}ᵗ"], [other]
-            unknown = [f"{one}ⁿ {beside}"]
+            lines = [ForceLine(f"{one}ⁿ", dyad.inner.name)]
             if second.joint.letter == "P":
-                unknown.append(f"{other} {square_to(second.joint)}")
+                lines.append(ForceLine(other, second.joint.name))
         else:
             before = [f"{one}ⁿ", f"{one}ᵗ"] if first.joint.letter == "R" else [one]
             after = [f"{other}ᵗ", f"{other}ⁿ"] if second.joint.letter == "R" else [other]
-            unknown = [
-                f"{symbol}ⁿ ∥ {between(side.joint, dyad.inner)}"
+            lines = [
+                ForceLine(f"{symbol}ⁿ", through=(side.joint, dyad.inner))
                 if side.joint.letter == "R"
-                else f"{symbol} {square_to(side.joint)}"
+                else ForceLine(symbol, side.joint.name)
                 for side, symbol in ((first, one), (second, other))
             ]
-        told = " + ".join([*before, *known, *after])
-        text = _("polygon of {links}: {equation}")
-        self.lines.append(
-            text.format(links=self.links(dyad, ledger), equation=f"{told} = 0, {', '.join(unknown)}")
-        )
-
-    def links(self, dyad: Dyad, ledger: Ledger) -> str:
-        """Numbers of the bodies of a dyad."""
-        numbers = sorted(ledger.bodies.number(side.body) for side in (dyad.first, dyad.second))
-        return ", ".join(map(str, numbers))
+        self.add(ClosedPolygon(numbers_of(dyad, ledger), (*before, *known, *after), tuple(lines)))
 
     def closing(self, body: str, ledger: Ledger, outer: StaticJoint | None, last: Action) -> None:
         """The polygon of one link gives the reaction that is left."""
         known = names(ledger.actions[body])
         if outer is not None:
             known = [ledger.symbol(outer, body), *known]
-        told = " + ".join([*known, last.symbol])
-        equation = f"{told} = 0, |{last.symbol}| = {abs(last.force):.6g} N"
-        self.lines.append(
-            _("polygon of {links}: {equation}").format(links=ledger.bodies.number(body), equation=equation)
-        )
+        outcome = Outcome(last.symbol, abs(last.force), magnitude=True)
+        self.add(ClosedPolygon((ledger.bodies.number(body),), (*known, last.symbol), outcome=outcome))
 
     def along_guide(self, side: ForceSide, inner: StaticJoint, ledger: Ledger, part: float) -> None:
         """A link that slides is in equilibrium along its guide without the other link."""
         symbol = ledger.symbol(side.joint, side.body) + "ᵗ"
-        known = names(ledger.actions[side.body])
-        told = " + ".join([symbol, *known])
-        self.lines.append(
-            _("link {link} along guide {guide}: {equation}").format(
-                link=self.link(side.body, ledger),
-                guide=inner.name,
-                equation=f"{told} = 0, {symbol} = {part + 0.0:.6g} N",
-            )
-        )
+        forces = (symbol, *names(ledger.actions[side.body]))
+        number = ledger.bodies.number(side.body)
+        self.add(ForcesAlongGuide(number, inner.name, forces, Outcome(symbol, part + 0.0)))
 
     def about_far_hinge(
         self, dyad: Dyad, ledger: Ledger, part: float, lever: float, reach: float, left: float
     ) -> None:
         """Moments of the whole group about the second outer hinge."""
         symbol = ledger.symbol(dyad.first.joint, dyad.first.body)
-        terms = ledger.told([dyad.first.body, dyad.second.body], dyad.second.joint.place)
-        held = f" {'-' if part * lever < 0 else '+'} {abs(part * lever):.5g} ({symbol}ᵗ)"
-        if abs(lever) <= NONE * ledger.scale:
-            held = ""
-        equation = f"{symbol}ⁿ·{reach:.5g}{held}{terms} = 0, {symbol}ⁿ = {left:.6g} N"
-        self.lines.append(
-            _("moments of the group {links} about {point}: {equation}").format(
-                links=self.links(dyad, ledger), point=joint_words(dyad.second.joint), equation=equation
+        terms = ledger.terms([dyad.first.body, dyad.second.body], dyad.second.joint.place)
+        if abs(lever) > NONE * ledger.scale:
+            terms = (MomentTerm(f"{symbol}ᵗ", part * lever), *terms)
+        self.add(
+            MomentsOfGroup(
+                numbers_of(dyad, ledger),
+                dyad.second.joint,
+                Unknown(f"{symbol}ⁿ", reach),
+                terms,
+                Outcome(f"{symbol}ⁿ", left),
             )
         )
 
@@ -136,73 +132,29 @@ class WorkedSteps:
         symbol = ledger.symbol(joint, body)
         loads = sum(abs(action.force) for action in ledger.actions[body]) + abs(force)
         some = abs(moment) > NONE * ledger.scale * loads
-        size = f"M{symbol.removeprefix('R')} = {moment if some else 0.0:.6g} N m"
-        if force and some:
-            beside = _("{symbol} acts {arm} m beside").format(
-                symbol=symbol, arm=f"{abs(moment) / abs(force):.5g}"
-            )
-            size = f"{size}, {beside}"
-        self.lines.append(
-            _("moments of link {link} about {point}: {equation}").format(
-                link=self.link(body, ledger), point=joint_words(joint), equation=size
-            )
-        )
+        outcome = Outcome(f"M{symbol.removeprefix('R')}", moment if some else 0.0, "N m")
+        beside = (symbol, abs(moment) / abs(force)) if force and some else None
+        self.add(MomentsOfLink(ledger.bodies.number(body), joint, None, (), outcome, beside))
 
-    def notes(self, joints: Sequence[StaticJoint]) -> None:
-        """What a reader has to know of meshes, and of contacts that something else keeps."""
+    def assumptions(self, joints: Sequence[StaticJoint]) -> None:
+        """What is left out of meshes, and of contacts that something else keeps."""
         for joint in joints:
-            if joint.kind == "mesh" and joint.has_force:
-                text = _(
-                    "gear {name}: the part of the teeth's force that presses the wheels apart is left out"
-                )
-            elif joint.kind == "mesh":
-                text = _(
-                    "gear {name}: moments alone, because nothing tells its pitch point; what forces between"
-                    " teeth add in the bearings is left out"
+            if joint.kind == "mesh":
+                self.add(
+                    Assumption(joint, Neglect.TOOTH_PRESSURE if joint.has_force else Neglect.PITCH_POINT)
                 )
             elif joint.kind == "rolling" and len(joint.bases) == 1:
-                text = _(
-                    "wheel {name} is kept at its track by other joints: equilibrium does not determine its"
-                    " normal force, which is taken as none, here and in the joints that keep it"
-                )
-            else:
-                continue
-            self.lines.append(text.format(name=joint.name))
+                self.add(Assumption(joint, Neglect.NORMAL_FORCE))
 
-    def say(self, line: str) -> None:
-        """Any other line."""
-        self.lines.append(line)
 
-    def link(self, body: str, ledger: Ledger) -> str:
-        """Number of a body."""
-        return str(ledger.bodies.number(body))
+def numbers_of(dyad: Dyad, ledger: Ledger) -> tuple[int, ...]:
+    """Numbers of the bodies of a dyad, in order."""
+    return tuple(sorted(ledger.bodies.number(side.body) for side in (dyad.first, dyad.second)))
 
 
 def names(actions: Sequence[Action]) -> list[str]:
     """Symbols of what has a force."""
     return [action.symbol for action in actions if action.force != 0]
-
-
-def between(first: StaticJoint, second: StaticJoint) -> str:
-    """The line through two hinges: AB, with longer names parted."""
-    names = joint_words(first), joint_words(second)
-    return "".join(names) if max(map(len, names)) <= 2 else " – ".join(names)
-
-
-def square_to(joint: StaticJoint) -> str:
-    """Direction of a guide's force."""
-    return _("⊥ guide {guide}").format(guide=joint.name)
-
-
-def joint_words(joint: StaticJoint) -> str:
-    """Where a joint is: the point of a hinge, a guide, a contact."""
-    if joint.kind == "guide":
-        return _("guide {guide}").format(guide=joint.name)
-    if joint.kind == "mesh":
-        return _("the teeth of {gear}").format(gear=joint.name)
-    if joint.kind == "rolling":
-        return _("the contact of {wheel}").format(wheel=joint.name)
-    return joint.name
 
 
 KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
@@ -238,15 +190,15 @@ def dyad_of(cell: Cell) -> Dyad | None:
     return dyad if dyad.kind in KINDS else None
 
 
-def solve_dyad(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> DyadReactions:
+def solve_dyad(dyad: Dyad, ledger: Ledger, worked: WorkedSteps) -> DyadReactions:
     """Reactions of a dyad; MotionError at its dead points."""
     solver = _by_hinge if dyad.inner.letter == "R" else _by_guide
-    first, second, chain = solver(dyad, ledger, words)
+    first, second, chain = solver(dyad, ledger, worked)
     inner = -(dyad.first.known(ledger) + first)
     share = dyad.inner.shares[dyad.first.body]
     on_inner = ledger.reaction(dyad.inner, dyad.first.body, share * inner)
-    words.closing(dyad.first.body, ledger, dyad.first.joint, on_inner)
-    turning = _moments(dyad, ledger, words, first, second, inner)
+    worked.closing(dyad.first.body, ledger, dyad.first.joint, on_inner)
+    turning = _moments(dyad, ledger, worked, first, second, inner)
     ends = ((dyad.first, first), (dyad.second, second))
     forces = [(side.joint, side.joint.shares[side.body] * force) for side, force in ends]
     forces.append((dyad.inner, share * inner))
@@ -255,14 +207,14 @@ def solve_dyad(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> DyadReactions:
     )
 
 
-def _by_hinge(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, complex, list[Action]]:
+def _by_hinge(dyad: Dyad, ledger: Ledger, worked: WorkedSteps) -> tuple[complex, complex, list[Action]]:
     """RRR, RRP, PRP: the unknown parts of both outer reactions close the polygon of the group."""
-    parts = [split_reaction(side, dyad.inner, ledger, words) for side in (dyad.first, dyad.second)]
+    parts = [split_reaction(side, dyad.inner, ledger, worked) for side in (dyad.first, dyad.second)]
     (one, along), (other, beside) = parts
     known = dyad.first.known(ledger) + dyad.second.known(ledger) + one + other
     sine = across(along, beside)
     normal, thrust = -cross(known, beside) / sine * along, cross(known, along) / sine * beside
-    words.polygon(dyad, ledger)
+    worked.polygon(dyad, ledger)
     chain = [
         *parts_of(dyad.first, ledger, normal, one, last=True),
         *forces_on(ledger, dyad.first.body),
@@ -273,7 +225,7 @@ def _by_hinge(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, 
 
 
 def split_reaction(
-    side: ForceSide, inner: StaticJoint, ledger: Ledger, words: WorkedSteps
+    side: ForceSide, inner: StaticJoint, ledger: Ledger, worked: WorkedSteps
 ) -> tuple[complex, complex]:
     """The known part of an outer reaction and the unit vector of what is left of it."""
     if side.joint.letter == "P":
@@ -283,17 +235,17 @@ def split_reaction(
         dead_point()
     radial = arm / abs(arm)
     size = -ledger.moment([side.body], inner.place) / abs(arm)
-    words.tangential(side, inner, ledger, abs(arm), size)
+    worked.tangential(side, inner, ledger, abs(arm), size)
     return size * 1j * radial, radial
 
 
-def _by_guide(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, complex, list[Action]]:
+def _by_guide(dyad: Dyad, ledger: Ledger, worked: WorkedSteps) -> tuple[complex, complex, list[Action]]:
     """RPR, RPP: along the inner guide each link is in equilibrium by itself."""
     along, normal = dyad.inner.along, 1j * dyad.inner.along
     first, second = dyad.first, dyad.second
     w1, w2 = first.known(ledger), second.known(ledger)
     part = -dot(w1, along)
-    words.along_guide(first, dyad.inner, ledger, part)
+    worked.along_guide(first, dyad.inner, ledger, part)
     if second.joint.letter == "P":
         thrust_along = 1j * second.joint.along
         sine = across(normal, thrust_along)
@@ -302,7 +254,7 @@ def _by_guide(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, 
             -cross(known, thrust_along) / sine * normal,
             cross(known, normal) / sine * thrust_along,
         )
-        words.polygon(dyad, ledger)
+        worked.polygon(dyad, ledger)
     else:
         arm = first.joint.place - second.joint.place
         reach = dot(arm, along)
@@ -310,9 +262,9 @@ def _by_guide(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, 
             dead_point()
         turning = ledger.moment([first.body, second.body], second.joint.place)
         left = -(turning + part * cross(arm, along)) / reach * normal
-        words.about_far_hinge(dyad, ledger, part, cross(arm, along), reach, dot(left, normal))
+        worked.about_far_hinge(dyad, ledger, part, cross(arm, along), reach, dot(left, normal))
         thrust = -(w1 + w2 + part * along + left)
-        words.polygon(dyad, ledger)
+        worked.polygon(dyad, ledger)
     chain = [
         *parts_of(first, ledger, left, part * along, last=True),
         *forces_on(ledger, first.body),
@@ -343,7 +295,7 @@ def parts_of(
 
 
 def _moments(
-    dyad: Dyad, ledger: Ledger, words: WorkedSteps, first: complex, second: complex, inner: complex
+    dyad: Dyad, ledger: Ledger, worked: WorkedSteps, first: complex, second: complex, inner: complex
 ) -> dict[int, float]:
     """Moments of guides on bodies of share 1, by the joint's identity: about the place of the guide."""
     found: dict[int, float] = {}
@@ -352,7 +304,7 @@ def _moments(
         arm = dyad.first.joint.place - at
         moment = -(ledger.moment([dyad.first.body], at) + cross(arm, first))
         found[id(dyad.inner)] = dyad.inner.shares[dyad.first.body] * moment
-        words.guide_moment(dyad.inner, dyad.first.body, ledger, moment, inner)
+        worked.guide_moment(dyad.inner, dyad.first.body, ledger, moment, inner)
     for side, force in ((dyad.first, first), (dyad.second, second)):
         if side.joint.letter != "P":
             continue
@@ -361,7 +313,7 @@ def _moments(
         inside = dyad.inner.shares[side.body] * found.get(id(dyad.inner), 0.0)
         moment = -(ledger.moment([side.body], at) + cross(dyad.inner.place - at, hold) + inside)
         found[id(side.joint)] = side.joint.shares[side.body] * moment
-        words.guide_moment(side.joint, side.body, ledger, moment, force)
+        worked.guide_moment(side.joint, side.body, ledger, moment, force)
     return found
 
 
@@ -414,12 +366,12 @@ def triad_of(cell: Cell) -> Triad | None:
     return Triad(base, (legs[0], legs[1], legs[2]))
 
 
-def solve_triad(triad: Triad, ledger: Ledger, words: WorkedSteps) -> DyadReactions | None:
+def solve_triad(triad: Triad, ledger: Ledger, worked: WorkedSteps) -> DyadReactions | None:
     """Reactions of a triad; nothing where its three lines have no Assur point to use."""
-    told = WorkedSteps()
+    parts = WorkedSteps()
     legs = []
     for leg in triad.legs:
-        part, along = split_reaction(leg.side, leg.inner, ledger, told)
+        part, along = split_reaction(leg.side, leg.inner, ledger, parts)
         legs.append(TriadLeg(leg.side, leg.inner, part, along))
     first, second = max(
         combinations(range(3), 2), key=lambda pair: abs(cross(legs[pair[0]].along, legs[pair[1]].along))
@@ -441,15 +393,15 @@ def solve_triad(triad: Triad, ledger: Ledger, words: WorkedSteps) -> DyadReactio
     known = total(ledger.actions[triad.base]) + sum(carried, 0j) + sizes[third] * last.along
     sizes[first] = -cross(known, other.along) / sine
     sizes[second] = cross(known, one.along) / sine
-    words.lines += told.lines
-    _tell_triad(triad, ledger, words, (one, other, last), (turning, reach, sizes[third]))
+    worked.steps += parts.steps
+    _add_triad(triad, ledger, worked, (one, other, last), (turning, reach, sizes[third]))
     return replace(_triad_reactions(triad, ledger, legs, sizes), marks=(("S", point),))
 
 
-def _tell_triad(
+def _add_triad(
     triad: Triad,
     ledger: Ledger,
-    words: WorkedSteps,
+    worked: WorkedSteps,
     legs: tuple[TriadLeg, TriadLeg, TriadLeg],
     numbers: tuple[float, float, float],
 ) -> None:
@@ -459,20 +411,10 @@ def _tell_triad(
         ledger.symbol(leg.side.joint, leg.side.body) + ("ⁿ" if leg.side.joint.letter == "R" else "")
         for leg in legs
     )
-    names = [joint_words(leg.inner) for leg in legs[:2]]
-    words.say(
-        _("Assur point S of the lines of {one} through {first} and {other} through {second}").format(
-            one=one, other=other, first=names[0], second=names[1]
-        )
-    )
-    words.say(
-        _("moments of base {link} about S, what the links carry at their hinges included: {equation}").format(
-            link=ledger.bodies.number(triad.base),
-            equation=f"{last}·{reach:.5g} {'-' if turning < 0 else '+'} {abs(turning):.5g} = 0,"
-            f" {last} = {size:.6g} N",
-        )
-    )
-    words.say(_("the polygon of the group closes along {one} and {other}").format(one=one, other=other))
+    base = ledger.bodies.number(triad.base)
+    worked.add(AssurPoint(((one, legs[0].inner), (other, legs[1].inner))))
+    worked.add(MomentsOfBase(base, Unknown(last, reach), turning, Outcome(last, size)))
+    worked.add(ClosedAlong((one, other)))
 
 
 def _triad_reactions(triad: Triad, ledger: Ledger, legs: list[TriadLeg], sizes: list[float]) -> DyadReactions:
@@ -500,7 +442,7 @@ def _triad_reactions(triad: Triad, ledger: Ledger, legs: list[TriadLeg], sizes: 
 Array: TypeAlias = npt.NDArray[np.float64]
 
 
-def solve_single(cell: Cell, ledger: Ledger, words: WorkedSteps) -> DyadReactions | None:
+def solve_single(cell: Cell, ledger: Ledger, worked: WorkedSteps) -> DyadReactions | None:
     """A link by itself: on a hinge with one more unknown, or on a guide along which it is driven; else nothing."""
     if len(cell.bodies) != 1 or len(cell.joints) != 2:
         return None
@@ -509,14 +451,14 @@ def solve_single(cell: Cell, ledger: Ledger, words: WorkedSteps) -> DyadReaction
     if pivot is None or other is None:
         return None
     if pivot.letter == "R":
-        return _on_hinge(cell.bodies[0], pivot, other, ledger, words)
+        return _on_hinge(cell.bodies[0], pivot, other, ledger, worked)
     if abs(dot(other.bases[0][0], pivot.along)) > SINGULAR:
-        return _on_guide(cell.bodies[0], pivot, other, ledger, words)
+        return _on_guide(cell.bodies[0], pivot, other, ledger, worked)
     return None
 
 
 def _on_hinge(
-    body: str, pivot: StaticJoint, other: StaticJoint, ledger: Ledger, words: WorkedSteps
+    body: str, pivot: StaticJoint, other: StaticJoint, ledger: Ledger, worked: WorkedSteps
 ) -> DyadReactions:
     """Moments about the hinge give the other unknown, the link's polygon then the reaction of the hinge."""
     (unit, turn) = other.bases[0]
@@ -528,27 +470,27 @@ def _on_hinge(
     turning = ledger.moment([body], pivot.place)
     size = -turning / (share * factor)
     acts = ledger.reaction(other, body, size * unit, size * turn)
-    known = ledger.told([body], pivot.place)
-    unknown = f"{acts.symbol}·{share * factor:.5g}" if unit or share * factor != 1.0 else acts.symbol
     symbol = acts.symbol if share > 0 else acts.symbol.removeprefix("−")
-    unit_name = "N" if unit else "N m"
-    value = size if other.kind == "drive" else share * size
     if other.kind != "drive":
-        unknown = f"{acts.symbol}·{factor:.5g}" if unit else acts.symbol
-    elif not unit:
-        unknown = symbol if share > 0 else f"−{symbol}"
-    words.about(body, pivot, ledger, f"{unknown}{known} = 0, {symbol} = {value:.6g} {unit_name}")
+        unknown = Unknown(acts.symbol, factor if unit else None)
+    elif unit:
+        unknown = Unknown(acts.symbol, share * factor)
+    else:
+        unknown = Unknown(symbol if share > 0 else f"−{symbol}")
+    outcome = Outcome(symbol, size if other.kind == "drive" else share * size, "N" if unit else "N m")
+    terms = ledger.terms([body], pivot.place)
+    worked.add(MomentsOfLink(ledger.bodies.number(body), pivot, unknown, terms, outcome))
     force = -(total(ledger.actions[body]) + acts.force)
     hold = ledger.reaction(pivot, body, pivot.shares[body] * force)
     chain = [action for action in [*ledger.actions[body], acts, hold] if action.force != 0]
-    words.closing(body, ledger, other if unit else None, hold)
+    worked.closing(body, ledger, other if unit else None, hold)
     return DyadReactions(
         ((other, size * unit, size * turn), (pivot, pivot.shares[body] * force, 0.0)), tuple(chain)
     )
 
 
 def _on_guide(
-    body: str, guide: StaticJoint, other: StaticJoint, ledger: Ledger, words: WorkedSteps
+    body: str, guide: StaticJoint, other: StaticJoint, ledger: Ledger, worked: WorkedSteps
 ) -> DyadReactions:
     """A slider: what pushes it along the guide is the other unknown, square to it the guide holds."""
     known, along = total(ledger.actions[body]), guide.along
@@ -559,21 +501,16 @@ def _on_guide(
     moment = -(ledger.moment([body], guide.place) + push.about(guide.place))
     share = guide.shares[body]
     hold = ledger.reaction(guide, body, share * thrust, share * moment)
-    words.say(
-        _("link {link} along guide {guide}: {equation}").format(
-            link=ledger.bodies.number(body),
-            guide=guide.name,
-            equation=f"|{push.symbol}| = {abs(push.force):.6g} N",
-        )
-    )
-    words.closing(body, ledger, other, hold)
-    words.guide_moment(guide, body, ledger, moment, thrust)
+    pushed = Outcome(push.symbol, abs(push.force), magnitude=True)
+    worked.add(ForcesAlongGuide(ledger.bodies.number(body), guide.name, (), pushed))
+    worked.closing(body, ledger, other, hold)
+    worked.guide_moment(guide, body, ledger, moment, thrust)
     chain = [action for action in [*ledger.actions[body], push, hold] if action.force != 0]
     forces = ((other, size * unit, 0.0), (guide, share * thrust, share * moment))
     return DyadReactions(forces, tuple(chain))
 
 
-def solve_together(cell: Cell, ledger: Ledger, words: WorkedSteps) -> DyadReactions:
+def solve_together(cell: Cell, ledger: Ledger, worked: WorkedSteps) -> DyadReactions:
     """All equations of equilibrium of a group at once; MotionError where they are singular to rounding."""
     unknowns = [(joint, *basis) for joint in cell.joints for basis in joint.bases]
     scale = ledger.scale
@@ -589,11 +526,7 @@ def solve_together(cell: Cell, ledger: Ledger, words: WorkedSteps) -> DyadReacti
         rows += [[column[row] for column in columns] for row in range(count)]
         right += sides[:count]
     values = _solve_scaled(np.array(rows), np.array(right))
-    words.say(
-        _("solved together: {equations} equations of equilibrium of {links}").format(
-            equations=len(rows), links=", ".join(str(ledger.bodies.number(body)) for body in cell.bodies)
-        )
-    )
+    worked.add(SolvedTogether(len(rows), tuple(ledger.bodies.number(body) for body in cell.bodies)))
     forces = []
     for joint in cell.joints:
         force, moment = 0j, 0.0
@@ -601,7 +534,7 @@ def solve_together(cell: Cell, ledger: Ledger, words: WorkedSteps) -> DyadReacti
             if owner is joint:
                 force, moment = force + value * unit, moment + value * scale * turn
         forces.append((joint, force, moment))
-        _tell_reaction(joint, force, moment, cell, ledger, words)
+        _add_reaction(joint, force, moment, cell, ledger, worked)
     known_ones = [action for action in ledger.on(cell.bodies) if action.force != 0]
     outer = [
         ledger.reaction(joint, body, force, moment)
@@ -637,17 +570,17 @@ def _solve_scaled(matrix: Array, right: Array) -> Array:
     return np.asarray(np.linalg.solve(scaled, right / down) / across)
 
 
-def _tell_reaction(
-    joint: StaticJoint, force: complex, moment: float, cell: Cell, ledger: Ledger, words: WorkedSteps
+def _add_reaction(
+    joint: StaticJoint, force: complex, moment: float, cell: Cell, ledger: Ledger, worked: WorkedSteps
 ) -> None:
     """One reaction that was found with others."""
     bodies = [name for name in cell.bodies if name in joint.shares]
     body = max(bodies, key=lambda name: joint.shares[name])
     action = ledger.reaction(joint, body, force, moment)
-    parts = [f"|{action.symbol}| = {abs(action.force):.6g} N"] if action.force else []
+    parts = [Outcome(action.symbol, abs(action.force), magnitude=True)] if action.force else []
     if joint.kind == "guide":
-        parts.append(f"M{action.symbol.removeprefix('R')} = {action.moment:.6g} N m")
+        parts.append(Outcome(f"M{action.symbol.removeprefix('R')}", action.moment, "N m"))
     elif joint.kind in ("mesh", "drive") and not joint.has_force:
-        parts = [f"{action.symbol} = {action.moment:.6g} N m"]
+        parts = [Outcome(action.symbol, action.moment, "N m")]
     if parts:
-        words.say(f"{joint_words(joint)}: {', '.join(parts)}")
+        worked.add(JointReaction(joint, tuple(parts)))

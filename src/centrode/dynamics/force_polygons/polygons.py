@@ -36,6 +36,7 @@ from centrode.dynamics.force_polygons.statics import (
     joints_of,
     outer_actions,
 )
+from centrode.dynamics.force_polygons.steps import Step
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduce_state
 from centrode.dynamics.state import DriveMotion, State
@@ -303,7 +304,7 @@ class GroupForces:
     kind : "RRR", "RRP", "RPR", "PRP", "RPP", "triad", "input", "single" or "together"
     actions : what acts on its bodies before it is solved: loads, weights, inertia, reactions of groups behind it
     reactions : of its outer joints and drives, on its bodies
-    steps : what was done, in words
+    steps : what was done
     polygon : of the whole group
     link_polygons : of each of its bodies
     joints : its own joints, inner and outer
@@ -315,7 +316,7 @@ class GroupForces:
     kind: str
     actions: tuple[Action, ...]
     reactions: tuple[Action, ...]
-    steps: tuple[str, ...]
+    steps: tuple[Step, ...]
     polygon: Polygon
     link_polygons: tuple[Polygon, ...]
     joints: tuple[StaticJoint, ...]
@@ -363,9 +364,9 @@ class ForcePolygons:
         return tuple(group.polygon for group in self.groups)
 
     @property
-    def steps(self) -> tuple[str, ...]:
-        """All steps in words."""
-        return tuple(line for group in self.groups for line in group.steps)
+    def steps(self) -> tuple[Step, ...]:
+        """All steps, group by group."""
+        return tuple(step for group in self.groups for step in group.steps)
 
     @property
     def lever(self) -> Lever:
@@ -463,11 +464,11 @@ def _speeds(exact: xr.Dataset, prepared: Ready, rates: Rates) -> dict[str, float
 
 def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces:
     """Solve one group and enter its reactions."""
-    words, before = WorkedSteps(), tuple(ledger.on(cell.bodies))
-    kind, found = _solve_cell(cell, ledger, words)
+    worked, before = WorkedSteps(), tuple(ledger.on(cell.bodies))
+    kind, found = _solve_cell(cell, ledger, worked)
     for joint, force, moment in found.forces:
         ledger.settle(joint, force, moment)
-    words.notes(cell.joints)
+    worked.assumptions(cell.joints)
     inner = [id(joint) for joint in cell.inner]
     reactions = tuple(
         ledger.reaction(joint, body, force, moment)
@@ -487,7 +488,7 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
         kind,
         before,
         reactions,
-        tuple(words.lines),
+        tuple(worked.steps),
         whole,
         single,
         cell.joints,
@@ -495,20 +496,20 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
     )
 
 
-def _solve_cell(cell: Cell, ledger: Ledger, words: WorkedSteps) -> tuple[str, DyadReactions]:
+def _solve_cell(cell: Cell, ledger: Ledger, worked: WorkedSteps) -> tuple[str, DyadReactions]:
     """The kind of a group, and its reactions by the way that fits it."""
     dyad = dyad_of(cell)
     if dyad is not None:
-        return dyad.kind, solve_dyad(dyad, ledger, words)
-    single = solve_single(cell, ledger, words)
+        return dyad.kind, solve_dyad(dyad, ledger, worked)
+    single = solve_single(cell, ledger, worked)
     if single is not None:
         driven = any(joint.kind == "drive" for joint in cell.joints)
         return "input" if driven else "single", single
     triad = triad_of(cell)
-    by_point = None if triad is None else solve_triad(triad, ledger, words)
+    by_point = None if triad is None else solve_triad(triad, ledger, worked)
     if by_point is not None:
         return "triad", by_point
-    return "together", solve_together(cell, ledger, words)
+    return "together", solve_together(cell, ledger, worked)
 
 
 def _chords(cell: Cell, ledger: Ledger, found: DyadReactions) -> list[PolygonVector]:

@@ -67,11 +67,7 @@ class FreeBodies:
             order[name] = max(of_point.get(guide.point, -1), order[guide.on])
         carried = {point for link in mechanism.links.values() for point in link.coordinates}
         carried |= {guide.point for guide in sliders.values()} | set(mechanism.frame.points)
-        pins = {
-            _("pin {point}").format(point=point): point
-            for point in mechanism.moving_points
-            if point not in carried
-        }
+        pins = {f"pin {point}": point for point in mechanism.moving_points if point not in carried}
         order |= {name: of_point.get(point, 0) for name, point in pins.items()}
         return cls(mechanism, (FRAME, *mechanism.link_names, *sliders, *pins), sliders, pins, order)
 
@@ -314,6 +310,14 @@ class Action:
         return self.moment + cross(self.place - place, self.force)
 
 
+@dataclass(frozen=True)
+class MomentTerm:
+    """An action by its symbol, with its moment about a place [N m]."""
+
+    symbol: str
+    moment: float
+
+
 def total(actions: Iterable[Action]) -> complex:
     """Sum of the forces."""
     return sum((action.force for action in actions), 0j)
@@ -519,15 +523,11 @@ class Ledger:
         """Moment about a place of what acts on some bodies."""
         return moment_about(self.on(names), place)
 
-    def told(self, names: Sequence[str], place: complex) -> str:
-        """The same term by term: + 12.3 (G2) - 4 (MΦ2)."""
-        terms = [(action.symbol, action.about(place)) for action in self.on(names)]
+    def terms(self, names: Sequence[str], place: complex) -> tuple[MomentTerm, ...]:
+        """The same term by term; terms that are rounding of none are left out."""
+        terms = [MomentTerm(action.symbol, action.about(place)) for action in self.on(names)]
         none = ROUNDED * self.scale * max((abs(action.force) for action in self.on(names)), default=0.0)
-        return "".join(
-            f" {'-' if value < 0 else '+'} {abs(value):.5g} ({symbol})"
-            for symbol, value in terms
-            if abs(value) > none
-        )
+        return tuple(term for term in terms if abs(term.moment) > none)
 
 
 def across(first: complex, second: complex) -> float:

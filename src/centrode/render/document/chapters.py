@@ -14,6 +14,8 @@ from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers, spelled_number
 from centrode.render.document.scaled import INCH, drawn_to_scale
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
+from centrode.render.force_pages import drawing_end, group_scales
+from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
     Block,
@@ -72,6 +74,11 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Illustration(picture_or_name, caption):
             shown = pictures[picture_or_name] if isinstance(picture_or_name, str) else picture_or_name
             figure = figures.figure_of(shown, spelling.numbers.display)
+            if isinstance(shown, GroupPage | LeverPage):
+                # cut from its page: the column beside it stands in the text of the chapter
+                name = spelling.text(shown.title if caption is None else caption)
+                name = _with_scales(shown, name) if isinstance(shown, GroupPage) else name
+                return drawn_to_scale(figure, name, *drawing_end(shown))
             if isinstance(shown, VectorPage):
                 # a page whose scales are true on paper: only what is empty is cut off
                 width, height = (float(inches) * INCH for inches in figure.get_size_inches())
@@ -80,12 +87,21 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return picture(figure, spelling.text(shown.title if caption is None else caption))
         case Check():
             return _check(block, spelling)
-        case Items(texts):
-            return blocks.Items(tuple(map(spelling.text, texts)))
+        case Items(texts, numbered):
+            return blocks.Items(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):
             return blocks.Paragraph(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
         case _:
             assert_never(block)
+
+
+def _with_scales(page: GroupPage, name: str) -> str:
+    """A caption with what a millimetre stands for: "...; $mu_l$ = 0.02 m/mm, $mu_F$ = 100 N/mm"."""
+    scales = (
+        f"$mu_{letter}$ = {spelled_number(f'{size:g}')} {unit}/mm"
+        for letter, size, unit in group_scales(page)
+    )
+    return f"{name}; {', '.join(scales)}"
 
 
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:

@@ -27,7 +27,6 @@ from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
-from centrode.report.chapters.forces.polygons import polygons_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
@@ -81,7 +80,6 @@ OWN: Mapping[str, Kind] = {
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
-    "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.locale import _
 from centrode.render.document.blocks import shown
 from centrode.report.moments import moments_of
 
@@ -26,11 +25,6 @@ def unit_of_place(study: ReportStudy) -> str:
     return study.mechanism.motion_parameter.instant.unit
 
 
-def titles(study: ReportStudy) -> tuple[str, ...]:
-    """How titles name the instants: "OA = 120°"."""
-    return tuple(moment.title for moment in moments_of(study))
-
-
 def head_of_places(study: ReportStudy) -> str:
     """Head of a column of places, without the unit."""
     parameter = study.mechanism.motion_parameter
@@ -40,8 +34,3 @@ def head_of_places(study: ReportStudy) -> str:
 def places_of(study: ReportStudy, data: xr.Dataset) -> np.ndarray:
     """Places of the samples of a dataset [rad, m or s]."""
     return np.asarray(study.mechanism.motion_parameter.instants(data))
-
-
-def not_reached() -> str:
-    """What stands in place of numbers where there are none."""
-    return _("The mechanism does not get there: there are no numbers.")

@@ -6,22 +6,25 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset
-from centrode.present.forces.force_signs import force_arrows, moment_arc
 from centrode.present.page import Page, View, new_page
+from centrode.present.pictures import caption
 from centrode.present.scene import corners
-from centrode.present.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
 from centrode.present.shown import shown_as
 from centrode.present.style import INK, pens
-from centrode.study.forces.force_polygons import lever_lines
+from centrode.render.force_signs import force_arrows, moment_arc
+from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
+from centrode.render.spelling import DrawingSpelling
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from centrode.dynamics.force_polygons.polygons import ForcePolygons, Lever
+    from centrode.sheets.force_pages import LeverPage
 
 WIDE = 0.68
 """Share of the sheet that the lever has."""
@@ -30,8 +33,10 @@ TOGETHER = 0.7
 TINY = 1e-12
 
 
-def lever_page(found: ForcePolygons, lever: Lever, text: str) -> Figure:
+def lever_page(sheet: LeverPage) -> Figure:
     """The lever with its forces, and the moments about its pole."""
+    found, lever = sheet.forces, sheet.forces.levers[sheet.lever]
+    spelling = DrawingSpelling(found.mechanism.display)
     page = new_page(sheet_size(found.paper))
     wide, high = page.size
     factor, unit = shown_as("m", found.mechanism.display)
@@ -47,11 +52,9 @@ def lever_page(found: ForcePolygons, lever: Lever, text: str) -> Figure:
     column = lever_column(found)
     per = "/rad" if lever.unit == "N m" else ""
     size_of = f"{scale:g} {unit}{per}" if unit != "1" else f"{scale:g}"
-    heads = [text, f"$\\mu_v$ = {size_of} " + _("per mm")]
-    write_title(page, column, _("Zhukovsky's lever"), found.mechanism)
-    write_column(
-        page, column, _("Velocity diagram turned by 90° clockwise"), heads, lever_lines(found, lever)
-    )
+    heads = [caption(found.mechanism, found.exact, 0), f"$\\mu_v$ = {size_of} " + _("per mm")]
+    write_title(page, column, spelling.text(sheet.title), found.mechanism)
+    write_column(page, column, spelling.text(sheet.heading), heads, list(map(spelling.text, sheet.lines)))
     page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
     return page.figure
 

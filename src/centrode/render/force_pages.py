@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.stage import round_scale as round_length
 from centrode.dynamics.force_polygons.polygons import PARTS, round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import arrow, flat
-from centrode.present.forces.force_signs import force_name
-from centrode.present.forces.group_drawing import draw_group
-from centrode.present.forces.lever_drawing import lever_page
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.pictures import caption
 from centrode.present.reading import scene_of
-from centrode.present.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
 from centrode.present.shown import shown_as
-from centrode.present.style import INK, MUTED, Pen, house_style, pens
-from centrode.study.forces.force_polygons import force_text, group_title
+from centrode.present.style import INK, MUTED, Pen, pens
+from centrode.render.force_groups import draw_group
+from centrode.render.force_signs import force_name
+from centrode.render.levers import lever_column
+from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
+from centrode.render.spelling import DrawingSpelling
+from centrode.sheets.force_pages import GroupPage
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from centrode.dynamics.force_polygons.polygons import ForcePolygons, GroupForces, Polygon, PolygonVector
+    from centrode.sheets.force_pages import LeverPage
 
 SHORT = 0.5
 """Vectors shorter than this [mm] are told, not drawn."""
@@ -37,32 +40,10 @@ DASHED = (0, (4.0, 1.6))
 CHORD = (0, (6.0, 1.5, 1.2, 1.5))
 
 
-def polygon_figures(found: ForcePolygons) -> dict[str, Figure]:
-    """Pages of an instant: "group-1" and on in the order in which groups were solved, "lever" of each drive.
-
-    Parameters
-    ----------
-    found : ForcePolygons
-
-    Returns
-    -------
-    dict of name -> Figure
-        Scales are true on paper: a millimetre is what the page says.
-    """
-    with house_style():
-        text = caption(found.mechanism, found.exact, 0)
-        pages = {
-            f"group-{number}": group_page(found, group, text)
-            for number, group in enumerate(found.groups, start=1)
-        }
-        for lever in found.levers:
-            name = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
-            pages[name] = lever_page(found, lever, text)
-        return pages
-
-
-def group_page(found: ForcePolygons, group: GroupForces, text: str) -> Figure:
-    """A group with its forces, its polygon, and what was done."""
+def group_page(sheet: GroupPage) -> Figure:
+    """A group with its forces, its polygon, and what was done; a millimetre is what the page says."""
+    found, group = sheet.forces, sheet.forces.groups[sheet.group]
+    spelling = DrawingSpelling(found.mechanism.display)
     page = new_page(sheet_size(found.paper))
     wide, high = page.size
     drawn, room = DRAWN * wide, ROOM * wide
@@ -76,10 +57,11 @@ def group_page(found: ForcePolygons, group: GroupForces, text: str) -> Figure:
     corner, size = np.array([LEFT + drawn + GUTTER, FOOT]), np.array([room, height])
     scale = draw_polygons(page, found, group, corner, size)
     column = column_of(found)
-    heads = [text, f"$\\mu_l$ = {length:g} {unit} " + _("per mm")]
+    heads = [caption(found.mechanism, found.exact, 0), f"$\\mu_l$ = {length:g} {unit} " + _("per mm")]
     heads.append(f"$\\mu_F$ = {scale:g} N " + _("per mm"))
-    write_column(page, column, group_title(group), heads, told(group, scale))
-    write_title(page, column, _("Force polygon"), found.mechanism)
+    lines = [*(spelling.text(line) for line in sheet.lines), "", *lengths(group, scale)]
+    write_column(page, column, spelling.text(sheet.heading), heads, lines)
+    write_title(page, column, spelling.text(sheet.title), found.mechanism)
     page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
     return page.figure
 
@@ -98,6 +80,21 @@ def group_scale(found: ForcePolygons, group: GroupForces) -> float:
     if not extents.any():  # sliders in one place
         extents = np.ptp(flat([factor * place for place in found.places.values()]), axis=0)
     return round_length(float(np.max(extents / room)), 1.0)
+
+
+def drawing_end(sheet: GroupPage | LeverPage) -> tuple[float, float]:
+    """Where the drawing of a page ends at its column of text, and at its head [mm]."""
+    found = sheet.forces
+    column = column_of(found) if isinstance(sheet, GroupPage) else lever_column(found)
+    return column, sheet_size(found.paper)[1] - TOP
+
+
+def group_scales(sheet: GroupPage) -> Iterator[tuple[str, float, str]]:
+    """Letter, value and unit of the scales of a group: what a millimetre of each drawing stands for."""
+    found, group = sheet.forces, sheet.forces.groups[sheet.group]
+    yield "l", group_scale(found, group), shown_as("m", found.mechanism.display)[1]
+    if group.kind != "together":  # the polygons of its links share a scale that the page alone names
+        yield "F", group.polygon.scale, "N"
 
 
 def shown_places(found: ForcePolygons, group: GroupForces) -> list[complex]:
@@ -185,13 +182,11 @@ def colour_of(vector: PolygonVector, colours: Mapping[str, Pen]) -> str:
     return colours[vector.body].colour if known else INK
 
 
-def told(group: GroupForces, scale: float) -> list[str]:
-    """Steps in words, then every force with its length on paper."""
+def lengths(group: GroupForces, scale: float) -> Iterator[str]:
+    """Every force with its length on paper."""
     shown = [*group.polygon.vectors, *group.polygon.sums, *group.polygon.chords]
     if group.kind == "together":
         shown = [vector for polygon in group.link_polygons for vector in polygon.vectors]
-    table = [
-        f"{vector.name} = {force_text(abs(vector.force))} N, {abs(vector.force) / scale:.1f} mm"
-        for vector in {vector.name: vector for vector in shown}.values()
-    ]
-    return [*group.steps, "", *table]
+    for vector in {vector.name: vector for vector in shown}.values():
+        size = abs(vector.force)
+        yield f"{vector.name} = {size:.6g} N, {size / scale:.1f} mm"

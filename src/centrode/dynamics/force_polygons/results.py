@@ -1,0 +1,81 @@
+"""Forces by hand at some instants as one result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import xarray as xr
+
+from centrode.dynamics.force_polygons.polygons import ForcePolygons, force_polygons
+from centrode.dynamics.masses import has_masses_or_loads
+from centrode.errors import MotionError
+from centrode.kinematics.motion import initial_place, motion
+from centrode.model.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class ForcePolygonResults:
+    """Force polygons of a mechanism at some instants.
+
+    Attributes
+    ----------
+    mechanism : with its masses and loads
+    at : the instants as they were named: values of the drive [rad or m], times [s], or texts
+    motion : the labelled motion at the instants
+    polygons : of each instant; None where the mechanism is open or singular, and no forces balance it
+    """
+
+    mechanism: Mechanism
+    at: tuple[float | str, ...]
+    motion: xr.Dataset
+    polygons: tuple[ForcePolygons | None, ...]
+
+
+def force_polygon_results(
+    mechanism: Mechanism,
+    at: Sequence[float | str] = (),
+    paper: str = "A4",
+    *,
+    instants: Sequence[float] | None = None,
+    complete: bool = True,
+) -> ForcePolygonResults:
+    """Reactions and balancing moment at some instants by force polygons and by Zhukovsky's lever.
+
+    Parameters
+    ----------
+    at : instants, numbers in SI or texts with a unit ("120 deg"): values of the drive, or times, as in `motion(at=...)`
+    paper : "A5", "A4" or "A3"
+        The sheet that scales of forces are chosen for.
+    instants : the same in SI [rad or m, or s], if `at` is left out; else those of the study, else the initial position
+    complete : every instant has to have forces; otherwise one at least
+
+    Raises
+    ------
+    InputError, NotComputedYet, MotionError
+        As `force_polygons`.
+    """
+    parameter = mechanism.motion_parameter
+    if instants is None:
+        # the value of a drive by a law states no instant: it may come again
+        instants = (mechanism.study.instants if parameter.states_instants else ()) or (
+            initial_place(mechanism),
+        )
+    named, instant = tuple(at) or tuple(instants), parameter.instant
+    places = [instant.read(place, "at") for place in named]
+    found: list[ForcePolygons | None] = []
+    refusals: list[MotionError] = []
+    for place in places:
+        try:
+            found.append(force_polygons(mechanism, place, paper))
+        except MotionError as refusal:
+            refusals.append(refusal)
+            found.append(None)
+    if refusals and (complete or not any(found)):
+        raise refusals[0]
+    return ForcePolygonResults(mechanism, named, motion(mechanism, at=places), tuple(found))
+
+
+def has_force_polygons(mechanism: Mechanism) -> bool:
+    """Whether a mechanism is plane and has masses or loads."""
+    return mechanism.space == "plane" and has_masses_or_loads(mechanism)

@@ -1,0 +1,106 @@
+"""The sheet of forces by hand: several instants, instants without forces, names of users and of the program."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import centrode as ct
+from centrode.dynamics.force_polygons.results import ForcePolygonResults
+from centrode.locale import speaking
+from centrode.render.document import blocks
+from centrode.render.document.chapters import document_chapter
+from centrode.render.document.numbers import Numbers
+from centrode.topics.registry import FORCE_POLYGONS
+
+TORQUE = """
+[[loads]]
+kind = "torque"
+link = "{link}"
+value = 3
+"""
+
+
+def loaded(name: str, link: str) -> ct.Mechanism:
+    """An example with a moment on one link."""
+    return ct.parse_mechanism(ct.example_text(name) + TORQUE.format(link=link))
+
+
+def chapter_of(results: ForcePolygonResults) -> blocks.Chapter:
+    numbers = Numbers(results.mechanism.display)
+    return document_chapter("force-polygons", FORCE_POLYGONS.view(results), numbers)
+
+
+def test_parts_of_several_instants_are_numbered() -> None:
+    press = ct.example("six-bar-press")
+    results = ct.force_polygon_results(press, ["30 deg", math.pi / 2])
+    sheet = FORCE_POLYGONS.view(results)
+    pages = ("group-1", "group-2", "group-3", "lever")
+    assert list(sheet.tables) == ["polygons-1", "polygons-2"]
+    assert list(sheet.pictures) == [f"{page}-{number}" for number in (1, 2) for page in pages]
+    printed = ct.summary(results).splitlines()
+    # a text is shown as it was written, a number in the units of the display
+    assert [line for line in printed if line.startswith("at ")] == ["at 30 deg", "at 90 deg"]
+
+
+@pytest.mark.parametrize(
+    ("name", "link", "at", "there", "status"),
+    [
+        ("parallelogram", "DB", 1.0, math.pi, "singular"),
+        ("slider-between-cranks-locked", "BD", 1.5, 2.5, "open"),
+    ],
+)
+def test_an_instant_without_forces_is_said_in_its_place(
+    name: str, link: str, at: float, there: float, status: str
+) -> None:
+    mechanism = loaded(name, link)
+    with pytest.raises(ct.MotionError, match=status):
+        ct.force_polygon_results(mechanism, instants=[at, there])
+    with pytest.raises(ct.MotionError, match=status):
+        ct.force_polygon_results(mechanism, instants=[there], complete=False)
+    results = ct.force_polygon_results(mechanism, instants=[at, there], complete=False)
+    assert [found is None for found in results.polygons] == [False, True]
+    assert list(ct.tables(results)) == ["polygons-1"]
+    (said,) = chapter_of(results).sections[-1].blocks
+    assert isinstance(said, blocks.Paragraph)
+    assert said.text == f"The mechanism is {status} there: no finite forces keep it in equilibrium."
+
+
+@pytest.mark.parametrize("hostile", ["No 1.23456", "2.50 kg", "$x_1$", "pin A", "<b>"])
+def test_links_of_any_name_are_called_by_it(hostile: str) -> None:
+    text = ct.mechanism_text(ct.example("six-bar-press"))
+    text = text.replace('"slider"', f'"{hostile}"').replace("links.slider", f'links."{hostile}"')
+    results = ct.force_polygon_results(ct.parse_mechanism(text), ["120 deg"], "A5")
+    assert f"Group 4, 5 (RRP): DH, {hostile}" in ct.summary(results)
+    assert f"5 {hostile}" in ct.summary(results)
+    titles = [
+        block.text for block in chapter_of(results).sections[1].blocks if isinstance(block, blocks.Paragraph)
+    ]
+    assert f"Group 4, 5 (RRP): DH, {hostile}." in [title.replace(r"\$", "$") for title in titles]
+
+
+def test_a_slider_has_a_word_of_the_language() -> None:
+    """The names of results stay English, so that files are the same for every reader."""
+    mechanism = loaded("scotch-yoke", "OA")
+    with speaking("ru"):
+        results = ct.force_polygon_results(mechanism, [0.8])
+        assert "ползун" in ct.summary(results) and "slider" not in ct.summary(results)
+    (found,) = results.polygons
+    assert found is not None and any(name.startswith("slider ") for name in found.names)
+
+
+def test_a_chapter_has_every_step_and_its_drawings_to_scale() -> None:
+    results = ct.force_polygon_results(ct.example("six-bar-press"), ["120 deg"], "A5")
+    (found,) = results.polygons
+    assert found is not None
+    parts = chapter_of(results).sections[1].blocks
+    steps = [block for block in parts if isinstance(block, blocks.Items)]
+    assert [len(items.texts) for items in steps] == [len(group.steps) for group in found.groups]
+    assert all(items.numbered for items in steps)
+    drawings = [block for block in parts if isinstance(block, blocks.Picture)]
+    assert len(drawings) == len(found.groups) + len(found.levers)
+    for group, drawing in zip(found.groups, drawings, strict=False):
+        assert f"$mu_F$ = {group.polygon.scale:g} N/mm" in drawing.caption
+    checks = [block for block in parts if isinstance(block, blocks.Check)]
+    assert checks and all(check.holds for check in checks)
