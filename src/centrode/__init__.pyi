@@ -61,7 +61,6 @@ from .study.graphic import graphic_rows as graphic_rows
 from .study.graphic import graphic_about as graphic_about
 from .study.graphic import graphic_steps as graphic_steps
 from .study.graphic import graphic_csv as graphic_csv
-from .study.positions import plan_rows as plan_rows
 from .study.running import study as study
 from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
@@ -258,7 +257,6 @@ from .present import darkened as darkened
 from .report.variants.folders import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import diagram_figures as diagram_figures
-from .present import plan_figure as plan_figure
 from .present import save_figures as save_figures
 
 # Reports

@@ -54,8 +54,7 @@ def test_no_text_covers_another_or_leaves_the_page(
 @pytest.mark.parametrize("name", PLANS)
 @pytest.mark.parametrize("count", [12, 24])
 def test_numbers_of_a_plan_stand_free(name: str, count: int) -> None:
-    mechanism = ct.example(name)
-    figure = ct.plan_figure(mechanism, ct.plan_of_positions(mechanism, count))
+    figure = ct.figures(ct.plan_of_positions(ct.example(name), count))["plan"]
     assert overlapping(figure) == []
     assert outside(figure) == []
     texts = [text.get_text() for text in figure.findobj(Text)]

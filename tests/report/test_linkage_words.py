@@ -115,8 +115,7 @@ def test_a_point_of_the_frame_has_no_velocity_to_be_told() -> None:
 
 
 def test_drawings_keep_their_scale() -> None:
-    mechanism = ct.example("slider-between-cranks")
-    figure = ct.plan_figure(mechanism, ct.plan_of_positions(mechanism))
+    figure = ct.figures(ct.plan_of_positions(ct.example("slider-between-cranks")))["plan"]
     written = [text.get_text() for axes in figure.axes for text in axes.texts]
     scale = float(next(re.search(r"= ([\d.]+) m", text)[1] for text in written if "mu" in text))  # type: ignore[index]
     assert scale_of(figure) == pytest.approx(scale, rel=1e-12)

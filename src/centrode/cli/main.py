@@ -29,7 +29,6 @@ from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
-from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
@@ -58,7 +57,6 @@ OWN: tuple[click.Command, ...] = (
     variants,
     cam,
     diagrams,
-    plan,
     sweep,
     draw,
     export,

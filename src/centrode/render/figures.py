@@ -21,11 +21,13 @@ from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_st
 from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.panel_grids import grid_figure
+from centrode.render.position_pages import positions_figure
 from centrode.render.scenes import scene_figure
 from centrode.render.span_plots import span_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.sheets.pages import PositionsPage
 from centrode.sheets.plots import (
     Abscissa,
     AreaDiagram,
@@ -108,6 +110,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return scene_figure(picture, display)
             case SpanPlot():
                 return span_figure(picture, display)
+            case PositionsPage():
+                return positions_figure(picture, display)
             case _:
                 assert_never(picture)
 

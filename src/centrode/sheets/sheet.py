@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.sheets.pages import PositionsPage
 from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
@@ -29,6 +30,7 @@ Picture: TypeAlias = (
     | AreaDiagram
     | Scene
     | SpanPlot
+    | PositionsPage
 )
 Part = TypeVar("Part")
 

@@ -399,6 +399,31 @@ MOTION_LAWS = Topic(
     flag="laws",
 )
 
+PLAN = Topic(
+    name="plan",
+    compute=Lazily("centrode.analysis.position_plan", "plan_of_positions"),
+    result=Lazily("centrode.analysis.position_plan", "PositionPlan"),
+    view=Lazily("centrode.views.position_plan", "sheet"),
+    concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
+    command=Command(
+        help=mark("Draw the mechanism in numbered positions of its cycle."),
+        options=(
+            Given("positions", mark("N"), mark("Number of positions, else 12."), int),
+            Given(
+                "link",
+                mark("NAME"),
+                mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
+            ),
+        ),
+        folder="plan",
+        samples=False,
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("positions", mark("Plan of positions")),), instants=False, points=True
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -414,5 +439,6 @@ TOPICS: tuple[Topic, ...] = (
     SHAKING,
     FOLLOWER_MOTION,
     MOTION_LAWS,
+    PLAN,
 )
 """Every topic."""

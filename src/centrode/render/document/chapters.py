@@ -6,14 +6,16 @@ from collections.abc import Mapping, Sequence
 from typing import TypeAlias, assert_never
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from centrode.locale import _
-from centrode.render import figures
+from centrode.render import figures, position_pages
 from centrode.render.document import blocks
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers, spelled_number
-from centrode.render.document.scaled import INCH, drawn_to_scale
+from centrode.render.document.scaled import INCH, drawn_to_scale, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
+from centrode.sheets.pages import PositionsPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
     Block,
@@ -72,6 +74,8 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Illustration(picture_or_name, caption):
             shown = pictures[picture_or_name] if isinstance(picture_or_name, str) else picture_or_name
             figure = figures.figure_of(shown, spelling.numbers.display)
+            if isinstance(shown, PositionsPage):
+                return _drawn(figure, spelling.text(shown.title if caption is None else caption), spelling)
             if isinstance(shown, VectorPage):
                 # a page whose scales are true on paper: only what is empty is cut off
                 width, height = (float(inches) * INCH for inches in figure.get_size_inches())
@@ -86,6 +90,16 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.Paragraph(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
         case _:
             assert_never(block)
+
+
+def _drawn(figure: Figure, title: str, spelling: DocumentSpelling) -> blocks.Picture:
+    """The drawing of a page without its head and its column, with its scale in the caption."""
+    caption = _("{title}; a millimetre stands for {scale} {unit}").format(
+        title=title, scale=spelling.numbers.plain(scale_of(figure)), unit=spelling.numbers.shown("m")[1]
+    )
+    return drawn_to_scale(
+        figure, caption, position_pages.COLUMN, position_pages.TOP - position_pages.SUBTITLE
+    )
 
 
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
