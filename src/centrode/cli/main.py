@@ -24,7 +24,6 @@ from centrode.cli.animate import animate
 from centrode.cli.cam import cam
 from centrode.cli.check import check
 from centrode.cli.describe import describe
-from centrode.cli.diagrams import diagrams
 from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
@@ -56,7 +55,6 @@ OWN: tuple[click.Command, ...] = (
     polygons,
     variants,
     cam,
-    diagrams,
     sweep,
     draw,
     export,

@@ -8,9 +8,15 @@ from typing import TYPE_CHECKING
 import centrode as ct
 from centrode.analysis.instant_centres.results import read_pair
 from centrode.cli.pairs import pairs, ranges
+from centrode.errors import InputError
+from centrode.locale import _
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
+
+
+SCALE = "length=0.02"
+"""A scale as it is written."""
 
 
 def read_pairs(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, str]:
@@ -36,3 +42,16 @@ def read_pairs_of_bodies(mechanism: Mechanism, texts: Iterable[str], where: str)
 def read_instants(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[float]:
     """Values of the drive [rad or m], or times [s] where the drive is a law."""
     return [ct.range_value(mechanism, text, where) for text in texts]
+
+
+def read_scales(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, float]:
+    """Name -> number [SI by mm] of texts NAME=VALUE."""
+    return {name: _plain_number(value, where) for name, value in pairs(texts, where, SCALE).items()}
+
+
+def _plain_number(text: str, where: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        what = _("expected a number, got {text}").format(text=f'"{text}"')
+        raise InputError(where, what, _("write {sample}").format(sample=f'"{SCALE}"')) from None

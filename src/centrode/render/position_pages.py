@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 CORNER, SIZE = np.array([6.0, 6.0]), np.array([150.0, 128.0])
 COLUMN, TOP, LINE = 160.0, 140.0, 3.4
-SUBTITLE = 6.0
-"""From the head of the page down to the end of what stands below it [mm]."""
+DRAWING = COLUMN, TOP - 6.0
+"""Where the drawing ends: at the column, and below the title and what stands under it [mm]."""
 SIGN = 0.9
 """Radius of a hinge's circle [mm]."""
 

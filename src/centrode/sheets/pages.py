@@ -1,4 +1,4 @@
-"""Drawings to a true scale on pages: a mechanism in numbered positions.
+"""Drawings to a true scale on pages: numbered positions, a mechanism at an instant, diagrams of its vectors.
 
 A millimetre on paper stands for a round number of units; the renderer chooses it, and says it on the page.
 """
@@ -13,6 +13,7 @@ from centrode.sheets.texts import Sentence, Text
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.analysis.graphic.diagrams import Diagram, Diagrams
     from centrode.model.mechanism import Mechanism
 
 
@@ -35,3 +36,36 @@ class PositionsPage:
     path: xarray.Dataset
     numbered: tuple[str, ...]
     note: Text
+
+
+@dataclass(frozen=True)
+class InstantPage:
+    """A mechanism at an instant with its instant centres, the velocities of its points and senses of rotation.
+
+    Attributes
+    ----------
+    title : what it shows
+    diagrams : places, velocities, centres and the scale of the mechanism
+    lines : below each other in the column at the right
+    """
+
+    title: Sentence
+    diagrams: Diagrams
+    lines: tuple[Text, ...]
+
+
+@dataclass(frozen=True)
+class VectorDiagramPage:
+    """A diagram of velocities or accelerations.
+
+    Attributes
+    ----------
+    title : what it shows
+    diagrams, diagram : everything that is drawn of the instant, and the diagram of it that this page has
+    lines : below each other in the column at the right
+    """
+
+    title: Sentence
+    diagrams: Diagrams
+    diagram: Diagram
+    lines: tuple[Text, ...]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
-from centrode.sheets.pages import PositionsPage
+from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
@@ -31,6 +31,8 @@ Picture: TypeAlias = (
     | Scene
     | SpanPlot
     | PositionsPage
+    | InstantPage
+    | VectorDiagramPage
 )
 Part = TypeVar("Part")
 
@@ -60,6 +62,8 @@ class Column:
         The unit stays whatever the display says: tables that are in SI for every reader.
     whole : bool
         The numbers are whole, and files write them so; NaN is an empty field all the same.
+    units : tuple of str
+        SI unit of each row, where rows have units of their own, which another column names; empty otherwise.
     """
 
     name: str
@@ -68,6 +72,7 @@ class Column:
     head: Text = NOTHING
     unit_fixed: bool = False
     whole: bool = False
+    units: tuple[str, ...] = ()
 
     @property
     def is_numeric(self) -> bool:

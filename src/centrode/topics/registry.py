@@ -20,6 +20,7 @@ READ_PAIRS = Lazily("centrode.cli.option_readers", "read_pairs")
 READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_readers", "read_pairs_of_bodies")
 READ_RANGES = Lazily("centrode.cli.option_readers", "read_ranges")
 READ_INSTANTS = Lazily("centrode.cli.option_readers", "read_instants")
+READ_SCALES = Lazily("centrode.cli.option_readers", "read_scales")
 READ_INSTANT = Lazily("centrode.cli.option_readers", "read_instant")
 
 INTEGRATE = Topic(
@@ -424,6 +425,53 @@ PLAN = Topic(
     ),
 )
 
+DIAGRAMS = Topic(
+    name="diagrams",
+    compute=Lazily("centrode.analysis.graphic.results", "graphic_results"),
+    result=Lazily("centrode.analysis.graphic.results", "GraphicResults"),
+    view=Lazily("centrode.views.graphic", "sheet"),
+    concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
+    command=Command(
+        help=mark("Check velocities and accelerations by drawing them."),
+        needs=Lazily("centrode.analysis.graphic.results", "need_few_instants"),
+        options=(
+            Given(
+                "at",
+                mark("VALUE"),
+                mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'),
+                several=True,
+                required=True,
+                parameter="instants",
+                read=READ_INSTANTS,
+            ),
+            Given(
+                "angle_step",
+                mark("ANGLE"),
+                mark('Read directions to this ("1 deg"); exactly if left out.'),
+            ),
+            Given(
+                "length_step",
+                mark("LENGTH"),
+                mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
+            ),
+            Given(
+                "scale",
+                mark("NAME=VALUE"),
+                mark('What a millimetre stands for in SI: length, velocity or acceleration ("length=0.02").'),
+                several=True,
+                parameter="scales",
+                read=READ_SCALES,
+            ),
+        ),
+        folder="diagrams",
+        samples=False,
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("graphic", mark("Graph-analytic check")),), arguments={"incomplete": True}
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -440,5 +488,6 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_MOTION,
     MOTION_LAWS,
     PLAN,
+    DIAGRAMS,
 )
 """Every topic."""

@@ -31,7 +31,6 @@ from centrode.report.chapters.forces.polygons import polygons_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
-from centrode.report.chapters.linkages.graphic import graphic_chapter
 from centrode.report.chapters.linkages.moving import motion_chapter
 from centrode.report.chapters.linkages.plots import plots_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
@@ -78,7 +77,6 @@ OWN: Mapping[str, Kind] = {
     "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
