@@ -53,15 +53,12 @@ from .analysis.graphic.diagrams import acceleration_diagram as acceleration_diag
 from .analysis.graphic.diagrams import Diagram as Diagram
 from .analysis.graphic.checks import graphic_check as graphic_check
 from .analysis.graphic.checks import GraphicCheck as GraphicCheck
+from .analysis.graphic.results import graphic_results as graphic_results
+from .analysis.graphic.results import GraphicResults as GraphicResults
 from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
 from .analysis.transmission import transmission_results as transmission_results
-from .study.graphic import graphic_rows as graphic_rows
-from .study.graphic import graphic_about as graphic_about
-from .study.graphic import graphic_steps as graphic_steps
-from .study.graphic import graphic_csv as graphic_csv
-from .study.positions import plan_rows as plan_rows
 from .study.running import study as study
 from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
@@ -249,8 +246,6 @@ from .present import write_coefficients_csv as write_coefficients_csv
 from .present import darkened as darkened
 from .report.variants.folders import write_variants as write_variants
 from .present import motion_figures as motion_figures
-from .present import diagram_figures as diagram_figures
-from .present import plan_figure as plan_figure
 from .present import save_figures as save_figures
 
 # Reports

@@ -159,7 +159,7 @@ def test_a_link_that_is_found_before_its_points() -> None:
     found = errors(mechanism, 0.5)
     assert found is not None
     assert (found[0] <= found[1]).all()
-    figures = ct.diagram_figures(ct.graphic_check(mechanism, 0.5).diagrams)
+    figures = ct.figures(ct.graphic_results(mechanism, instants=[0.5]))
     assert len(figures) == 3
 
 
@@ -176,8 +176,10 @@ def test_a_link_that_is_found_before_its_points() -> None:
     ],
 )
 def test_equations_of_wheels_are_written_and_hold(name: str, at: float, equations: list[str]) -> None:
-    check = ct.graphic_check(ct.example(name), at)
-    found = ct.graphic_steps(check)
+    results = ct.graphic_results(ct.example(name), instants=[at])
+    (check,) = results.checks
+    assert isinstance(check, ct.GraphicCheck)
+    found = ct.summary(results).splitlines()
     for letter, diagram in (("ω", check.diagrams.velocity), ("ε", check.diagrams.acceleration)):
         for equation in equations:
             told = equation.replace("X", letter)

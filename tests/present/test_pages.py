@@ -15,9 +15,10 @@ from matplotlib.text import Text
 
 import centrode as ct
 from boxes import outside, overlapping
-from centrode.present.diagram_drawing import CORNER, SHORT, SIZE, TOGETHER, symbol, typeset
+from centrode.present.diagram_drawing import CORNER, SIZE, symbol, typeset
 from centrode.present.page import INCH, View, crossed, new_page
 from centrode.present.style import house_style
+from centrode.render.vector_diagrams import SHORT, TOGETHER
 
 INSTANTS = {
     "slider-between-cranks": math.pi / 2,
@@ -34,8 +35,7 @@ PLANS = ("six-bar-press", "slider-between-cranks", "jansen-leg", "elliptic-tramm
 @pytest.fixture(scope="module")
 def pages() -> dict[str, dict[str, Figure]]:
     return {
-        name: ct.diagram_figures(ct.graphic_check(ct.example(name), at).diagrams)
-        for name, at in INSTANTS.items()
+        name: ct.figures(ct.graphic_results(ct.example(name), instants=[at])) for name, at in INSTANTS.items()
     }
 
 
@@ -54,8 +54,7 @@ def test_no_text_covers_another_or_leaves_the_page(
 @pytest.mark.parametrize("name", PLANS)
 @pytest.mark.parametrize("count", [12, 24])
 def test_numbers_of_a_plan_stand_free(name: str, count: int) -> None:
-    mechanism = ct.example(name)
-    figure = ct.plan_figure(mechanism, ct.plan_of_positions(mechanism, count))
+    figure = ct.figures(ct.plan_of_positions(ct.example(name), count))["plan"]
     assert overlapping(figure) == []
     assert outside(figure) == []
     texts = [text.get_text() for text in figure.findobj(Text)]
@@ -92,7 +91,7 @@ def test_every_moving_point_has_its_image(pages: dict[str, dict[str, Figure]]) -
 
 
 def test_dark_pages_have_light_texts() -> None:
-    figures = ct.diagram_figures(ct.graphic_check(ct.example("crank-rocker"), 1.0).diagrams)
+    figures = ct.figures(ct.graphic_results(ct.example("crank-rocker"), instants=[1.0]))
     for figure in figures.values():
         dark = ct.darkened(figure)
         assert lightness(dark.get_facecolor()) < 0.2
@@ -110,7 +109,7 @@ def test_pages_are_the_same_bytes_twice(tmp_path: Path) -> None:
     written = []
     for folder in (tmp_path / "one", tmp_path / "two"):
         folder.mkdir()
-        figures = ct.diagram_figures(ct.graphic_check(ct.example("crank-rocker"), 1.0).diagrams)
+        figures = ct.figures(ct.graphic_results(ct.example("crank-rocker"), instants=[1.0]))
         written.append([file.read_bytes() for file in ct.save_figures(figures, folder)])
     assert len(written[0]) == 6
     assert written[0] == written[1]

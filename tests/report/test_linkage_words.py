@@ -14,12 +14,15 @@ from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Par
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.rows import small, told
 from centrode.render.document.scaled import drawn_to_scale, scale_of
+from centrode.render.document.spelling import DocumentSpelling
+from centrode.render.document.vectors import symbol
+from centrode.render.spelling import PlainSpelling
 from centrode.report.making import report
 from centrode.report.mathematics import checked
 from centrode.report.options import ReportOptions
 from centrode.report.pdf.document import pdf_document
 from centrode.report.pdf.source import Source
-from centrode.report.vectors import mathematics, rates_in, symbol, vector_parts
+from centrode.sheets.texts import Joined, Number, VectorNotation
 
 NUMBERS = Numbers(Display(), 5)
 LINKAGES = (
@@ -49,17 +52,27 @@ def blocks(found: Chapter, kind: type) -> list:  # type: ignore[type-arg]
     ],
 )
 def test_vector_equations(text: str, parts: tuple[str, ...]) -> None:
-    assert vector_parts(text) == parts
+    spelling = DocumentSpelling(NUMBERS)
+    assert tuple(spelling.mathematics(VectorNotation(part)) for part in text.split(" = ")) == parts
 
 
 def test_rates_in_sentences() -> None:
-    assert rates_in("ω_OC = 0, ε_AB") == '$omega_(italic("OC"))$ = 0, $epsilon_(italic("AB"))$'
+    tried = Joined((Joined((VectorNotation("ω_OC"), Number(0.0)), " = "), VectorNotation("ε_AB")))
+    assert DocumentSpelling(NUMBERS).text(tried) == '$omega_(italic("OC"))$ = 0, $epsilon_(italic("AB"))$'
+
+
+def test_numbers_of_a_relation_fill_its_holes() -> None:
+    relation = VectorNotation("|v_{{a}}| = sin {angle}°", angle=Number(64.0, "deg", ".5g"))
+    assert PlainSpelling(Display()).text(relation) == "|v_{a}| = sin 64°"
+    assert DocumentSpelling(NUMBERS).mathematics(VectorNotation("sin {a}°", a=Number(2.5, "deg"))) == (
+        "sin 2.5 degree"
+    )
 
 
 def test_nothing_in_a_name_is_code() -> None:
     for name in ("#panic(1)", "a$b", "B'", "точка 1", '"', "\\", "`x`", "@ref", "//", "_", "a/b"):
         checked(symbol("v", name))
-        checked(mathematics(f"v_{name} = v_A (⊥ {name})"))
+        checked(DocumentSpelling(NUMBERS).mathematics(VectorNotation(f"v_{name} = v_A (⊥ {name})")))
 
 
 def test_sentences_take_the_report_s_digits_and_marks() -> None:
@@ -95,7 +108,7 @@ def test_the_drawing_agrees_with_the_closed_forms_and_says_how_far() -> None:
     assert ("arrow(v)_(H)", 'arrow(v)_(D) + arrow(v)_(italic("HD")) ( perp italic("HD") )') in lines
     table = blocks(found, Table)[-1]
     drawn, integrated, closed = (table.head.index(word) for word in ("drawn", "integrated", "closed form"))
-    rates = [row for row in table.rows if "omega" in row[0] or "v_" in row[0]]
+    rates = [row for row in table.rows if "ω" in row[0] or "v_" in row[0]]
     assert rates and all(row[drawn] == row[integrated] == row[closed] for row in rates)
     assert all(row[drawn] == row[closed] and row[integrated] == "—" for row in table.rows if row not in rates)
 
@@ -115,8 +128,7 @@ def test_a_point_of_the_frame_has_no_velocity_to_be_told() -> None:
 
 
 def test_drawings_keep_their_scale() -> None:
-    mechanism = ct.example("slider-between-cranks")
-    figure = ct.plan_figure(mechanism, ct.plan_of_positions(mechanism))
+    figure = ct.figures(ct.plan_of_positions(ct.example("slider-between-cranks")))["plan"]
     written = [text.get_text() for axes in figure.axes for text in axes.texts]
     scale = float(next(re.search(r"= ([\d.]+) m", text)[1] for text in written if "mu" in text))  # type: ignore[index]
     assert scale_of(figure) == pytest.approx(scale, rel=1e-12)

@@ -79,8 +79,12 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
             if topic.subject == subject and (topic.concerns is None or topic.concerns(description)):
                 takes_samples = topic.command is None or topic.command.samples
                 given: dict[str, Any] = {"samples": 9} if takes_samples else {}
-                # what has to be named is a link
-                given |= {option.name: description.link_names[1] for option in required_options(topic)}
+                # what has to be named is a link; instants have a default of their own
+                given |= {
+                    option.name: description.link_names[1]
+                    for option in required_options(topic)
+                    if option.read is None
+                }
                 yield f"{topic.name} of {name}", topic.view(topic.compute(description, **given))
 
 

@@ -24,12 +24,10 @@ from centrode.cli.animate import animate
 from centrode.cli.cam import cam
 from centrode.cli.check import check
 from centrode.cli.describe import describe
-from centrode.cli.diagrams import diagrams
 from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
-from centrode.cli.plan import plan
 from centrode.cli.report import report
 from centrode.cli.run import run
 from centrode.cli.schema import schema
@@ -53,8 +51,6 @@ OWN: tuple[click.Command, ...] = (
     equations,
     variants,
     cam,
-    diagrams,
-    plan,
     sweep,
     draw,
     export,

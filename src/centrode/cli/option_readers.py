@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
 
 
+SCALE = "length=0.02"
+"""A scale as it is written."""
+
+
 def read_pairs(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, str]:
     """Name -> value of texts NAME=VALUE."""
     return pairs(texts, where)
@@ -49,3 +53,16 @@ def read_varied(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict
         if path in paths[:number]:
             raise InputError(where, _("{name} is given twice").format(name=path), _("keep one of them"))
     return {path: bounds.get(path) for path in paths}
+
+
+def read_scales(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, float]:
+    """Name -> number [SI by mm] of texts NAME=VALUE."""
+    return {name: _plain_number(value, where) for name, value in pairs(texts, where, SCALE).items()}
+
+
+def _plain_number(text: str, where: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        what = _("expected a number, got {text}").format(text=f'"{text}"')
+        raise InputError(where, what, _("write {sample}").format(sample=f'"{SCALE}"')) from None

@@ -11,14 +11,12 @@ from .spelled_tables import TableSpelling as TableSpelling
 from .coefficient_tables import write_coefficients_csv as write_coefficients_csv
 from .sweep_tables import sweep_csv as sweep_csv
 
-# Figures of motions, centres and plans
+# Figures of motions
 from .saving import save_figures as save_figures
 from .dark import darkened as darkened
 from .figures import motion_figures as motion_figures
 from .reading import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
-from .instant_drawing import diagram_figures as diagram_figures
-from .plan_drawing import plan_figure as plan_figure
 
 # Equations
 from .equations.text import equations_rows as equations_rows

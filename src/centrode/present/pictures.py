@@ -126,15 +126,20 @@ def link_key(mechanism: Mechanism) -> list[tuple[Line2D, str]]:
 
 def caption(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> str:
     """The instant, and why there is nothing to see where there is not."""
+    text = instant_text(mechanism, dataset, sample)
+    status = int(dataset["status"][sample])
+    return text if status == Status.OK else f"{text} ({status_word(status)})"
+
+
+def instant_text(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> str:
+    """The instant: the value of the motion's parameter at a sample."""
     parameter = mechanism.motion_parameter
     values = parameter.values(dataset)
     factor, unit = shown_as(parameter.variable.unit, mechanism.display)
     value = factor * float(values[sample])
     if not parameter.by_time and abs(value) < 1e-9 * factor * float(np.nanmax(np.abs(values))):
         value = 0.0  # rounding of the range's middle or end
-    text = f"{formula(parameter.variable.symbol)} = {value:.5g} {typeset_unit(unit)}".replace("-", "−")
-    status = int(dataset["status"][sample])
-    return text if status == Status.OK else f"{text} ({status_word(status)})"
+    return f"{formula(parameter.variable.symbol)} = {value:.5g} {typeset_unit(unit)}".replace("-", "−")
 
 
 def nearest_sample(mechanism: Mechanism, dataset: xarray.Dataset, value: float) -> int:

@@ -21,14 +21,18 @@ from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_st
 from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.force_pages import group_page
+from centrode.render.instant_pages import instant_figure
 from centrode.render.levers import lever_page
 from centrode.render.panel_grids import grid_figure
+from centrode.render.position_pages import positions_figure
 from centrode.render.scenes import scene_figure
 from centrode.render.span_plots import span_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.vector_diagrams import vector_diagram_figure
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
     Abscissa,
     AreaDiagram,
@@ -115,6 +119,12 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return group_page(picture)
             case LeverPage():
                 return lever_page(picture)
+            case PositionsPage():
+                return positions_figure(picture, display)
+            case InstantPage():
+                return instant_figure(picture, display)
+            case VectorDiagramPage():
+                return vector_diagram_figure(picture, display)
             case _:
                 assert_never(picture)
 

@@ -25,6 +25,7 @@ from centrode.sheets.texts import (
     Text,
     Title,
     Unit,
+    VectorNotation,
 )
 
 if TYPE_CHECKING:
@@ -69,8 +70,8 @@ class Spelling(ABC):
                 return self.symbol(text)
             case Expression():
                 return self.expression(text)
-            case Unit(unit):
-                return self.unit(unit)
+            case Unit(unit, shown):
+                return self.unit(shown_as(unit, self.display)[1] if shown else unit)
             case Place(coordinates, unit, digits):
                 return self.place(
                     [Number(value, unit, digits, unit_hidden=True) for value in coordinates], unit
@@ -79,6 +80,8 @@ class Spelling(ABC):
                 return self.indexed(text)
             case Part(part):
                 return self.part(self.text(part))
+            case VectorNotation():
+                return self.vectors(filled_notation(text))
             case _:
                 assert_never(text)
 
@@ -125,6 +128,16 @@ class Spelling(ABC):
     @abstractmethod
     def part(self, text: str) -> str:
         """What belongs to the entry above it."""
+
+    @abstractmethod
+    def vectors(self, notation: str) -> str:
+        """A relation of a construction on paper."""
+
+
+def filled_notation(relation: VectorNotation) -> str:
+    """The notation of a relation with its numbers."""
+    numbers = {name: format(number.value, number.digits) for name, number in relation.values.items()}
+    return relation.notation.format(**numbers) if numbers else relation.notation
 
 
 class PlainSpelling(Spelling):
@@ -177,6 +190,10 @@ class PlainSpelling(Spelling):
     def part(self, text: str) -> str:
         """What belongs to the entry above it, indented."""
         return f"  {text}"
+
+    def vectors(self, notation: str) -> str:
+        """A relation of a construction on paper, in its own notation."""
+        return notation
 
 
 class DrawingSpelling(PlainSpelling):

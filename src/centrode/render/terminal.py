@@ -88,10 +88,10 @@ def table_text(table: Table, spelling: PlainSpelling) -> str:
     heads = [_head(column, spelling) for column in table.columns]
     cells = [
         [
-            spelling.text(Number(value, column.unit, unit_hidden=True))
+            spelling.text(Number(value, column.units[row] if column.units else column.unit, unit_hidden=True))
             if isinstance(value, float)
             else spelling.text(value)
-            for value in column.values
+            for row, value in enumerate(column.values)
         ]
         for column in table.columns
     ]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from centrode.equations.spelling import SymbolFormula, spell_formula
 from centrode.equations.symbols import Letter, Parts, SumTerm, Wave
-from centrode.present.equations.typst import LONG, TypstSpelling, unbracketed
+from centrode.present.equations.typst import LONG, TypstSpelling, in_degrees, unbracketed
 from centrode.render.document.numbers import Numbers
 
 MOST_TERMS, MOST_NUMBERS = 6, 26
@@ -62,11 +62,6 @@ class NumberSpelling(TypstSpelling):
         value = self.values[letter]
         text = self.numbers.math(math.degrees(value) if degrees else value)
         return in_degrees(text) if degrees else text
-
-
-def in_degrees(number: str) -> str:
-    """A number as mathematics with the sign of degrees close behind it."""
-    return f'{number[:-1]}°"' if number.endswith('"') else f"{number} degree"
 
 
 def _guarded(text: str) -> str:

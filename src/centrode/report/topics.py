@@ -47,6 +47,8 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
             arguments["instants"] = (
                 study.wishes.instants if study.is_cam else tuple(moment.at for moment in moments_of(study))
             )
+        if document.points:
+            arguments["points"] = study.points
         done = None if document.add_instants is None else study.study.results.get(topic.name)
         if document.add_instants is not None and done is not None:
             return cast("Sheet", topic.view(document.add_instants(done, **arguments)))

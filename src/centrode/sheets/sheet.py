@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
@@ -32,6 +33,9 @@ Picture: TypeAlias = (
     | SpanPlot
     | GroupPage
     | LeverPage
+    | PositionsPage
+    | InstantPage
+    | VectorDiagramPage
 )
 Part = TypeVar("Part")
 
@@ -61,6 +65,8 @@ class Column:
         The unit stays whatever the display says: tables that are in SI for every reader.
     whole : bool
         The numbers are whole, and files write them so; NaN is an empty field all the same.
+    units : tuple of str
+        SI unit of each row, where rows have units of their own, which another column names; empty otherwise.
     """
 
     name: str
@@ -69,6 +75,7 @@ class Column:
     head: Text = NOTHING
     unit_fixed: bool = False
     whole: bool = False
+    units: tuple[str, ...] = ()
 
     @property
     def is_numeric(self) -> bool:

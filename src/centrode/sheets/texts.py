@@ -153,9 +153,10 @@ class Expression:
 
 @dataclass(frozen=True)
 class Unit:
-    """An SI unit on its own, in a table whose rows have units of their own."""
+    """An SI unit on its own, in a table whose rows have units of their own; `shown` as the unit of the display."""
 
     unit: str
+    shown: bool = False
 
 
 @dataclass(frozen=True)
@@ -189,11 +190,31 @@ class Indexed:
     index: str
 
 
-Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed"
+@dataclass(frozen=True, init=False)
+class VectorNotation:
+    """A relation between vectors, their lengths and angular rates, as constructions on paper write it.
+
+    Attributes
+    ----------
+    notation : str
+        "v_B = v_A + v_BA (⊥ BA)", "aⁿ_BA", "|v_B|", "ω_AB": a letter, the mark of a part, and what it belongs to.
+    values : mapping of name -> Number
+        Holes `{name}` are filled with numbers, which have no unit but the sign of degrees of the notation itself.
+    """
+
+    notation: str
+    values: Mapping[str, Number]
+
+    def __init__(self, notation: str, /, **values: Number) -> None:
+        object.__setattr__(self, "notation", notation)
+        object.__setattr__(self, "values", values)
+
+
+Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed | VectorNotation"
 """A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
 Text: TypeAlias = (
     "Name | Title | Number | Sentence | Counted | Joined | Symbol"
-    " | Expression | Unit | Part | Place | Indexed"
+    " | Expression | Unit | Part | Place | Indexed | VectorNotation"
 )
 
 NOTHING = Joined(())

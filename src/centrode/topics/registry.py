@@ -16,6 +16,7 @@ from centrode.topics.topic import (
     Topic,
 )
 
+READ_SCALES = Lazily("centrode.cli.option_readers", "read_scales")
 READ_PAIRS = Lazily("centrode.cli.option_readers", "read_pairs")
 READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_readers", "read_pairs_of_bodies")
 READ_RANGES = Lazily("centrode.cli.option_readers", "read_ranges")
@@ -471,6 +472,78 @@ FORCE_POLYGONS = Topic(
     ),
 )
 
+PLAN = Topic(
+    name="plan",
+    compute=Lazily("centrode.analysis.position_plan", "plan_of_positions"),
+    result=Lazily("centrode.analysis.position_plan", "PositionPlan"),
+    view=Lazily("centrode.views.position_plan", "sheet"),
+    concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
+    command=Command(
+        help=mark("Draw the mechanism in numbered positions of its cycle."),
+        options=(
+            Given("positions", mark("N"), mark("Number of positions, else 12."), int),
+            Given(
+                "link",
+                mark("NAME"),
+                mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
+            ),
+        ),
+        folder="plan",
+        samples=False,
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("positions", mark("Plan of positions")),), instants=False, points=True
+    ),
+)
+
+DIAGRAMS = Topic(
+    name="diagrams",
+    compute=Lazily("centrode.analysis.graphic.results", "graphic_results"),
+    result=Lazily("centrode.analysis.graphic.results", "GraphicResults"),
+    view=Lazily("centrode.views.graphic", "sheet"),
+    concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
+    command=Command(
+        help=mark("Check velocities and accelerations by drawing them."),
+        needs=Lazily("centrode.analysis.graphic.results", "need_few_instants"),
+        options=(
+            Given(
+                "at",
+                mark("VALUE"),
+                mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'),
+                several=True,
+                required=True,
+                parameter="instants",
+                read=READ_INSTANTS,
+            ),
+            Given(
+                "angle_step",
+                mark("ANGLE"),
+                mark('Read directions to this ("1 deg"); exactly if left out.'),
+            ),
+            Given(
+                "length_step",
+                mark("LENGTH"),
+                mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
+            ),
+            Given(
+                "scale",
+                mark("NAME=VALUE"),
+                mark('What a millimetre stands for in SI: length, velocity or acceleration ("length=0.02").'),
+                several=True,
+                parameter="scales",
+                read=READ_SCALES,
+            ),
+        ),
+        folder="diagrams",
+        samples=False,
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("graphic", mark("Graph-analytic check")),), arguments={"incomplete": True}
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -489,5 +562,7 @@ TOPICS: tuple[Topic, ...] = (
     ROTATABILITY,
     REPAIR,
     FORCE_POLYGONS,
+    PLAN,
+    DIAGRAMS,
 )
 """Every topic."""

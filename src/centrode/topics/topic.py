@@ -176,6 +176,7 @@ class InDocuments:
     add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     may_be_incomplete : so is one whose description lacks what the computation needs
+    points : whether the computation takes the points that the document is about
     """
 
     chapters: tuple[ChapterOfTopic, ...] = ()
@@ -184,6 +185,7 @@ class InDocuments:
     add_instants: Lazily | None = None
     may_be_left_out: bool = False
     may_be_incomplete: bool = False
+    points: bool = False
 
 
 @dataclass(frozen=True)

@@ -110,6 +110,11 @@ def decimal(text: str) -> str:
     return f"{minus}{digits} dot.op 10^({int(power)})" if sign else f"{minus}{digits}"
 
 
+def in_degrees(number: str) -> str:
+    """A number as mathematics with the sign of degrees close behind it."""
+    return f'{number[:-1]}°"' if number.endswith('"') else f"{number} degree"
+
+
 def unbracketed(text: str) -> str:
     """What a fraction holds needs no brackets of its own."""
     if not (text.startswith("(") and text.endswith(")")):

@@ -6,16 +6,20 @@ from collections.abc import Mapping, Sequence
 from typing import TypeAlias, assert_never
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from centrode.locale import _
 from centrode.render import figures
 from centrode.render.document import blocks
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers, spelled_number
-from centrode.render.document.scaled import INCH, drawn_to_scale
+from centrode.render.document.scaled import INCH, drawn_to_scale, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
 from centrode.render.force_pages import drawing_end, group_scales
+from centrode.render.instant_pages import DRAWING as INSTANT
+from centrode.render.position_pages import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
     Block,
@@ -79,6 +83,9 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
                 name = spelling.text(shown.title if caption is None else caption)
                 name = _with_scales(shown, name) if isinstance(shown, GroupPage) else name
                 return drawn_to_scale(figure, name, *drawing_end(shown))
+            if isinstance(shown, PositionsPage | InstantPage | VectorDiagramPage):
+                words = spelling.text(shown.title if caption is None else caption)
+                return _drawn(shown, figure, words, spelling)
             if isinstance(shown, VectorPage):
                 # a page whose scales are true on paper: only what is empty is cut off
                 width, height = (float(inches) * INCH for inches in figure.get_size_inches())
@@ -104,6 +111,25 @@ def _with_scales(page: GroupPage, name: str) -> str:
     return f"{name}; {', '.join(scales)}"
 
 
+def _drawn(
+    page: PositionsPage | InstantPage | VectorDiagramPage,
+    figure: Figure,
+    title: str,
+    spelling: DocumentSpelling,
+) -> blocks.Picture:
+    """The drawing of a page without its head and its column, with its scale in the caption."""
+    if isinstance(page, VectorDiagramPage):
+        factor, unit = spelling.numbers.shown(page.diagram.unit)
+        scale = factor * page.diagram.scale
+    else:  # a drawing of a mechanism has axes of its own, in which its scale can be read
+        unit, scale = spelling.numbers.shown("m")[1], scale_of(figure)
+    caption = _("{title}; a millimetre stands for {scale} {unit}").format(
+        title=title, scale=spelling.numbers.plain(scale), unit=unit
+    )
+    right, top = POSITIONS if isinstance(page, PositionsPage) else INSTANT
+    return drawn_to_scale(figure, caption, right, top)
+
+
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
     columns = [column for column in table.columns if not column.is_empty]
     heads = tuple(map(spelling.head, columns))
@@ -117,10 +143,24 @@ def _cells(column: Column, rows: Sequence[int] | None, spelling: DocumentSpellin
     values = column.values
     if not isinstance(values, np.ndarray):
         return [spelling.text(values[row]) for row in (range(len(values)) if rows is None else rows)]
+    if column.units:
+        return _cells_of_own_units(column, spelling)
     least = ROUNDING * float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
     return spelling.of_column(column).column(
         values if rows is None else values[list(rows)], column.unit, least
     )
+
+
+def _cells_of_own_units(column: Column, spelling: DocumentSpelling) -> list[str]:
+    """Numbers whose rows have units of their own: those of one unit have the same decimals."""
+    values, cells = np.asarray(column.values, dtype=float), [""] * len(column.units)
+    for unit in dict.fromkeys(column.units):
+        rows = [row for row, one in enumerate(column.units) if one == unit]
+        least = ROUNDING * float(np.max(np.abs(values[rows]), where=np.isfinite(values[rows]), initial=0.0))
+        shown = spelling.of_column(column).column(values[rows], unit, least)
+        for row, cell in zip(rows, shown, strict=True):
+            cells[row] = cell
+    return cells
 
 
 def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.Table:

@@ -9,8 +9,19 @@ from typing import TYPE_CHECKING, assert_never
 from centrode.present.equations.typst import quoted, shown
 from centrode.render.document.formulas import in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
-from centrode.render.spelling import Spelling
-from centrode.sheets.texts import Expression, Factor, Indexed, Leaf, Name, Number, Sentence, Symbol
+from centrode.render.document.vectors import vector_mathematics
+from centrode.render.spelling import Spelling, filled_notation
+from centrode.sheets.texts import (
+    Expression,
+    Factor,
+    Indexed,
+    Leaf,
+    Name,
+    Number,
+    Sentence,
+    Symbol,
+    VectorNotation,
+)
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Column
@@ -90,6 +101,10 @@ class DocumentSpelling(Spelling):
         """What belongs to the entry above it, behind a dash."""
         return f"– {text}"
 
+    def vectors(self, notation: str) -> str:
+        """A relation of a construction on paper, as mathematics."""
+        return f"${vector_mathematics(notation)}$"
+
     def mathematics(self, leaf: Leaf) -> str:
         """Mathematics without the dollar signs, numbers with their units."""
         match leaf:
@@ -111,6 +126,8 @@ class DocumentSpelling(Spelling):
                 return self.symbol(leaf).strip("$")
             case Indexed(letter, index):
                 return f"{letter}_({index if index.isdecimal() else quoted(index)})"
+            case VectorNotation():
+                return vector_mathematics(filled_notation(leaf))
             case _:
                 assert_never(leaf)
 

@@ -30,10 +30,8 @@ from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
-from centrode.report.chapters.linkages.graphic import graphic_chapter
 from centrode.report.chapters.linkages.moving import motion_chapter
 from centrode.report.chapters.linkages.plots import plots_chapter
-from centrode.report.chapters.linkages.positions import positions_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
 from centrode.report.chapters.linkages.words import words_chapter
@@ -77,8 +75,6 @@ OWN: Mapping[str, Kind] = {
     "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "positions": Kind(mark("Plan of positions"), positions_chapter),
-    "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),

@@ -16,8 +16,8 @@ from centrode.present.equations.typst import word
 from centrode.quantities import QUANTITIES, status_word
 from centrode.render.document.blocks import Block, Paragraph, Table, shown
 from centrode.render.document.numbers import Numbers
+from centrode.render.document.vectors import symbol
 from centrode.report.study import ReportStudy
-from centrode.report.vectors import symbol
 
 Array = npt.NDArray[np.float64]
 

@@ -1,11 +1,10 @@
-"""What a graph-analytic construction says of vectors, as mathematics: v_B = v_A + v_BA (⊥ BA)."""
+"""The notation of constructions on paper as mathematics of documents: v_B = v_A + v_BA (⊥ BA)."""
 
 from __future__ import annotations
 
 import re
 
-from centrode.present.equations.typst import decimal, quoted, word
-from centrode.report.numbered import in_degrees
+from centrode.present.equations.typst import decimal, in_degrees, quoted, word
 
 GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
@@ -21,7 +20,6 @@ TOKEN = re.compile(
     r"|(?P<sign>\S)"
     r"|(?P<space>\s+)"
 )
-RATE = re.compile(r"(?<!\w)([ωε])_(\w[\w′’'-]*)")
 SUM = re.compile(r"[+−]")
 BARS = re.compile(r"\|([^|]+)\|")
 
@@ -34,18 +32,8 @@ def symbol(letter: str, name: str, mark: str = "", vector: bool = False) -> str:
     return f"{base}{below}^({mark})" if mark else f"{base}{below}"
 
 
-def rates_in(text: str) -> str:
-    """Marked text with the rates of links in it as mathematics: ω_OC."""
-    return RATE.sub(lambda found: f"${symbol(found[1], found[2])}$", text)
-
-
-def vector_parts(text: str) -> tuple[str, ...]:
-    """The parts of a vector equation, or of a relation between lengths, for a `Formula`."""
-    return tuple(mathematics(part) for part in text.split(" = "))
-
-
-def mathematics(text: str) -> str:
-    """One side of such an equation; what stands alone between bars is a scalar, a sum is one of vectors."""
+def vector_mathematics(text: str) -> str:
+    """A relation, or one side of it; what stands alone between bars is a scalar, a sum is one of vectors."""
     vectors = "|" not in text
     pieces = []
     position = 0

@@ -16,17 +16,7 @@ from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.cams.driving_drawing import draw_cams
-from centrode.present.diagram_drawing import (
-    COLUMN,
-    CORNER,
-    SIZE,
-    TOP,
-    arrow,
-    diagram_page,
-    flat,
-    symbol,
-    write_head,
-)
+from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, flat, symbol, write_head
 from centrode.present.drawing import draw_drive, draw_frame, draw_hinges, draw_links
 from centrode.present.obstacles import lines
 from centrode.present.page import Array, Page, View, new_page
@@ -35,12 +25,17 @@ from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.shown import plain, shown_as
-from centrode.present.style import INK, MUTED, Pen, house_style, pens
+from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.quantities import typeset_unit
+from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
     from centrode.analysis.graphic.diagrams import Diagrams
+    from centrode.model.settings import Display
+    from centrode.sheets.pages import InstantPage
 
+DRAWING = COLUMN, TOP
+"""Where the drawing of a page of an instant ends: at the column and below the head [mm]."""
 SIGN = 1.1
 """Radius of a hinge's circle [mm]."""
 LONGEST = 18.0
@@ -49,32 +44,11 @@ ARC = 3.2
 """Radius of an arc that shows a sense of rotation [mm]."""
 
 
-def diagram_figures(found: Diagrams) -> dict[str, Figure]:
-    """Pages of an instant, A5 across: "mechanism", "velocity", "acceleration".
-
-    Parameters
-    ----------
-    found : Diagrams
-        The `diagrams` of a graphic check.
-
-    Returns
-    -------
-    dict of name -> Figure
-        Scales are true on paper: a millimetre is what the page says.
-    """
-    with house_style():
-        text = caption(found.mechanism, found.exact, 0)
-        return {
-            "mechanism": mechanism_page(found, text),
-            "velocity": diagram_page(found, found.velocity, text),
-            "acceleration": diagram_page(found, found.acceleration, text),
-        }
-
-
-def mechanism_page(found: Diagrams, text: str) -> Figure:
-    """The mechanism with what its velocities tell."""
+def instant_figure(sheet: InstantPage, display: Display) -> Figure:
+    """A page A5 across: the mechanism at its scale, which is true on paper, with what its velocities say."""
+    found, spelling = sheet.diagrams, PlainSpelling(display)
     page = new_page()
-    factor, unit = shown_as("m", found.mechanism.display)
+    factor, unit = shown_as("m", display)
     greatest = max(map(abs, rates_of(found).values()), default=0.0)
     per_mm = max(round_scale(greatest, LONGEST), found.velocity.scale)
     scene, view = placed(found, factor, per_mm)
@@ -87,13 +61,14 @@ def mechanism_page(found: Diagrams, text: str) -> Figure:
     draw_senses(page, view, scene, found, colours)
     for name, place in scene.at(0).items():
         page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
-    speed_factor, speed_unit = shown_as("m/s", found.mechanism.display)
+    speed_factor, speed_unit = shown_as("m/s", display)
     head = [
-        text,
+        caption(found.mechanism, found.exact, 0),
         f"μ_l = {factor * found.scale:g} {unit} " + _("per mm"),
         f"μ_v = {speed_factor * per_mm:g} {typeset_unit(speed_unit)} " + _("per mm"),
     ]
-    write_head(page, _("Instant centres and velocities"), found.mechanism, head, said(found))
+    listed = [spelling.text(one) for one in sheet.lines]
+    write_head(page, spelling.text(sheet.title), found.mechanism, head, listed)
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
     return page.figure
 
@@ -186,21 +161,3 @@ def draw_senses(page: Page, view: View, scene: Scene, found: Diagrams, colours: 
         path = middle + radius * np.stack([np.cos(arc), np.sin(arc)], axis=1)
         signs.turning_arrow(page.overlay, path, colours[link].colour)
         page.avoid(pairwise(path))
-
-
-def said(found: Diagrams) -> list[str]:
-    """Angular velocities and instant centres as lines of a text."""
-    factor, unit = shown_as("m", found.mechanism.display)
-    turn_factor, turn_unit = shown_as("rad/s", found.mechanism.display)
-    listed = []
-    for link, turn in found.velocity.turns.items():
-        centre = found.centres.get(link)
-        value = 0.0 if centre is None else turn_factor * turn
-        listed.append(f"ω_{link} = {value:.5g} {typeset_unit(turn_unit)}")
-        if centre is not None:
-            names = list(found.mechanism.links[link].coordinates)[:2]
-            apart = ", ".join(f"P{name} = {factor * found.reach(link, name):.5g}" for name in names)
-            listed.append(f"    {apart} {unit}")
-        elif link in found.centres:
-            listed.append("    " + _("it translates: P at infinity"))
-    return listed

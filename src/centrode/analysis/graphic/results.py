@@ -1,0 +1,82 @@
+"""Results: the graph-analytic checks of a mechanism at some instants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import xarray as xr
+
+from centrode.analysis.graphic.checks import GraphicCheck, graphic_check
+from centrode.errors import CentrodeError, InputError, Status
+from centrode.kinematics.motion import initial_place, motion
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+
+MOST_INSTANTS = 100
+
+
+@dataclass(frozen=True)
+class GraphicResults:
+    """Graph-analytic checks of a mechanism at some instants.
+
+    Attributes
+    ----------
+    mechanism : the mechanism
+    motion : the labelled motion at the instants
+    checks : of each instant; None where the mechanism is not reached, or the failure where it cannot be drawn
+    """
+
+    mechanism: Mechanism
+    motion: xr.Dataset
+    checks: tuple[GraphicCheck | CentrodeError | None, ...]
+
+
+def graphic_results(
+    mechanism: Mechanism,
+    *,
+    instants: Sequence[float] = (),
+    angle_step: float | str | None = None,
+    length_step: float | str | None = None,
+    scales: Mapping[str, float] | None = None,
+    incomplete: bool = False,
+) -> GraphicResults:
+    """Velocities and accelerations at some instants by the drawing, beside those of the motion.
+
+    Parameters
+    ----------
+    instants : values of the drive [rad or m] or times [s], as `at` of `motion`; the initial position if left out
+    angle_step, length_step, scales : as of `graphic_check`
+    incomplete : an instant that cannot be drawn fails alone, and the others are drawn
+
+    Raises
+    ------
+    InputError, MotionError
+        As `motion` and, unless `incomplete`, `graphic_check`.
+    """
+    places = tuple(instants) or (initial_place(mechanism),)
+
+    def check(at: float) -> GraphicCheck:
+        return graphic_check(mechanism, at, angle_step, length_step, scales)
+
+    if not incomplete:
+        checks = tuple(check(at) for at in places)
+        return GraphicResults(mechanism, motion(mechanism, at=places), checks)
+    course = motion(mechanism, at=places)
+    found: list[GraphicCheck | CentrodeError | None] = []
+    for at, status in zip(places, course["status"].to_numpy().tolist(), strict=True):
+        try:
+            found.append(check(at) if status == Status.OK else None)
+        except CentrodeError as failure:
+            found.append(failure)
+    return GraphicResults(mechanism, course, tuple(found))
+
+
+def need_few_instants(_mechanism: Mechanism, *, instants: Sequence[float] = (), **_options: object) -> None:
+    """Raise InputError for more instants than anyone reads."""
+    if len(instants) > MOST_INSTANTS:
+        raise InputError(
+            "--at",
+            _("{count} instants were asked for").format(count=len(instants)),
+            _("ask for at most {most}").format(most=MOST_INSTANTS),
+        )
