@@ -92,7 +92,7 @@ def test_the_inner_reaction_is_a_chord_of_the_polygon() -> None:
         assert found.reactions[chord.name] == chord.force
 
 
-def told(found: ct.ForcePolygons, step: Step) -> str:
+def printed(found: ct.ForcePolygons, step: Step) -> str:
     """A step as a terminal prints it."""
     return plain_text(step_text(step), found.mechanism.display)
 
@@ -100,7 +100,7 @@ def told(found: ct.ForcePolygons, step: Step) -> str:
 def test_steps_of_the_press() -> None:
     found = ct.force_polygons(ct.example("six-bar-press"), math.radians(120))
     assert found.speed_from == "machine"
-    steps = [told(found, step) for step in found.steps]
+    steps = [printed(found, step) for step in found.steps]
     assert steps[0] == (
         "moments of link 4 about H: R34ᵗ·1.7 + 165.5 (G4) − 5.186 (Φ4) − 14.041 (MΦ4) = 0, R34ᵗ = -86.0431 N"
     )
@@ -210,6 +210,6 @@ def test_dead_points_are_singular_and_open_positions_told() -> None:
 
 def test_what_gears_and_kept_wheels_leave_out_is_said() -> None:
     geared = ct.force_polygons(loaded("geared-five-bar"), 1.0)
-    assert any("presses the wheels apart" in told(geared, step) for step in geared.steps)
+    assert any("presses the wheels apart" in printed(geared, step) for step in geared.steps)
     kept = ct.force_polygons(loaded("rolling-wheel-rod"), 0.4)
-    assert any("taken as none" in told(kept, step) for step in kept.steps)
+    assert any("taken as none" in printed(kept, step) for step in kept.steps)
