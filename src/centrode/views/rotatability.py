@@ -87,78 +87,60 @@ def repair_sheet(repair: Repair) -> Sheet:
 
 def cause_text(cause: Cause) -> Text:
     """What happens to a group at its limit or its change point, as a sentence without its full stop."""
-    names: dict[str, Text] = {}
-    if len(cause.bodies) == 2:
-        names = dict(zip(("one", "other"), map(_body, cause.bodies), strict=True))
+    bodies = dict(zip(("one", "other"), map(_body, cause.bodies), strict=False))
     match cause.kind:
         case CauseKind.TURNS_BACK:
             return Sentence("the positions of the group turn back: the determinant of its equations is zero")
         case CauseKind.POSITIONS_MEET:
             return Sentence("positions of the group meet: the determinant of its equations is zero")
         case CauseKind.RODS_IN_LINE:
-            return _of_two_rods(cause, Sentence("{one} and {other} fall in line", **names))
+            return _of_two_rods(cause, Sentence("{one} and {other} fall in line", **bodies))
         case CauseKind.RODS_PARALLEL:
-            return _of_two_rods(cause, Sentence("{one} and {other} stand parallel", **names))
+            return _of_two_rods(cause, Sentence("{one} and {other} stand parallel", **bodies))
         case CauseKind.RODS_ON_GREAT_CIRCLE:
-            return _of_two_rods(cause, Sentence("{one} and {other} lie on one great circle", **names))
+            return _of_two_rods(cause, Sentence("{one} and {other} lie on one great circle", **bodies), "rad")
         case CauseKind.ROD_SQUARE:
-            rod, guide = names.values()
-            return Sentence("{rod} stands square to {guide}", rod=rod, guide=guide)
+            return Sentence("{rod} stands square to {guide}", rod=bodies["one"], guide=bodies["other"])
         case CauseKind.ROD_ALONG:
-            rod, guide = names.values()
-            return Sentence("{rod} lies along {guide}", rod=rod, guide=guide)
+            return Sentence("{rod} lies along {guide}", rod=bodies["one"], guide=bodies["other"])
         case CauseKind.LINES_PARALLEL:
-            return Sentence("{one} and {other} are parallel: where they meet goes to infinity", **names)
+            return Sentence("{one} and {other} are parallel: where they meet goes to infinity", **bodies)
         case CauseKind.CIRCLES_TOUCH:
-            return Sentence("the circles of {one} and {other} touch", **names)
+            return Sentence("the circles of {one} and {other} touch", **bodies)
         case CauseKind.NO_LENGTH:
             return Sentence("cylinder {name} of no length", name=Name(cause.bodies[0][1]))
         case _:
             return _of_aiming_link(cause)
 
 
-def _of_two_rods(cause: Cause, line: Text) -> Text:
+def _of_two_rods(cause: Cause, line: Text, unit: str = "m") -> Text:
     how = Sentence("stretched out") if cause.stretched else Sentence("folded over each other")
     sentence = Sentence("{line}, {how}", line=line, how=how)
     if cause.distance is None:
         return sentence
     first, second = map(Name, cause.points)
-    apart = Number(cause.distance, _unit_between(cause))
     return Sentence(
         "{sentence} ({first} and {second} are {apart} apart)",
         sentence=sentence,
         first=first,
         second=second,
-        apart=apart,
+        apart=Number(cause.distance, unit),
     )
-
-
-def _unit_between(cause: Cause) -> str:
-    return "rad" if cause.kind == CauseKind.RODS_ON_GREAT_CIRCLE else "m"
 
 
 def _of_aiming_link(cause: Cause) -> Text:
     """Of a link whose guide aims at a point."""
-    link, guide = (Name(name) for _tracer, name in cause.bodies)
-    pivot, target = map(Name, cause.points)
+    names = dict(zip(("link", "guide"), (Name(name) for _tracer, name in cause.bodies), strict=True))
+    names |= dict(zip(("pivot", "target"), map(Name, cause.points), strict=True))
     if cause.kind == CauseKind.WHEEL_NEAREST:
-        return Sentence("{link} cannot come nearer to the wheel about {target}", link=link, target=target)
+        return Sentence("{link} cannot come nearer to the wheel about {target}", **names)
     if cause.kind == CauseKind.PIN_AT_PIVOT:
-        return Sentence(
-            "{target} comes to the pivot {pivot} of {link}", target=target, pivot=pivot, link=link
-        )
+        return Sentence("{target} comes to the pivot {pivot} of {link}", **names)
     if cause.distance is None:
-        return Sentence(
-            "the arc from {pivot} to {target} stands square to guide {guide}",
-            pivot=pivot,
-            target=target,
-            guide=guide,
-        )
+        return Sentence("the arc from {pivot} to {target} stands square to guide {guide}", **names)
     return Sentence(
         "the line from {pivot} to {target} stands square to guide {guide}: {target} comes no nearer than {by}",
-        pivot=pivot,
-        target=target,
-        guide=guide,
+        **names,
         by=Number(cause.distance, "m"),
     )
 
@@ -320,7 +302,7 @@ class _Turning:
 
     def branch(self, branch: Branch) -> Text:
         """A branch by its sides, and from where to where it goes."""
-        named = [Joined((Name(point), _side(word)), " ") for point, word in branch.sides.items()]
+        named = [Joined((Name(point), SIDES[word]), " ") for point, word in branch.sides.items()]
         sides: Text = Joined(named) if named else Sentence("no sides")
         if branch.low is None and branch.high is None:
             return Sentence("{sides}: everywhere", sides=sides)
@@ -424,15 +406,13 @@ def _in_line(pairs: Sequence[tuple[str, str]]) -> Iterator[Text]:
         yield Sentence("{one} and {other} in line", one=Name(one), other=Name(other))
 
 
-def _side(word: str) -> Text:
-    """A side, by the word in which a description names it."""
-    sides = {
-        "left": Sentence("left"),
-        "right": Sentence("right"),
-        "ahead": Sentence("ahead"),
-        "behind": Sentence("behind"),
-    }
-    return sides[word]
+SIDES: Mapping[str, Text] = {
+    "left": Sentence("left"),
+    "right": Sentence("right"),
+    "ahead": Sentence("ahead"),
+    "behind": Sentence("behind"),
+}
+"""Sides, by the words in which a description names them."""
 
 
 def _uncounted(reason: Uncounted | None) -> Text:
