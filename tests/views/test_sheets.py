@@ -17,6 +17,7 @@ import pytest
 import centrode as ct
 from centrode.locale import _, choose_language
 from centrode.model.settings import Display
+from centrode.present.equations.typst import quoted
 from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
@@ -30,11 +31,13 @@ from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
 from centrode.topics.order import in_order
-from centrode.topics.registry import CENTRES, TOPICS
+from centrode.topics.registry import CENTRES, DIAGRAMS, TOPICS
 from centrode.topics.topic import Given, Lazily, Topic
 
 SOURCE = Path(ct.__file__).parent
 HOSTILE = ("No 1.23456", "run 30 deg", "2.50 kg", "$x_1$", "<b>", "#a")
+MATHEMATICS = re.compile(r"[${}_\\]")
+"""What marks mathematics in a text of a figure."""
 UNITS = {"rad", "deg", "mm", "kg", "J", "N", "Nm", "Pa", "MPa", "m/s", "rad/s", "kg m²", "Hz", "kW", "%", "°"}
 
 
@@ -290,3 +293,26 @@ def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
     document = document_chapter("centres", sheet, Numbers(mechanism.display))
     (table,) = [block for block in document.sections[1].blocks if isinstance(block, blocks.Table)]
     assert f"{hostile} – frame" in [row[1].replace(r"\$", "$") for row in table.rows]
+
+
+@pytest.mark.parametrize("hostile", [*HOSTILE, "{angle}"])
+def test_names_in_a_graphic_check_come_out_character_by_character(hostile: str) -> None:
+    """A link of any name: in the printed rows, the file, the pages and the chapter; braces are no holes."""
+    coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
+    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
+    results = ct.graphic_results(mechanism, instants=[1.0])
+    printed = ct.summary(results)
+    assert f"\nω_{hostile} " in printed and f"circle of {hostile} about A" in printed
+    assert Name(hostile) in ct.tables(results)["check"].columns[1].values
+    pages = ct.figures(results)
+    assert set(pages) == {"mechanism", "velocity", "acceleration"}
+    # a page sets symbols as mathematics: without its marks, no letter of the name is lost
+    texts = [MATHEMATICS.sub("", text.get_text()) for text in pages["mechanism"].axes[0].texts]
+    assert any(MATHEMATICS.sub("", hostile) in text for text in texts)
+    chapter = document_chapter("graphic", DIAGRAMS.view(results), Numbers(mechanism.display))
+    (table,) = [
+        block
+        for block in chapter.sections[0].blocks
+        if isinstance(block, blocks.Table) and len(block.head) == 6
+    ]
+    assert any(quoted(hostile) in row[0] for row in table.rows)
