@@ -27,7 +27,7 @@ from blank_canvas import blank_pictures
 from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
-from centrode.present.animations import given
+from centrode.present.animations import animate
 
 settings.register_profile(
     "house", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
@@ -89,7 +89,7 @@ def run_here(command: str) -> tuple[int, str]:
     assert not re.search(r"[|&;<>$`*?~\\]", unquoted), f"{command}: this page needs a shell, see OWN_PROCESS"
     streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", newline="\n") for _stream in range(2)]
     with (
-        mock.patch.multiple(given, **FEW_FRAMES) if "--animate" in words else nullcontext(),
+        mock.patch.multiple(animate, **FEW_FRAMES) if "--animate" in words else nullcontext(),
         blank_pictures(),
         mock.patch.dict(os.environ, {"LANGUAGE": "en"}),
         redirect_stdout(streams[0]),

@@ -10,7 +10,7 @@ from typing import IO
 import pytest
 from matplotlib.figure import Figure
 
-from centrode.present import saving
+from centrode.present import figure_files
 from centrode.render.document import figures
 
 SVG = (
@@ -52,7 +52,7 @@ def blank_pictures() -> Iterator[None]:
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(figures, "FigureCanvasSVG", BlankCanvas)
-        patch.setattr(saving, "FigureCanvasAgg", BlankCanvas)
-        patch.setattr(saving, "FigureCanvasSVG", BlankCanvas)
+        patch.setattr(figure_files, "FigureCanvasAgg", BlankCanvas)
+        patch.setattr(figure_files, "FigureCanvasSVG", BlankCanvas)
         patch.setattr(Figure, "draw_without_rendering", lambda _figure: None)
         yield

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 import centrode as ct
 from cam_shapes import exchanged
 from centrode.cams.walking_wheel import WheelMover
-from centrode.present.cams.walking_drawing import draw_wheel
+from centrode.present.cams.walking_wheel import draw_wheel
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
-from centrode.present.cams.driving_drawing import draw_cams
-from centrode.present.obstacles import cam_lines
-from centrode.present.reading import scene_of
+from centrode.present.cams.driving_cam_drawing import draw_cams
+from centrode.present.linkage_scene import scene_of
+from centrode.present.tags import cam_lines
 
 
 @pytest.fixture(scope="module")

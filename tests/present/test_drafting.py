@@ -16,11 +16,10 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
 import centrode as ct
-from centrode.present.drafting.hiding import visible
-from centrode.present.drafting.strokes import Cover, Drawing, Ring, Stroke, Words
+from centrode.present.drafting.board import Cover, Drawing, Ring, Stroke, Words, visible
 from centrode.present.drafting.svg import MARGIN
 from centrode.present.drawing import NAME_POINTS
-from centrode.present.reading import scene_of
+from centrode.present.linkage_scene import scene_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 RINGS = 1e-9

@@ -10,10 +10,11 @@ from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 import centrode
 from centrode import present
 from centrode.model.files import parse_mechanism
-from centrode.present.abscissa import part_of_pi, passings
-from centrode.present.labels import label_places
+from centrode.present.curves import part_of_pi
 from centrode.present.scene import corners
+from centrode.present.tags import label_places
 from centrode.present.wheels import cylinders, straight_track
+from centrode.views.abscissa import passings
 
 
 def drawn(made, sample: int = 0):

@@ -11,8 +11,7 @@ from matplotlib.patches import Circle
 from centrode import present
 from centrode.errors import Status
 from centrode.model.files import parse_mechanism
-from centrode.present.sphere.globe import WHOLE, globe_of, great_arc
-from centrode.present.sphere.globe_drawing import HIDDEN, draw_globe
+from centrode.present.sphere.globe import HIDDEN, WHOLE, draw_globe, globe_of, great_arc
 from centrode.quantities import QUANTITIES
 
 TEXT = """

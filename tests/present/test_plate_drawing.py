@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 import centrode as ct
-from centrode.present.cams.profile_drawing import UNDERCUT
+from centrode.present.cams.profiles import UNDERCUT
 
 LIFTER = """
 title = "Lifter $5"

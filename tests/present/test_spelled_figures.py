@@ -12,7 +12,7 @@ from matplotlib.text import Text
 
 import centrode as ct
 from centrode.locale import speaking
-from centrode.present.animations.captions import turned_caption
+from centrode.present.animations.layers import turned_caption
 from centrode.present.spelled_figures import spell_decimals, with_decimal_mark
 
 UNITS = {"deg", "rad", "kg", "mm", "MPa", "max", "min"}

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from centrode.errors import InputError
-from centrode.present.saving import METADATA
+from centrode.present.figure_files import METADATA
 from centrode.present.style import house_style
 from centrode.report.html.drawings import Drawings
 

@@ -13,11 +13,11 @@ from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
+from centrode.present.displayed_units import shown_as
 from centrode.present.equations.latex import equations_markdown
+from centrode.present.figure_files import METADATA
 from centrode.present.figures import read_scene
 from centrode.present.pictures import mechanism_figure
-from centrode.present.saving import METADATA
-from centrode.present.shown import shown_as
 from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.study.summary import check_rows

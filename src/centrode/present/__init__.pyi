@@ -6,16 +6,16 @@ from .tables import write_motion_csv as write_motion_csv
 from .tables import write_motion_netcdf as write_motion_netcdf
 from .workbooks import workbook_of_csv as workbook_of_csv
 from .workbooks import write_motion_xlsx as write_motion_xlsx
-from .decimal_comma import spell_with_comma as spell_with_comma
+from .spelled_tables import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling
-from .coefficient_tables import write_coefficients_csv as write_coefficients_csv
-from .sweep_tables import sweep_csv as sweep_csv
+from .tables import write_coefficients_csv as write_coefficients_csv
+from .tables import sweep_csv as sweep_csv
 
 # Figures of motions
-from .saving import save_figures as save_figures
-from .dark import darkened as darkened
+from .figure_files import save_figures as save_figures
+from .style import darkened as darkened
 from .figures import motion_figures as motion_figures
-from .reading import scene_of as scene_of
+from .linkage_scene import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
 
 # Equations
@@ -27,44 +27,44 @@ from .equations.latex import equations_markdown as equations_markdown
 # Forces
 
 # Cams
-from .cams.bodies import cam_body_figures as cam_body_figures
+from .cams.profiles import cam_body_figures as cam_body_figures
 from .cams.choice import choice_figures as choice_figures
 from .cams.choice import trade_off_figure as trade_off_figure
-from .cams.choice_tables import write_choice as write_choice
-from .cams.contact import contact_figure as contact_figure
-from .cams.drawing import cam_curves_figure as cam_curves_figure
-from .cams.drawing import cam_figures as cam_figures
-from .cams.drawing import cam_path_figure as cam_path_figure
-from .cams.drawing import cam_routes_figure as cam_routes_figure
-from .cams.forces import cam_forces_figure as cam_forces_figure
+from .cams.tables import write_choice as write_choice
+from .cams.curves import contact_figure as contact_figure
+from .cams.curves import cam_curves_figure as cam_curves_figure
+from .cams.curves import cam_figures as cam_figures
+from .cams.curves import cam_path_figure as cam_path_figure
+from .cams.curves import cam_routes_figure as cam_routes_figure
+from .cams.curves import cam_forces_figure as cam_forces_figure
 from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
 from .cams.outline_files import write_cam_outlines as write_cam_outlines
-from .cams.outline_svg import write_outlines_svg as write_outlines_svg
-from .cams.plate_curves import plate_curves_figure as plate_curves_figure
-from .cams.plate_drawing import follower_cam_figure as follower_cam_figure
-from .cams.profile_drawing import profile_figure as profile_figure
-from .cams.profile_tables import write_profile_csv as write_profile_csv
+from .cams.outlines import write_outlines_svg as write_outlines_svg
+from .cams.curves import plate_curves_figure as plate_curves_figure
+from .cams.profiles import follower_cam_figure as follower_cam_figure
+from .cams.profiles import profile_figure as profile_figure
+from .cams.tables import write_profile_csv as write_profile_csv
 from .cams.tables import write_cam_contact_csv as write_cam_contact_csv
 from .cams.tables import write_cam_csv as write_cam_csv
 from .cams.tables import write_cam_forces_csv as write_cam_forces_csv
 from .cams.tables import write_cam_routes_csv as write_cam_routes_csv
 from .cams.tables import write_cam_tables as write_cam_tables
-from .cams.walking_drawing import walking_figure as walking_figure
+from .cams.walking_wheel import walking_figure as walking_figure
 
 # Animations
 from .animations.animate import animate as animate
-from .animations.given import animate_cam_body as animate_cam_body
-from .animations.given import animate_centrodes as animate_centrodes
-from .animations.given import animate_follower as animate_follower
-from .animations.given import animate_motion as animate_motion
-from .animations.given import animate_walking as animate_walking
-from .animations.paces import Animation as Animation
-from .animations.paces import Pace as Pace
-from .animations.shown import Shown as Shown
+from .animations.animate import animate_cam_body as animate_cam_body
+from .animations.animate import animate_centrodes as animate_centrodes
+from .animations.animate import animate_follower as animate_follower
+from .animations.animate import animate_motion as animate_motion
+from .animations.animate import animate_walking as animate_walking
+from .animations.video_files import Animation as Animation
+from .animations.video_files import Pace as Pace
+from .animations.animate import Shown as Shown
 
 # Drawings at full size, models for other programs
 from .drafting.sheet import mechanism_drawing as mechanism_drawing
 from .drafting.dxf import write_drawing_dxf as write_drawing_dxf
 from .drafting.svg import drawing_svg as drawing_svg
 from .drafting.svg import write_drawing_svg as write_drawing_svg
-from .mjcf.writing import mjcf_text as mjcf_text
+from .mjcf_model import mjcf_text as mjcf_text

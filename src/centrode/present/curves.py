@@ -3,23 +3,153 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, MultipleLocator
 from numpy.typing import NDArray
 
+from centrode.equations.instants import CHANGE_POINT
+from centrode.errors import Status
 from centrode.locale import _
-from centrode.present.abscissa import CHANGE_POINT, LIMIT, Abscissa, angle_ticks
-from centrode.present.shown import plain
+from centrode.present.displayed_units import formula, labelled, plain, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, Pen
+from centrode.quantities import QUANTITIES
+from centrode.views.abscissa import LIMIT, events, in_time, limits_between, passings, within
+from centrode.views.motion_plots import MAGNITUDE, component, deal_to_panels, great_value, turning_links
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+    from centrode.model.motion_parameter import DriveCoordinate
+
+# What curves are drawn over: the drive's value or time, the gaps in it, the events along it, and its ticks.
 
 Array = NDArray[np.float64]
+STEPS = {
+    "deg": (1, 2, 5, 10, 15, 30, 45, 90, 180, 360, 720, 1440, 3600),
+    "rad": tuple(np.pi * part for part in (1 / 12, 1 / 6, 1 / 4, 1 / 2, 1, 2, 4, 8, 20)),
+}
+
+
+@dataclass(frozen=True)
+class Abscissa:
+    """The horizontal axis of curves.
+
+    Attributes
+    ----------
+    values : (sample) [unit]
+        In the order of time.
+    order, breaks : (sample), (any)
+        The samples in the order of time, and the places in it where a limit parts two samples.
+    cut : (sample)
+        True where the sample is cut off from the initial position.
+    marks : tuple of (value, kind)
+        Limits and change points within the range.
+    label, unit : str
+        Text of the axis, and its unit.
+    """
+
+    values: Array
+    order: NDArray[np.intp]
+    breaks: NDArray[np.intp]
+    cut: NDArray[np.bool_]
+    marks: tuple[tuple[float, int], ...]
+    label: str
+    unit: str
+
+    def parts(self, curve: Array) -> tuple[Array, Array]:
+        """A curve in drawing order, as its regular and its cut-off part; a gap parts what must not be joined."""
+        ordered, cut = curve[self.order], self.cut[self.order]
+        regular, beyond = np.where(cut, np.nan, ordered), np.where(cut, ordered, np.nan)
+        return np.insert(regular, self.breaks, np.nan), np.insert(beyond, self.breaks, np.nan)
+
+    @property
+    def drawn(self) -> Array:
+        """The values with the gaps of `parts` put in."""
+        return np.insert(self.values, self.breaks, np.nan)
+
+
+def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
+    """The drive's value if one drive turns or moves uniformly, else time."""
+    return over_drive(mechanism, dataset) if mechanism.motion_parameter.is_uniform else over_time(dataset)
+
+
+def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
+    """The value of the only drive, in the unit of the display."""
+    coordinate = mechanism.motion_parameter.drives[0]
+    factor, unit = shown_as(coordinate.unit, mechanism.display)
+    text = text_of_drive(coordinate)
+    values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
+    marks = within(values, events(dataset))
+    return Abscissa(
+        factor * values,
+        order,
+        limits_between(dataset, values),
+        dataset["status"].to_numpy() == Status.CUT_OFF,
+        tuple((factor * value, kind) for value, kind in marks),
+        labelled(text, unit),
+        unit,
+    )
+
+
+def text_of_drive(coordinate: DriveCoordinate) -> str:
+    """What a drive gives, with its symbol."""
+    text = {
+        "angle": _("angle {symbol} of link {name}"),
+        "displacement": _("displacement {symbol} along guide {name}"),
+        "distance": _("distance {symbol} of {name}"),
+    }[coordinate.driven]
+    return text.format(symbol=formula(coordinate.symbol), name=plain(coordinate.name))
+
+
+def over_time(dataset: xarray.Dataset) -> Abscissa:
+    """Time; events stand where the only drive passes them, with several drives at their own times."""
+    times, order = in_time(dataset, dataset["time"].to_numpy())
+    if dataset.sizes["drive"] == 1:
+        values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
+        breaks = limits_between(dataset, values)
+        marks = [(time, kind) for value, kind in events(dataset) for time in passings(times, values, value)]
+    else:
+        breaks, marks = limits_between(dataset, times), events(dataset)
+    cut = dataset["status"].to_numpy() == Status.CUT_OFF
+    quantity = QUANTITIES["time"]
+    label = labelled(f"{quantity.title} {formula(quantity.symbol)}", quantity.unit)
+    return Abscissa(times, order, breaks, cut, tuple(within(times, marks)), label, quantity.unit)
+
+
+def angle_ticks(axis: Axis, low: float, high: float, unit: str, most: int) -> None:
+    """Ticks at round angles: multiples of 15, 30, 45, 90 degrees, or of parts of pi; others stay as they are."""
+    if unit not in STEPS or not high > low or high - low > most * STEPS[unit][-1]:
+        return
+    step = next(step for step in STEPS[unit] if (high - low) / step <= most)
+    if high - low < 2 * step:
+        return
+    axis.set_major_locator(MultipleLocator(float(step)))
+    if unit == "rad":
+        axis.set_major_formatter(FuncFormatter(lambda value, _position: part_of_pi(value)))
+
+
+def part_of_pi(value: float) -> str:
+    """An angle in radians as a part of pi: "3π/2" for 4.712..."""
+    part = Fraction(value / np.pi).limit_denominator(12)
+    if part == 0:
+        return "0"
+    above = "" if abs(part.numerator) == 1 else str(abs(part.numerator))
+    below = "" if part.denominator == 1 else f"/{part.denominator}"
+    sign = "−" if part < 0 else ""
+    return f"{sign}{above}π{below}"
+
+
 Parts = tuple[Array, Array]  # regular, cut off
 WIDTH = 1.5
 ROUNDING = 1e-9
@@ -248,3 +378,98 @@ def legend_width(names: Sequence[str], inches: float = PANEL_INCHES) -> float:
     """Room [inch] for a legend of these names that may be this high, the events included."""
     texts = [*names, _("limit"), _("change point"), _("cut off")]
     return legend_columns(len(texts), inches) * (0.65 + 0.085 * max(map(len, texts)))
+
+
+# From a motion to the panels of its figures: which curves stand together, with which texts.
+
+Rows = list[list[Panel]]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion and what its figures share: a pen for each link, point and guide, and the abscissa."""
+
+    mechanism: Mechanism
+    dataset: xarray.Dataset
+    abscissa: Abscissa
+    pens: Mapping[str, Mapping[str, Pen]]
+
+    @property
+    def axes(self) -> int:
+        """Number of components of a place."""
+        return int(self.dataset.sizes["axis"])
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(self.dataset["axis"].to_numpy().tolist())
+
+
+def of_links(motion: Motion, variable: str) -> Rows:
+    """One panel below another, with as many links each as can be told apart; magnitudes of vectors."""
+    part = MAGNITUDE if "axis" in motion.dataset[variable].dims else ""
+    groups = deal_to_panels(turning_links(motion.mechanism))
+    return [[panel(motion, variable, "link", names, part)] for names in groups]
+
+
+def of_joints(motion: Motion, variable: str) -> Rows:
+    """Links whose angle is measured from a reference arc."""
+    groups = deal_to_panels(motion.dataset["joint"].to_numpy().tolist())
+    return [[panel(motion, variable, "joint", names)] for names in groups]
+
+
+def of_points(motion: Motion, variable: str) -> Rows:
+    """Components and magnitude below each other; further points in further columns."""
+    groups = deal_to_panels(motion.pens["point"])
+    parts = (*motion.components, MAGNITUDE)
+    return [
+        [panel(motion, variable, "point", names, part, part == "x") for names in groups] for part in parts
+    ]
+
+
+def of_guides(motion: Motion) -> Rows:
+    """Displacement, velocity and acceleration along the guides below each other."""
+    groups = deal_to_panels(motion.pens["guide"])
+    variables = ("slide", "slide_velocity", "slide_acceleration")
+    return [
+        [panel(motion, name, "guide", names, legend=name == "slide") for names in groups]
+        for name in variables
+    ]
+
+
+def of_coefficients(motion: Motion) -> Rows:
+    """Velocity coefficients at the left, acceleration coefficients at the right: links, points, guides."""
+    points = deal_to_panels(motion.pens["point"])
+    turning = deal_to_panels(turning_links(motion.mechanism))
+    if motion.axes > 2:
+        joints = deal_to_panels(motion.dataset["joint"].to_numpy().tolist())
+        first = [both(motion, "joint_", "joint", names) for names in joints]
+    else:
+        first = [both(motion, "angular_", "link", names) for names in turning]
+    rows = [
+        *first,
+        *(both(motion, "", "point", names, part) for part in motion.components for names in points),
+        *(both(motion, "slide_", "guide", names) for names in deal_to_panels(motion.pens["guide"])),
+    ]
+    return [row for row in rows if row[0].curves]
+
+
+def both(motion: Motion, prefix: str, dim: str, names: Sequence[str], part: str = "") -> list[Panel]:
+    """A panel of velocity coefficients and one of acceleration coefficients, with one legend."""
+    return [
+        panel(motion, f"{prefix}velocity_coefficient", dim, names, part, legend=False),
+        panel(motion, f"{prefix}acceleration_coefficient", dim, names, part),
+    ]
+
+
+def panel(
+    motion: Motion, variable: str, dim: str, names: Iterable[str], part: str = "", legend: bool = True
+) -> Panel:
+    """Curves of one variable along `dim` ("link", "point" or "guide"), of one component or the magnitude."""
+    values = motion.dataset[variable]
+    unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
+    factor, shown = shown_as(unit, motion.mechanism.display)
+    curves = {name: factor * component(values.sel({dim: name}), part) for name in names}
+    text = formula(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "")
+    scale = factor * great_value(motion.dataset, variable)
+    return Panel(labelled(text, shown), shown, curves, motion.pens[dim], scale, legend)

@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from centrode.locale import _
+from centrode.present.displayed_units import plain
 from centrode.present.page import Array, Page
-from centrode.present.shown import plain
 from centrode.present.spelled_figures import AS_WRITTEN
 
 if TYPE_CHECKING:

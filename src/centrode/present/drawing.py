@@ -11,14 +11,12 @@ from matplotlib.patches import Polygon
 
 from centrode.model.mechanism import FRAME
 from centrode.present import signs
-from centrode.present.cams.driving_drawing import draw_cams
-from centrode.present.gears import pitch_circles
-from centrode.present.labels import label_places
-from centrode.present.obstacles import drive_arcs, ground_line, lines, unit
+from centrode.present.cams.driving_cam_drawing import draw_cams
+from centrode.present.displayed_units import plain
 from centrode.present.scene import Array, Scene, corners
-from centrode.present.shown import plain
 from centrode.present.style import GROUND, INK, Pen, pens
-from centrode.present.wheels import cylinders, round_track, straight_track, wheel_at
+from centrode.present.tags import drive_arcs, ground_line, label_places, lines, unit
+from centrode.present.wheels import cylinders, pitch_circles, round_track, straight_track, wheel_at
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Rolling

@@ -9,19 +9,21 @@ import xarray
 from matplotlib.figure import Figure
 
 from centrode.locale import _
-from centrode.present.abscissa import Abscissa, main_abscissa, over_drive
-from centrode.present.curves import sheet
-from centrode.present.panels import (
+from centrode.present.curves import (
+    Abscissa,
     Motion,
     Rows,
+    main_abscissa,
     of_coefficients,
     of_guides,
     of_joints,
     of_links,
     of_points,
+    over_drive,
+    sheet,
 )
+from centrode.present.linkage_scene import scene_of
 from centrode.present.pictures import mechanism_figure, paths_figure
-from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe, globe_of
 from centrode.present.style import house_style, pens

@@ -13,20 +13,19 @@ from matplotlib.lines import Line2D
 
 from centrode.errors import Status
 from centrode.locale import _
-from centrode.present.abscissa import Abscissa
 from centrode.present.curves import (
     CUT_DASHES,
+    Abscissa,
     draw_parts,
     legend_width,
     say_nothing_known,
     write_legend,
     write_title,
 )
+from centrode.present.displayed_units import formula, labelled, shown_as
 from centrode.present.drawing import MARGIN, draw_mechanism
 from centrode.present.scene import Scene
-from centrode.present.shown import formula, labelled, shown_as
-from centrode.present.sphere.globe import Globe
-from centrode.present.sphere.globe_drawing import HIDDEN, draw_globe
+from centrode.present.sphere.globe import HIDDEN, Globe, draw_globe
 from centrode.present.style import MUTED, Decimals, Pen, pens
 from centrode.quantities import status_word, typeset_unit
 

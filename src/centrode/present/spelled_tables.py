@@ -3,14 +3,35 @@
 from __future__ import annotations
 
 import codecs
+import csv
 import importlib
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from centrode.present.decimal_comma import spell_with_comma
-from centrode.present.missing import telling_what_is_missing
+from centrode.present.optional_packages import telling_what_is_missing
+
+# CSV as spreadsheets and MathCAD read it where the decimal sign is a comma: fields apart by semicolons.
+
+NUMBER = re.compile(r"[+-]?\d+\.\d+(?:[eE][+-]?\d+)?|[+-]?\d+[eE][+-]?\d+")
+
+
+def spell_with_comma(path: Path) -> None:
+    """Rewrite a CSV file of this project with decimal commas and semicolons; text is left as it is.
+
+    A mark of byte order goes before it: without one spreadsheets take UTF-8 for a code page of theirs.
+    """
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = [[_spelled(field) for field in row] for row in csv.reader(file)]
+    with path.open("w", encoding="utf-8-sig", newline="") as file:
+        csv.writer(file, delimiter=";", lineterminator="\n").writerows(rows)
+
+
+def _spelled(field: str) -> str:
+    return field.replace(".", ",") if NUMBER.fullmatch(field) else field
+
 
 WorkbookColumn: TypeAlias = Sequence[float] | Sequence[str]
 

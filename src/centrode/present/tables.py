@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+import io
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.errors import Status
-from centrode.present.shown import shown_as
-from centrode.views.columns import numeric_columns
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.errors import InputError, Status
+from centrode.locale import _
+from centrode.present.displayed_units import shown_as
+from centrode.views.columns import drive_units, numeric_columns, unit_of
 
 if TYPE_CHECKING:
     import xarray
@@ -108,3 +116,102 @@ def write_columns(
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*headers, "status"])
         writer.writerows(map(field, row) for row in zip(*lists, strict=True))
+
+
+# Tables of kinematic coefficients by each drive.
+
+
+def write_coefficients_csv(
+    dataset: xarray.Dataset, path: Path, display: Display | None = None, points: Sequence[str] | None = None
+) -> None:
+    """Write kinematic coefficients as CSV, one row a sample; of a pair of mixed derivatives, which are equal, one.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of `kinematic_coefficients`.
+    display : Display, optional
+        Units of lengths and angles; SI and radians if left out.
+    points : sequence of names, optional
+        The points to show, usually the moving ones; all if left out.
+    """
+    chosen = dataset if points is None else dataset.sel(point=list(points))
+    write_columns(path, _columns(chosen), dataset["status"], display)
+
+
+def _columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """Header without unit, SI unit and values of every column: "velocity_coefficient_C_x_by_OA"."""
+    yield "time", unit_of(dataset["time"]), dataset["time"]
+    names = [str(name) for name in dataset["drive"].values]
+    for number, name in enumerate(names):
+        yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
+    for variable, values in dataset.data_vars.items():
+        if "drive" not in values.dims:
+            continue
+        twice = "drive_2" in values.dims
+        units = _units(values, len(names) ** (2 if twice else 1))
+        dims = [str(dim) for dim in values.dims if dim not in ("sample", "drive", "drive_2")]
+        for labels in product(*(values[dim].values.tolist() for dim in dims)):
+            one = values.sel(dict(zip(dims, labels, strict=True)))
+            header = "_".join([str(variable), *map(str, labels)])
+            for pair in combinations_with_replacement(range(len(names)), 2 if twice else 1):
+                by = "_".join(names[k] for k in pair)
+                unit = units[pair[0] * len(names) + pair[1] if twice else pair[0]]
+                place = dict(zip(("drive", "drive_2"), pair, strict=False))
+                yield f"{header}_by_{by}", unit, one.isel(place)
+
+
+def _units(values: xarray.DataArray, count: int) -> list[str]:
+    """SI unit of each drive, or pair of drives: `units` names one for all, or all of them."""
+    units = ["" if unit == "1" else unit for unit in str(values.attrs.get("units", "")).split(", ")]
+    return units * count if len(units) == 1 else units
+
+
+# Results of sweeps as tables.
+
+ROWS = 100_000
+"""Mechanisms of one table."""
+
+
+def sweep_csv(data: xr.Dataset) -> str:
+    """A reduced sweep as a table: a row for each mechanism, the varied values first, in SI.
+
+    Raises InputError for a sweep that is not reduced, and for more than `ROWS` mechanisms.
+    """
+    front = data["samples_ok"].dims
+    if "sample" in data.dims:
+        raise InputError("", _("a table holds reduced results only"), _("reduce them, or write zarr"))
+    count = data["samples_ok"].size
+    if count > ROWS:
+        what = _("a table holds at most {most} mechanisms, here are {count}").format(most=ROWS, count=count)
+        raise InputError("", what, _("write zarr"))
+    columns = [*_varied(data, front, count), *_numbers(data, len(front), count)]
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(name for name, _column in columns)
+    writer.writerows(zip(*(column.tolist() for _name, column in columns), strict=True))
+    return stream.getvalue()
+
+
+Column = tuple[str, npt.NDArray[np.generic]]
+
+
+def _varied(data: xr.Dataset, front: tuple[object, ...], count: int) -> Iterator[Column]:
+    places = np.unravel_index(np.arange(count), data["samples_ok"].shape)
+    for name, coordinate in data.coords.items():
+        if len(coordinate.dims) == 1 and coordinate.dims[0] in front:
+            along = front.index(coordinate.dims[0])
+            yield _headed(str(name), coordinate), coordinate.values[places[along]]
+
+
+def _numbers(data: xr.Dataset, front: int, count: int) -> Iterator[Column]:
+    for name, variable in data.data_vars.items():
+        rooms = [data[dimension].values.tolist() for dimension in variable.dims[front:]]
+        flat = variable.values.reshape(count, -1)
+        for k, labels in enumerate(itertools.product(*rooms)):
+            yield _headed("_".join((str(name).replace(".", "_"), *map(str, labels))), variable), flat[:, k]
+
+
+def _headed(name: str, variable: xr.DataArray) -> str:
+    unit = variable.attrs.get("units", "1")
+    return name if unit == "1" else f"{name} [{unit}]"

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.model.mechanism import FRAME
 from centrode.present.scene import Array, Samples, Scene, span, turned
 
 if TYPE_CHECKING:
-    from centrode.model.mechanism import Drive, Rolling
+    from centrode.analysis.instant_centres.bodies import Pair
+    from centrode.model.mechanism import Drive, Gear, Rolling
 
 BARREL = 0.8  # length of a barrel as a part of the shortest length of its cylinder
 OVER = 0.4  # how far a straight track goes on beyond the contacts, in radii of the wheel
@@ -105,3 +107,44 @@ def reaches(scene: Scene) -> list[Array]:
             circle = round_track(scene, wheel, 0) if wheel.on == "frame" else None
             found += [] if circle is None else [circle.outline]
     return found
+
+
+# Pitch circles of meshing wheels, in the units of the display.
+
+COAXIAL = 1e-9
+"""Shafts nearer than this share of the drawing are one: no pitch circles tell their ratio."""
+
+
+def pitch_circles(scene: Scene, sample: int) -> Iterator[tuple[str, Disc]]:
+    """Each meshing wheel by its link, with its circle; none of gears whose shafts the carrier does not hold.
+
+    The circles touch where they mesh: r1 omega1 = -+ r2 omega2 against the carrier, the distance of the shafts
+    being r1 + r2 or, of a wheel in a ring, the difference.
+    """
+    for gear in scene.mechanism.gears:
+        shafts = [_shaft(scene, gear, link, sample) for link in gear.links]
+        if any(shaft is None for shaft in shafts):
+            continue
+        distance = float(np.hypot(*(shafts[1] - shafts[0])))  # type: ignore[operator]
+        if not np.isfinite(distance) or distance < COAXIAL * scene.extent:
+            continue
+        second = distance / abs(gear.ratio - 1.0)
+        for link, shaft, radius in zip(gear.links, shafts, (abs(gear.ratio) * second, second), strict=True):
+            assert shaft is not None
+            turn = 0.0 if link == FRAME else float(scene.turns[link][sample])
+            yield link, Disc(shaft, radius, turn)
+
+
+def _shaft(scene: Scene, gear: Gear, link: str, sample: int) -> Array | None:
+    """Where a wheel turns on the carrier: the point that both have."""
+    held = scene.mechanism.points_of(gear.carrier)
+    shared = [point for point in scene.mechanism.points_of(link) if point in held]
+    return scene.tracks[shared[0]][sample] if shared else None
+
+
+# Symbols of instant centres as mathematical text.
+
+
+def subscripted(pair: Pair, bodies: int) -> str:
+    """The symbol of a centre as mathematical text."""
+    return f"$P_{{{pair[0]}{',' if bodies > 10 else ''}{pair[1]}}}$"

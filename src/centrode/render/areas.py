@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from centrode.present.abscissa import angle_ticks
-from centrode.present.curves import CUT_DASHES, legend_width, write_legend, write_title
+from centrode.present.curves import CUT_DASHES, angle_ticks, legend_width, write_legend, write_title
 from centrode.present.style import INK, MUTED, PALETTE, Decimals
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, Path

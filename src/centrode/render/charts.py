@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from centrode.present.curves import legend_width, write_legend, write_title
+from centrode.present.displayed_units import formula, labelled
 from centrode.present.drawing import draw_mechanism
-from centrode.present.reading import scene_of
+from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import Scene, box
-from centrode.present.shown import formula, labelled
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, pens
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.charts import BarChart, Bars, CarriedDisc, Hodograph, HodographCurve, LinkageWithDiscs

@@ -11,13 +11,12 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from centrode.equations.instants import CHANGE_POINT
 from centrode.locale import _
-from centrode.present.abscissa import CHANGE_POINT, LIMIT
-from centrode.present.abscissa import Abscissa as DrawnAbscissa
+from centrode.present.curves import Abscissa as DrawnAbscissa
 from centrode.present.curves import Panel, sheet, write_legend, write_title
-from centrode.present.dark import darkened
-from centrode.present.saving import save_figures
-from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.present.figure_files import save_figures
+from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, darkened, house_style
 from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.force_pages import group_page
@@ -50,6 +49,7 @@ from centrode.sheets.plots import (
     VectorPage,
 )
 from centrode.sheets.scenes import Scene
+from centrode.views.abscissa import LIMIT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

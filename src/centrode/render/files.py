@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from centrode.locale import speaking
-from centrode.present.shown import shown_as
+from centrode.present.displayed_units import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_netcdf
 from centrode.render.spelling import PlainSpelling

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat
+from centrode.present.displayed_units import plain
 from centrode.present.drawing import draw_body
 from centrode.present.page import Array, Page, View
 from centrode.present.scene import Scene, corners
-from centrode.present.shown import plain
 from centrode.present.style import GROUND, INK, MUTED, Pen, pens
 from centrode.present.wheels import wheel_at
 from centrode.render.force_signs import force_arrows, moment_arc

@@ -12,10 +12,10 @@ from centrode.analysis.graphic.stage import round_scale as round_length
 from centrode.dynamics.force_polygons.polygons import PARTS, round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import arrow, flat
+from centrode.present.displayed_units import shown_as
+from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.pictures import caption
-from centrode.present.reading import scene_of
-from centrode.present.shown import shown_as
 from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.render.force_groups import draw_group
 from centrode.render.force_signs import force_name

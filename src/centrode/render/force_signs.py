@@ -10,8 +10,8 @@ import numpy as np
 
 from centrode.present import signs
 from centrode.present.diagram_drawing import arrow, flat
+from centrode.present.displayed_units import plain
 from centrode.present.page import Array, Page
-from centrode.present.shown import plain
 from centrode.present.style import INK
 
 NAME = re.compile(r"([−]?)(MΦ|Mz|Mb|Fb|[RGΦFM])(\d+(?:,\d+)?)?([ⁿᵗ]?)(′*)(\([^()]*\))?")

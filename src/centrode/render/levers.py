@@ -11,10 +11,10 @@ from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset
+from centrode.present.displayed_units import shown_as
 from centrode.present.page import Page, View, new_page
 from centrode.present.pictures import caption
 from centrode.present.scene import corners
-from centrode.present.shown import shown_as
 from centrode.present.style import INK, pens
 from centrode.render.force_signs import force_arrows, moment_arc
 from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.present.curves import say_nothing_known, write_title
-from centrode.present.labels import label_places
 from centrode.present.style import INK, MUTED, PALETTE, Decimals
+from centrode.present.tags import label_places
 from centrode.render.spelling import DrawingSpelling, FigureSpelling, PlainSpelling
 from centrode.sheets.plots import HodographPanel, PanelGrid, SectorRings
 

@@ -14,17 +14,24 @@ from matplotlib.lines import Line2D
 
 from centrode.locale import _, ngettext
 from centrode.present.curves import write_title
+from centrode.present.displayed_units import plain
 from centrode.present.drawing import draw_mechanism
-from centrode.present.obstacles import lines
+from centrode.present.linkage_scene import scene_of
 from centrode.present.pictures import caption, initial_sample, label_lengths
-from centrode.present.reading import scene_of
 from centrode.present.scene import Array
 from centrode.present.scene import Scene as Sheet
-from centrode.present.shown import plain
-from centrode.present.sphere.globe import STEPS, Globe, globe_of, laid, whole
-from centrode.present.sphere.globe_drawing import arcs_on_paper, draw_globe, draw_line
+from centrode.present.sphere.globe import (
+    STEPS,
+    Globe,
+    arcs_on_paper,
+    draw_globe,
+    draw_line,
+    globe_of,
+    laid,
+    whole,
+)
 from centrode.present.style import INK, MUTED, pens
-from centrode.present.tags import Tag, write_tags
+from centrode.present.tags import Tag, lines, write_tags
 from centrode.present.window import carried_by, segments_of, widened, within
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.scenes import ChordKind, CurveKind, LineKind, Mark, MarkKind

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from centrode.dynamics.force_polygons.polygons import sheet_of
 from centrode.locale import _
+from centrode.present.displayed_units import plain
 from centrode.present.page import Page
-from centrode.present.shown import plain
 from centrode.present.spelled_figures import AS_WRITTEN
 
 if TYPE_CHECKING:

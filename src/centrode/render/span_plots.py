@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from centrode.locale import _
-from centrode.present.abscissa import angle_ticks
-from centrode.present.curves import legend_width, write_legend, write_title
+from centrode.present.curves import angle_ticks, legend_width, write_legend, write_title
 from centrode.present.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, ngettext
-from centrode.present.shown import formula, plain, shown_as
+from centrode.present.displayed_units import formula, plain, shown_as
 from centrode.quantities import typeset_unit
 from centrode.sheets.texts import (
     Counted,

@@ -20,9 +20,9 @@ from centrode.present.diagram_drawing import (
     typeset,
     write_head,
 )
+from centrode.present.displayed_units import shown_as
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.pictures import caption
-from centrode.present.shown import shown_as
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.quantities import typeset_unit
 from centrode.render.spelling import PlainSpelling

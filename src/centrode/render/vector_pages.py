@@ -9,17 +9,17 @@ import numpy as np
 
 from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
-from centrode.present.cams.driving_drawing import draw_cams
+from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
+from centrode.present.displayed_units import plain, shown_as
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
-from centrode.present.obstacles import lines
+from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.pictures import caption
-from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
 from centrode.present.sheet import SIGN_INCHES
-from centrode.present.shown import plain, shown_as
 from centrode.present.style import GROUND, INK, pens
+from centrode.present.tags import lines
 from centrode.render.force_signs import moment_arc
 from centrode.render.spelling import DrawingSpelling
 

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from centrode.errors import InputError, Status
 from centrode.locale import _
 from centrode.present.drawing import MARGIN, draw_mechanism
+from centrode.present.linkage_scene import scene_of
 from centrode.present.pictures import complete, initial_sample
-from centrode.present.reading import scene_of
 from centrode.present.scene import Scene, corners
-from centrode.present.sphere.globe import Globe, globe_of
-from centrode.present.sphere.globe_drawing import draw_globe
+from centrode.present.sphere.globe import Globe, draw_globe, globe_of
 from centrode.present.style import house_style
 from centrode.render.document.blocks import Moving, shown
 from centrode.render.document.figures import picture

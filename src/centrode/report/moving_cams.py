@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from centrode.locale import _
 from centrode.model.settings import Display
-from centrode.present.animations.followers import GAP, WALLS, FollowerLayer
+from centrode.present.animations.cams import GAP, WALLS, FollowerLayer
 from centrode.present.animations.layers import View
 from centrode.present.drawing import MARGIN
 from centrode.present.style import GROUND, INK, MUTED, house_style

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.model.settings import Display
-from centrode.present.cams.walking_drawing import (
+from centrode.present.cams.walking_wheel import (
     CAM,
     CARRIER,
     FREE,

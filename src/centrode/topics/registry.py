@@ -375,7 +375,7 @@ CENTRODES = Topic(
         ending=Lazily("centrode.analysis.instant_centres.results", "centrode_shortfall"),
         folder="centrodes",
         dark=True,
-        animation=Lazily("centrode.present.animations.given", "animate_rolling"),
+        animation=Lazily("centrode.present.animations.animate", "animate_rolling"),
         animation_help=mark("Also write an animation: one centrode rolls on the other."),
     ),
 )

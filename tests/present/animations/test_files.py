@@ -14,12 +14,10 @@ from matplotlib.patches import Rectangle
 from PIL import Image
 
 import centrode as ct
-from centrode.present.animations import encoding
-from centrode.present.animations.encoding import write_gif, write_mp4
+from centrode.present.animations import video_files
 from centrode.present.animations.layers import Array, Layer
-from centrode.present.animations.palette import COLOURS, EXACT, Palette
-from centrode.present.animations.stage import Stage
-from centrode.present.animations.timing import Timing
+from centrode.present.animations.stage import COLOURS, EXACT, Palette, Stage
+from centrode.present.animations.video_files import Timing, write_gif, write_mp4
 
 
 class Dot(Layer):
@@ -174,7 +172,7 @@ def test_mp4_without_its_library_is_told(tmp_path: Path, monkeypatch: pytest.Mon
     def missing() -> Any:
         raise ModuleNotFoundError(name="imageio_ffmpeg")
 
-    monkeypatch.setattr(encoding, "_ffmpeg", missing)
+    monkeypatch.setattr(video_files, "_ffmpeg", missing)
     with pytest.raises(ct.InputError, match=r'pip install "centrode\[video\]", or name a \.gif'):
         ct.animate(ct.example("crank-rocker"), tmp_path / "a.mp4")
     assert list(tmp_path.iterdir()) == []

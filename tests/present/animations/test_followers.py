@@ -13,11 +13,9 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
-from centrode.present.animations.captions import follower_captions, instant_captions
-from centrode.present.animations.followers import FollowerLayer
-from centrode.present.animations.layers import Layer, View
-from centrode.present.animations.links import LinksLayer
-from centrode.present.animations.motions import scene_of_film
+from centrode.present.animations.cams import FollowerLayer
+from centrode.present.animations.layers import Layer, View, follower_captions, instant_captions, scene_of_film
+from centrode.present.animations.linkages import LinksLayer
 from centrode.study.moving.courses import course_of
 from centrode.study.moving.films import film_of
 

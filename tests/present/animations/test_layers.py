@@ -16,18 +16,19 @@ from matplotlib.patches import Circle
 from PIL import Image
 
 import centrode as ct
-from centrode.present.animations.animate import stage_of
-from centrode.present.animations.centres import CentresLayer
-from centrode.present.animations.centrodes import CentrodesLayer
-from centrode.present.animations.forces import joint_layer, load_layer
-from centrode.present.animations.kinematic import point_vectors
-from centrode.present.animations.layers import Layer, View
-from centrode.present.animations.links import LinksLayer
-from centrode.present.animations.margins import write_entries
-from centrode.present.animations.motions import scene_of_film
-from centrode.present.animations.paths import PathsLayer
-from centrode.present.animations.shown import MAKERS, Shown, layers_of
-from centrode.present.animations.vectors import VectorLayer, round_down, share_scale
+from centrode.present.animations.animate import MAKERS, Shown, layers_of, stage_of
+from centrode.present.animations.centrodes import CentresLayer, CentrodesLayer
+from centrode.present.animations.layers import Layer, View, scene_of_film
+from centrode.present.animations.linkages import LinksLayer, PathsLayer
+from centrode.present.animations.stage import write_entries
+from centrode.present.animations.vectors import (
+    VectorLayer,
+    joint_layer,
+    load_layer,
+    point_vectors,
+    round_down,
+    share_scale,
+)
 from centrode.present.style import house_style
 from centrode.study.moving.courses import course_from, course_of
 from centrode.study.moving.films import Film, film_from, film_of

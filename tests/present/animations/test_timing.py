@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from centrode.errors import InputError
-from centrode.present.animations.timing import (
+from centrode.present.animations.video_files import (
     FASTEST,
     LEAST_RATE,
     MOST_FRAMES,

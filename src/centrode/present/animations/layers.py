@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from centrode.cams.followers.geometry import Oscillating
+from centrode.errors import Status
+from centrode.locale import decimal_mark
+from centrode.present.displayed_units import shown_as
+from centrode.present.linkage_scene import scene_of
+from centrode.present.scene import Scene
 from centrode.present.sheet import SIGN_INCHES
+from centrode.present.sphere.globe import Globe, globe_of
+from centrode.quantities import QUANTITIES, status_word, typeset_unit
+
+if TYPE_CHECKING:
+    from centrode.cams.followers.geometry import FollowerCam
+    from centrode.model.settings import Display
+    from centrode.study.moving.films import Film
 
 Array = NDArray[np.float64]
 NOTHING: Array = np.empty((0, 2))
@@ -95,3 +109,114 @@ class Layer:
     def notes(self) -> Sequence[str]:
         """Sentences about what could not be shown."""
         return ()
+
+
+# What all layers of a mechanism's motion know: the film, and its scene in the view of the pictures.
+
+FAR = 0.5
+"""How far out of the mechanism's box other places are shown, as a part of its extent: small links show nothing."""
+
+
+class MotionLayer(Layer):
+    """A layer over a film of a mechanism.
+
+    Attributes
+    ----------
+    film : Film
+    scene : Scene or Globe
+        The frames' positions are its first samples, those of the course follow.
+    count : int
+        Positions of the frames.
+    box : (2, 2)
+        Corners of what the links need over the whole motion.
+    """
+
+    def __init__(self, film: Film, scene: Scene | Globe) -> None:
+        self.film = film
+        self.scene = scene
+        self.count = len(film.places)
+        self.box = np.array([scene.low, scene.high])
+
+    def stand(self, view: View) -> None:
+        """Signs are as large as on any drawing."""
+        self.scene = replace(self.scene, low=view.low, high=view.high, inches=view.inches)
+
+    def sample(self, frame: int) -> int:
+        """The sample of a frame."""
+        return int(self.film.order[frame])
+
+    def on_paper(self, places: Array) -> Array:
+        """Places in drawing units (..., 2), of those in the scene's."""
+        return self.scene.flat(places) if isinstance(self.scene, Globe) else places
+
+
+def scene_of_film(film: Film) -> Scene | Globe:
+    """The scene that all layers of a film share."""
+    if film.mechanism.space == "sphere":
+        return globe_of(film.mechanism, film.together)
+    return scene_of(film.mechanism, film.together)
+
+
+def statuses_of(film: Film) -> dict[str, int]:
+    """How many positions of the frames have which status, of those that are not in order; by its word."""
+    codes, counts = np.unique(film.motion["status"].to_numpy(), return_counts=True)
+    return {status_word(int(code)): int(count) for code, count in zip(codes, counts, strict=True) if code}
+
+
+# What stands below the title of a frame: the values of the drives or the time, the cam's angle.
+
+DIGITS = 4
+
+
+def instant_captions(film: Film) -> list[str]:
+    """The caption of each frame: the value of the only drive that moves evenly, else the time, and the status.
+
+    The status stands there where it is not in order. All have as many decimals, so that no digit jumps.
+    """
+    mechanism = film.mechanism
+    parameter = mechanism.motion_parameter
+    factor, unit = shown_as(parameter.instant.unit, mechanism.display)
+    symbol, values = parameter.instant.symbol, factor * parameter.instants(film.motion)
+    decimals = _decimals(values, unit)
+    # plain text: mathematical text is laid out for every frame anew, at many times the cost
+    texts = [f"{symbol} = {_plain(value, decimals)} {typeset_unit(unit)}" for value in values]
+    for k, status in enumerate(film.motion["status"].to_numpy().tolist()):
+        if status != Status.OK:
+            texts[k] += f" ({status_word(status)})"
+    return [texts[sample] for sample in film.order]
+
+
+def turned_caption(angle: float, display: Display | None) -> str:
+    """The angle that the carrier of a cam's rollers has turned by."""
+    factor, unit = shown_as("rad", display)
+    quantity = QUANTITIES["carrier_angle"]
+    return f"{quantity.symbol} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)}"
+
+
+def follower_captions(body: FollowerCam, angles: Array, display: Display | None) -> list[str]:
+    """The angle of the cam and the lift of its follower, frame by frame, with as many decimals in all of them."""
+    factor, unit = shown_as("rad", display)
+    lift_unit = "rad" if isinstance(body.guide, Oscillating) else "m"
+    lift_factor, lift_shown = shown_as(lift_unit, display)
+    lifts = lift_factor * body.motion.lift(np.mod(angles, math.tau))[0]
+    decimals = _decimals(lifts, lift_shown)
+    turned, lifted = QUANTITIES["cam_angle"].symbol, QUANTITIES["lift"].symbol
+    return [
+        f"{turned} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)},  "
+        f"{lifted} = {_plain(lift, decimals)} {typeset_unit(lift_shown)}"
+        for angle, lift in zip(angles.tolist(), lifts.tolist(), strict=True)
+    ]
+
+
+def _decimals(values: Array, unit: str) -> int:
+    """Decimals that all values are written with, so that no digit jumps."""
+    greatest = float(np.nanmax(np.abs(values), initial=0.0))
+    decimals = max(0, DIGITS - 1 - int(np.floor(np.log10(greatest)))) if greatest > 0.0 else 0
+    return min(decimals, 1) if unit == "deg" else min(decimals, 9)
+
+
+def _plain(value: float, decimals: int) -> str:
+    text = f"{value:.{decimals}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("-")
+    return text.replace("-", "−").replace(".", decimal_mark())

@@ -15,7 +15,7 @@ from centrode.cams.parameter_choice.problem import MEASURES
 from centrode.locale import _
 from centrode.model.cam import CONSTANT, POINT
 from centrode.present.curves import legend_width, write_legend, write_title
-from centrode.present.shown import formula, labelled, shown_as
+from centrode.present.displayed_units import formula, labelled, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, house_style
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from centrode.present.cams.outline_strokes import STROKES, grouped
+from centrode.present.cams.outlines import STROKES, grouped
 from centrode.present.dxf_files import dxf_document
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from centrode.cams.profiles import cam_outlines, shoe_outlines
 from centrode.locale import _
 from centrode.present.cams.outline_dxf import write_outlines_dxf
-from centrode.present.cams.outline_svg import write_outlines_svg
+from centrode.present.cams.outlines import write_outlines_svg
 
 if TYPE_CHECKING:
     from centrode.model.cam_files import AnyCam

@@ -2,16 +2,134 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle, FancyArrowPatch, Patch, Polygon
+from numpy.typing import NDArray
 
-from centrode.present.drafting.strokes import CAPITAL, Cover, Drawing, Ring, Stroke, Words
+# What a drawing is made of: strokes, circles and words in millimetres, each on a layer.
+
+Array: TypeAlias = NDArray[np.float64]
+
+CONTINUOUS, CHAIN = "continuous", "chain"
+PAPER = 250.0
+"""Longer side of a drawing [mm] up to which lines have the widths of their layers; beyond, they grow with it."""
+LEAST = 25.0
+"""Longer side [mm] below which they shrink with it."""
+CAPITAL = 0.72
+"""Height of capital letters as a part of the size of the letters."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """How the lines of a layer are drawn: number of the colour in DXF, colour in SVG, width [mm], kind of line."""
+
+    number: int
+    colour: str
+    width: float
+    kind: str = CONTINUOUS
+
+
+LAYERS = {
+    "paths": Look(3, "#009E73", 0.25),
+    "centrodes": Look(6, "#CC79A7", 0.35),
+    "frame": Look(8, "#404040", 0.35),
+    "pitch-circles": Look(5, "#0072B2", 0.25, CHAIN),
+    "cams": Look(4, "#332288", 0.5),
+    "links": Look(7, "#202020", 0.7),
+    "hinges": Look(7, "#202020", 0.35),
+    "drive": Look(1, "#D55E00", 0.35),
+    "names": Look(7, "#202020", 0.25),
+    "title": Look(7, "#202020", 0.25),
+}
+"""In the order in which they are drawn."""
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A line through places (n, 2) [mm]; `level` says what covers what."""
+
+    layer: str
+    places: Array
+    level: float = 0.0
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A circle [mm]; `filled`, a dot."""
+
+    layer: str
+    centre: tuple[float, float]
+    radius: float
+    level: float = 0.0
+    filled: bool = False
+
+
+@dataclass(frozen=True)
+class Words:
+    """A line of text, its middle at a place or, where `left`, its left end; height of capital letters [mm]."""
+
+    layer: str
+    text: str
+    place: tuple[float, float]
+    height: float
+    left: bool = False
+
+    def box(self) -> Array:
+        """Two corners of the room that it takes [mm]."""
+        width = self.height * sum(_width(letter) for letter in self.text)
+        half = np.array([0.5 * width, 0.7 * self.height])
+        middle = np.array(self.place) + (np.array([half[0], 0.5 * self.height]) if self.left else 0.0)
+        return np.stack([middle - half, middle + half])
+
+
+@dataclass(frozen=True)
+class Cover:
+    """A white body that hides strokes of lower levels: corners of a convex polygon [mm]."""
+
+    corners: Array
+    level: float
+
+
+@dataclass
+class Drawing:
+    """A drawing: strokes, circles, words and what covers them."""
+
+    strokes: list[Stroke] = field(default_factory=list)
+    rings: list[Ring] = field(default_factory=list)
+    words: list[Words] = field(default_factory=list)
+    covers: list[Cover] = field(default_factory=list)
+
+    def box(self) -> tuple[Array, Array]:
+        """Corners of the drawing [mm]."""
+        places = [stroke.places for stroke in self.strokes]
+        for ring in self.rings:
+            centre = np.array(ring.centre)
+            places.append(np.stack([centre - ring.radius, centre + ring.radius]))
+        places += [words.box() for words in self.words]
+        if not places:
+            return np.zeros(2), np.zeros(2)
+        every = np.concatenate(places)
+        every = every[np.isfinite(every).all(axis=1)]
+        return every.min(axis=0), every.max(axis=0)
+
+
+def _width(letter: str) -> float:
+    """Room for a letter, in heights of capitals: rather too much than too little, whatever the font."""
+    if unicodedata.east_asian_width(letter) in ("W", "F"):
+        return 1.4
+    if letter.isupper():
+        return 1.2
+    return 0.8 if letter.isascii() else 1.0
+
 
 WHITE = to_rgba("white")
 ROUND = 48
@@ -129,3 +247,91 @@ def _is_faint(colour: Any) -> bool:
 def on_paper(scene_extent: float, inches: float, scale: float) -> float:
     """Millimetres in a point of a letter's size, where the drawing was meant for so many inches of paper."""
     return scene_extent / (72.0 * inches) * scale
+
+
+# What white bodies hide: strokes below a hinge's circle or a slider end at its edge, as a draughtsman's do.
+
+CORNERS = 96
+"""Of a circle that is partly hidden."""
+TOUCH = 1e-9
+"""Parts of a stroke shorter than this share of it are left out."""
+
+
+def visible(drawing: Drawing) -> tuple[list[Stroke], list[Ring]]:
+    """Strokes and circles without what is covered; circles that are covered in part become strokes."""
+    strokes: list[Stroke] = []
+    rings: list[Ring] = []
+    for ring in drawing.rings:
+        covers = [cover for cover in drawing.covers if cover.level > ring.level]
+        turns = np.linspace(0.0, 2.0 * np.pi, CORNERS + 1)
+        around = np.array(ring.centre) + ring.radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+        parts = _uncovered(around, covers)
+        if len(parts) == 1 and len(parts[0]) == len(around):
+            rings.append(ring)
+        else:
+            strokes += [Stroke(ring.layer, part, ring.level) for part in parts]
+    for stroke in drawing.strokes:
+        covers = [cover for cover in drawing.covers if cover.level > stroke.level]
+        strokes += [Stroke(stroke.layer, part, stroke.level) for part in _uncovered(stroke.places, covers)]
+    return strokes, rings
+
+
+def _uncovered(places: Array, covers: list[Cover]) -> list[Array]:
+    """The parts of a line through places that no cover hides."""
+    parts: list[list[Array]] = []
+    open_end = False
+    for start, end in pairwise(places):
+        if not (np.isfinite(start).all() and np.isfinite(end).all()):
+            open_end = False
+            continue
+        free = _free(start, end, covers)
+        for first, last in free:
+            begin, finish = start + first * (end - start), start + last * (end - start)
+            if open_end and first == 0.0:
+                parts[-1].append(finish)
+            else:
+                parts.append([begin, finish])
+            open_end = last == 1.0
+        open_end = open_end and bool(free)
+    return [np.array(part) for part in parts]
+
+
+def _free(start: Array, end: Array, covers: list[Cover]) -> list[tuple[float, float]]:
+    """Stretches of a segment, as shares of it, that lie under no cover."""
+    free = [(0.0, 1.0)]
+    for cover in covers:
+        hidden = _inside(start, end, cover.corners)
+        if hidden is None:
+            continue
+        low, high = hidden
+        free = [
+            piece
+            for first, last in free
+            for piece in ((first, min(last, low)), (max(first, high), last))
+            if piece[1] - piece[0] > TOUCH
+        ]
+    return free
+
+
+def _inside(start: Array, end: Array, corners: Array) -> tuple[float, float] | None:
+    """The stretch of a segment inside a convex polygon, as shares of it (Cyrus and Beck)."""
+    low, high, way = 0.0, 1.0, end - start
+    sense = np.sign(_area(corners))
+    for corner, after in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        side = after - corner
+        normal = sense * np.array([-side[1], side[0]])
+        height, slope = float(normal @ (start - corner)), float(normal @ way)
+        if slope == 0.0:
+            if height <= 0.0:
+                return None
+            continue
+        share = -height / slope
+        low, high = (max(low, share), high) if slope > 0.0 else (low, min(high, share))
+        if high - low <= TOUCH:
+            return None
+    return low, high
+
+
+def _area(corners: Array) -> float:
+    x, y = corners.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from centrode.present.drafting.hiding import visible
-from centrode.present.drafting.strokes import CHAIN, LAYERS, LEAST, PAPER, Drawing
+from centrode.present.drafting.board import CHAIN, LAYERS, LEAST, PAPER, Drawing, visible
 from centrode.present.dxf_files import dxf_document
 
 HUNDREDTHS = 100.0

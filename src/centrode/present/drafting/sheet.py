@@ -9,9 +9,8 @@ import numpy as np
 
 from centrode.errors import NotComputedYet
 from centrode.locale import _
-from centrode.present.cams.driving_drawing import draw_axes_of_cams, draw_turned_cams
-from centrode.present.drafting.board import Board, on_paper
-from centrode.present.drafting.strokes import CAPITAL, Drawing, Stroke, Words
+from centrode.present.cams.driving_cam_drawing import draw_axes_of_cams, draw_turned_cams
+from centrode.present.drafting.board import CAPITAL, Board, Drawing, Stroke, Words, on_paper
 from centrode.present.drawing import (
     draw_drive,
     draw_frame,
@@ -19,7 +18,7 @@ from centrode.present.drawing import (
     draw_links,
     draw_names,
 )
-from centrode.present.reading import scene_of
+from centrode.present.linkage_scene import scene_of
 from centrode.present.style import pens
 from centrode.present.window import carried_by
 from centrode.study.wording import place_words

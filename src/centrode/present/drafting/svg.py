@@ -10,8 +10,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from centrode.present.drafting.hiding import visible
-from centrode.present.drafting.strokes import (
+from centrode.present.drafting.board import (
     CAPITAL,
     CHAIN,
     LAYERS,
@@ -22,6 +21,7 @@ from centrode.present.drafting.strokes import (
     Ring,
     Stroke,
     Words,
+    visible,
 )
 
 MARGIN = 0.04

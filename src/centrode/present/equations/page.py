@@ -2,19 +2,160 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.equations.spelling import FormulaSpelling, SymbolFormula, formula_of, spell_formula, spelled_sum
-from centrode.equations.symbols import Letter, Sum
+from centrode.equations.symbols import Letter, Sum, SumTerm
 from centrode.locale import _
-from centrode.present.equations.velocities import velocity_lines
-from centrode.present.equations.words import meaning_text, value_text
+from centrode.model.labels import GEAR, ROLLING
+from centrode.quantities import display_unit
 
 if TYPE_CHECKING:
-    from centrode.equations.derivation import Drivenness, Equations
+    from centrode.equations.derivation import Drivenness, Equations, PointVelocity
     from centrode.equations.linear import Condition, GroupEquations, GroupSolution, Unknown
+    from centrode.equations.symbols import Meaning
+    from centrode.model.mechanism import Display
+
+# What the letters of a mechanism's equations stand for, in words and numbers.
+
+
+def meaning_text(meaning: Meaning, equations: Equations) -> str:
+    """What a letter stands for."""
+    first, second, third = (*meaning.names, "", "", "")[:3]
+    body = _("the frame") if second == "frame" else _("link {link}").format(link=second)
+    sentences = {
+        "link angle": _("angle of link {first}"),
+        "relative angle": _("angle of link {first} against link {second}"),
+        "bearing": _("direction of the centre of wheel {first} from that of its track"),
+        "cylinder": _("direction of cylinder {first}"),
+        "angle in link": _("angle of {second}-{third} against the axis of link {first}"),
+        "angle of guide": _("direction of guide {first} on {body}"),
+        "angle of pair": _("constant angle of the links that guide {first} keeps parallel"),
+        "length": _("{second}-{third} of link {first}"),
+        "reach": _("distance of the centres of wheel {first} and its track"),
+        "stroke": _("length of cylinder {first}"),
+        "slide": _("displacement along guide {first}"),
+        "offset along": _("from {third} to where guide {first} is measured from, along it"),
+        "offset beside": _("distance of guide {first} from {third}"),
+        "coordinate": _("{second} of point {first}"),
+        "ratio": _("ratio of gear {first}"),
+        "spin": _("turns of wheel {first} over turns of its centre"),
+        "radius": _("radius of wheel {first}"),
+        "constant": _("constant of {first}"),
+        "constant of gear": _("constant of gear {first}"),
+        "constant of wheel": _("constant of the rolling of wheel {first}"),
+        "arc": _("arc from {first} to {second}"),
+        "arc of circle": _("arc from the pole of guide {first} to its circle"),
+        "corner": _("angle in {second} from arc {second}-{first} to arc {second}-{third}"),
+        "angle from arc": _("angle of link {first} in {second} from arc {second}-{third}"),
+        "angle on circle": _("angle of {first} about {second} from arc {second}-{third}"),
+        "angle to path": _("angle of link {first} in {second} to the path of {second} about {third}"),
+    }
+    kind = meaning.kind
+    if kind == "constant":
+        kind, first = _constant(_constraint_of(meaning.symbol, equations))
+    if meaning.kind.startswith("offset") and not third:
+        third = _("the origin")
+    return sentences[kind].format(first=first, second=second, third=third, body=body)
+
+
+def _constant(constraint: str) -> tuple[str, str]:
+    """What a constant belongs to, and its name: gears and wheels have names of their own."""
+    for start, kind in ((GEAR, "constant of gear"), (ROLLING, "constant of wheel")):
+        if constraint.startswith(start):
+            return kind, constraint.removeprefix(start)
+    return "constant", constraint
+
+
+def _constraint_of(symbol: str, equations: Equations) -> str:
+    for group in equations.groups:
+        for one in group.conditions:
+            if any(letter.name == symbol for letter in one.residual.letters):
+                return one.name
+    return ""
+
+
+def value_text(meaning: Meaning, display: Display, least: Mapping[str, float]) -> str:
+    """Its number in the units of the description; zero where it is smaller than what counts in its unit."""
+    value = 0.0 if abs(meaning.value) < least.get(meaning.unit, 0.0) else meaning.value
+    if meaning.unit == "1":
+        return f"{meaning.value:.6g}"
+    factor, shown = display_unit(meaning.unit, display.length, display.angle)
+    return f"{value * factor:.6g} {shown}"
+
+
+# Velocities of points as lines of a page.
+
+Line: TypeAlias = tuple[str, ...]
+
+LONGEST_VELOCITY = 3
+"""Terms of the longest square of a speed that tells more than the components."""
+MANY = 9
+"""Terms of three components whose squares are not tried: hardly any of them would go."""
+
+
+def velocity_lines(velocity: PointVelocity, spelling: FormulaSpelling) -> list[Line]:
+    """Coordinates, then the velocity along its guide, or both components and the speed.
+
+    In the rates, and with these put in where that is short.
+    """
+    point = velocity.point
+    lines: list[Line] = [
+        (spelling.letter(Letter(0, f"{axis}_{point}")), spelled_sum(total, spelling))
+        for axis, total, rate in zip(
+            "xyz", velocity.place, (velocity.x, velocity.y, velocity.z), strict=False
+        )
+        if rate is not None and rate.number
+    ]
+    if velocity.along is not None:
+        return [*lines, _line(f"v_{point}", velocity.along, velocity.closed_along, spelling)]
+    lines += [
+        _line(f"v_{point}x", velocity.x, velocity.closed_x, spelling),
+        _line(f"v_{point}y", velocity.y, velocity.closed_y, spelling),
+    ]
+    if velocity.z is not None:
+        lines.append(_line(f"v_{point}z", velocity.z, velocity.closed_z, spelling))
+        if velocity.x.size + velocity.y.size + velocity.z.size > MANY:
+            return lines
+    speed = spelling.letter(Letter(0, f"v_{point}"))
+    square = velocity.squared
+    if _is_square(square):
+        lines.append((speed, _root(square, spelling)))
+    elif square.size <= LONGEST_VELOCITY:
+        lines.append((spelling.power(speed, 2), spell_formula(square, spelling)))
+    return lines
+
+
+def _line(name: str, formula: SymbolFormula, closed: SymbolFormula | None, spelling: FormulaSpelling) -> Line:
+    parts = [spelling.letter(Letter(0, name)), spell_formula(formula, spelling, turned=formula.single)]
+    if closed is not None:
+        short = spell_formula(closed, spelling, turned=True)
+        parts += [short] if short != parts[1] else []
+    return tuple(parts)
+
+
+def _is_square(formula: SymbolFormula) -> bool:
+    return (
+        formula.single
+        and formula.number == 1
+        and not formula.product.waves
+        and all(power % 2 == 0 for _letter, power in formula.product.letters)
+    )
+
+
+def _root(formula: SymbolFormula, spelling: FormulaSpelling) -> str:
+    """Square root of a product of squares; rates may be negative, so they stand between bars."""
+    halves = [(letter, power // 2) for letter, power in formula.product.letters]
+    texts = []
+    for letter, power in halves:
+        factor = spell_formula(SymbolFormula(1, SumTerm(((letter, power),)), Sum.number(1)), spelling)
+        rate = letter.name.startswith("omega") or letter.name.endswith("_dot")
+        texts.append((rate, spelling.bars(factor) if rate else factor))
+    return spelling.join([text for _rate, text in sorted(texts, key=lambda one: one[0])]) or spelling.number(
+        1
+    )
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from centrode.present.saving import METADATA
+from centrode.present.figure_files import METADATA
 from centrode.present.spelled_figures import respell, spell_decimals
 from centrode.present.style import house_style
 from centrode.render.document.blocks import Picture

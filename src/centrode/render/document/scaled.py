@@ -12,7 +12,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from centrode.present.saving import METADATA
+from centrode.present.figure_files import METADATA
 from centrode.present.style import house_style
 from centrode.render.document.blocks import Picture
 from centrode.render.document.figures import spell_as_in_tables

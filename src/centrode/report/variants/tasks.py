@@ -31,7 +31,7 @@ from centrode.views import integrations
 # Matplotlib is an extra, and slow to import: only where figures are asked for.
 _figures, _saving = (
     functools.partial(lazy_loader.load, f"centrode.present.{name}", suppress_warning=True)
-    for name in ("figures", "saving")
+    for name in ("figures", "figure_files")
 )
 
 MARKER = "variant.json"

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
-from centrode.present.cams.bodies import cam_body_figures
-from centrode.present.cams.drawing import cam_curves_figure, cam_path_figure, cam_routes_figure
-from centrode.present.cams.profile_drawing import profile_figure
+from centrode.present.cams.curves import cam_curves_figure, cam_path_figure, cam_routes_figure
+from centrode.present.cams.profiles import cam_body_figures, profile_figure
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section
 from centrode.render.document.figures import picture
 from centrode.report.chapters.cams.given import given_of

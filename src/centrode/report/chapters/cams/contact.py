@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from centrode.locale import _
 from centrode.present.cams.choice import choice_figures
-from centrode.present.cams.contact import contact_figure
+from centrode.present.cams.curves import contact_figure
 from centrode.render.document.blocks import Chapter, Formula, Paragraph
 from centrode.render.document.figures import picture
 from centrode.report.chapters.cams.parts import cam_of, course, part_of, sections_of, told_part

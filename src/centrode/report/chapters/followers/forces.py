@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.cams.followers.forces import follower_forces
 from centrode.locale import _
-from centrode.present.cams.forces import cam_forces_figure
+from centrode.present.cams.curves import cam_forces_figure
 from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Table
 from centrode.render.document.figures import picture
 from centrode.render.document.rows import rows_table

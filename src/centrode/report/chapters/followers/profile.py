@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from centrode.cams.followers.base_circle import stretches_text
 from centrode.cams.followers.motion import derivative, extremes_of, greatest_size
 from centrode.locale import _
-from centrode.present.cams.bodies import cam_body_figures
-from centrode.present.cams.plate_curves import plate_curves_figure
+from centrode.present.cams.curves import plate_curves_figure
+from centrode.present.cams.profiles import cam_body_figures
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph
 from centrode.render.document.figures import picture
 from centrode.render.document.rows import rows_table, told

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 from matplotlib.axes import Axes
 
 from centrode.present import signs
-from centrode.present.animations.layers import Array, View
-from centrode.present.animations.motions import MotionLayer
-from centrode.present.cams.driving_drawing import draw_axes_of_cams, draw_turned_cams
+from centrode.present.animations.layers import Array, MotionLayer, View
+from centrode.present.cams.driving_cam_drawing import draw_axes_of_cams, draw_turned_cams
+from centrode.present.displayed_units import plain
 from centrode.present.drawing import NAME_POINTS, draw_drive, draw_frame, draw_hinges, draw_links, used_points
-from centrode.present.labels import steady_offsets
-from centrode.present.obstacles import lines
 from centrode.present.scene import Scene
-from centrode.present.shown import plain
-from centrode.present.sphere.globe import Globe
-from centrode.present.sphere.globe_drawing import (
+from centrode.present.sphere.globe import (
+    Globe,
     arcs_on_paper,
     draw_arcs,
     draw_circles,
+    draw_line,
     draw_points,
     draw_turns,
     frame_globe,
 )
-from centrode.present.style import GROUND, INK, pens
+from centrode.present.style import GROUND, INK, MUTED, pens
+from centrode.present.tags import lines, steady_offsets
+
+if TYPE_CHECKING:
+    from centrode.study.moving.films import Film
 
 LOOKS = 12
 """Positions over which places of names are chosen."""
@@ -96,3 +101,42 @@ class LinksLayer(MotionLayer):
         if isinstance(self.scene, Globe):
             return arcs_on_paper(self.scene, sample)
         return lines(self.scene, sample)
+
+
+# The layer of the points' paths: whole from the first frame on, or growing behind their points.
+
+WIDTH = 1.2
+
+
+class PathsLayer(MotionLayer):
+    """Paths of points, all grey: colours belong to the links, and a path is known by the point on it."""
+
+    def __init__(self, film: Film, scene: Scene | Globe, points: Sequence[str], growing: bool) -> None:
+        super().__init__(film, scene)
+        self.points = points
+        self.growing = growing
+        self.passed = film.passed
+
+    def ground(self, axes: Axes) -> None:
+        """Whole paths do not move."""
+        for name in () if self.growing else self.points:
+            self._draw_path(axes, self.scene.tracks[name][self.count :])
+
+    def draw(self, axes: Axes, frame: int) -> None:
+        """Growing ones end at their point."""
+        sample = self.sample(frame)
+        for name in self.points if self.growing else ():
+            self._draw_path(axes, self.behind(name, sample))
+
+    def behind(self, name: str, sample: int) -> Array:
+        """The path of a point from the beginning of the course to where the point is."""
+        track = self.scene.tracks[name]
+        return np.concatenate(
+            [track[self.count : self.count + int(self.passed[sample])], track[sample][None]]
+        )
+
+    def _draw_path(self, axes: Axes, path: Array) -> None:
+        if isinstance(self.scene, Globe):
+            draw_line(axes, self.scene, path, MUTED, WIDTH, zorder=1.5)
+        else:
+            axes.plot(*path.T, color=MUTED, linewidth=WIDTH, zorder=1.45, scalex=False, scaley=False)

@@ -12,22 +12,198 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.present.abscissa import Abscissa, angle_ticks
-from centrode.present.cams.contact import contact_figure
-from centrode.present.cams.forces import cam_forces_figure
-from centrode.present.cams.plate_curves import plate_curves_figure
-from centrode.present.curves import Panel, sheet, write_legend, write_title
-from centrode.present.shown import formula, labelled, shown_as
-from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
+from centrode.present.curves import (
+    Abscissa,
+    Panel,
+    angle_ticks,
+    legend_width,
+    sheet,
+    write_legend,
+    write_title,
+)
+from centrode.present.displayed_units import formula, labelled, shown_as
+from centrode.present.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from centrode.model.cam_files import AnyCam
+    from centrode.model.follower_cam import PlateCam
+    from centrode.present.scene import Array
 
-Array = NDArray[np.float64]
+# Pressure angle and radius of curvature of a profile under a follower, over the angle of the cam.
+
+WIDTH, PANEL = 7.6, 2.4
+"""Inches of the figure, and of the height of each panel."""
+SHOWN = 4.0
+"""Radii of curvature are shown up to so many base radii: where the profile is straight they are infinite."""
+BOUND = (0, (6, 2, 1.5, 2))
+
+
+def plate_curves_figure(cam: PlateCam, dataset: xarray.Dataset) -> Figure:
+    """Pressure angle and radius of curvature of a cam's profile (`ct.cam_profile`), with what is admissible."""
+    with house_style():
+        steep, bend = cam.bounds.pressure_angle, cam.bounds.curvature_radius
+        back = cam.bounds.return_pressure_angle or steep
+        rows = [("profile_bend", [bend])]
+        if "face_place" in dataset:
+            rows.append(("face_place", []))
+        if cam.follower.contact != "flat" or cam.follower.kind == "oscillating":
+            rows.insert(0, ("cam_pressure_angle", [steep, None if back is None else -back]))
+        figure = Figure(figsize=(WIDTH, 1.3 + PANEL * len(rows)), layout="constrained")
+        grid = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
+        factor, unit = shown_as("rad", cam.display)
+        phi = factor * dataset["cam_angle"].to_numpy()
+        for axes, (name, bounds) in zip(grid, rows, strict=True):
+            _panel(axes, cam, dataset, name, [one for one in bounds if one is not None], phi)
+        grid[-1].set_xlabel(labelled(_("angle of the cam") + " " + formula("φ"), unit))
+        grid[-1].set_xlim(float(phi[0]), float(phi[-1]))
+        angle_ticks(grid[-1].xaxis, float(phi[0]), float(phi[-1]), unit, 12)
+        write_title(figure, _("Pressure angle and curvature of the cam"), _(cam.title))
+        return figure
+
+
+def _panel(
+    axes: Axes, cam: PlateCam, dataset: xarray.Dataset, name: str, bounds: list[float], phi: Array
+) -> None:
+    quantity = QUANTITIES[name]
+    factor, unit = shown_as(quantity.unit, cam.display)
+    values = factor * dataset[name].to_numpy()
+    if name == "profile_bend":
+        values = _bounded(values, SHOWN * factor * float(dataset.attrs["base_radius"]))
+    axes.plot(phi, values, color=PALETTE[0])
+    for bound in bounds:
+        axes.axhline(factor * bound, color=PALETTE[1], linewidth=0.9, linestyle=BOUND)
+        axes.annotate(
+            _("admissible"), (1.0, factor * bound), xycoords=("axes fraction", "data"), xytext=(-4, 2),
+            textcoords="offset points", ha="right", va="bottom", color=GROUND, fontsize=8.5,
+        )  # fmt: skip
+    if name != "face_place" or np.nanmin(values) < 0.0:
+        axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
+    turn, _unit = shown_as("rad", cam.display)
+    ends = turn * np.cumsum([one.angle for one in cam.segments])[:-1]
+    for end in ends:
+        axes.axvline(float(end), color=MUTED, linewidth=0.6, zorder=1.6)
+    axes.set_title(quantity.title, fontsize=9.5)
+    axes.set_ylabel(labelled(formula(quantity.symbol), unit))
+    axes.yaxis.set_major_formatter(Decimals())
+    axes.margins(y=0.1)
+
+
+def _bounded(values: Array, most: float) -> Array:
+    """Values up to a size; beyond it a gap, as between opposite signs of a radius that passes infinity."""
+    return np.where(np.abs(values) <= most, values, math.nan)
+
+
+# Contact stress of a cam over the angle of the carrier, with what the roller leans on.
+
+HIGH, LOW = 3.6, 2.0
+"""Inches of the panel of stresses, and of that of lengths."""
+MEGA = 1e-6
+
+
+def contact_figure(cam: AnyCam, contact: xarray.Dataset) -> Figure:
+    """Stress by both formulas with its greatest value, shear, half width and depth of the strip.
+
+    Parameters
+    ----------
+    cam : Cam
+    contact : Dataset
+        Of `cam_contact`.
+    """
+    with house_style():
+        names = [_("greatest shear below the contact"), _("depth of the greatest shear")]
+        width = 6.6 + legend_width([*names, _("by the source's formula (0.418)")], LOW)
+        figure = Figure(figsize=(width, HIGH + LOW + 1.4), layout="constrained")
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[HIGH, LOW])
+        factor, unit = shown_as("rad", cam.display)
+        phi = factor * contact["carrier_angle"].to_numpy()
+        _draw_stress(upper, contact, phi, factor, unit)
+        _draw_strip(lower, contact, phi)
+        lower.set_xlabel(labelled(_("angle of the carrier") + " " + formula("φ"), unit))
+        angle_ticks(lower.xaxis, float(phi[0]), float(phi[-1]), unit, 12)
+        lower.set_xlim(phi[0], phi[-1])
+        write_title(figure, _("Contact of roller and cam"), _(cam.title))
+    return figure
+
+
+def _draw_stress(axes: Axes, contact: xarray.Dataset, phi: Array, factor: float, unit: str) -> None:
+    stress, source, shear = (
+        MEGA * contact[name].to_numpy()
+        for name in ("contact_stress", "contact_stress_by_source", "contact_shear")
+    )
+    key: list[tuple[Artist, str]] = []
+    (line,) = axes.plot(phi, stress, color=PALETTE[0], linewidth=2.6)
+    key.append((line, _("greatest pressure (Hertz)")))
+    (line,) = axes.plot(phi, source, color=PALETTE[1], linestyle=DASHES[1])
+    key.append((line, _("by the source's formula (0.418)")))
+    (line,) = axes.plot(phi, shear, color=PALETTE[2])
+    key.append((line, _("greatest shear below the contact")))
+    admissible = contact.attrs.get("admissible_stress")
+    if admissible is not None:
+        line = axes.axhline(MEGA * admissible, color=PALETTE[3], linestyle="--", linewidth=1.2)
+        key.append((line, _("admissible stress")))
+    greatest, at = MEGA * contact.attrs["greatest_stress"], factor * contact.attrs["greatest_stress_at"]
+    if np.isfinite(greatest):
+        told = _("{stress:.5g} MPa at {angle:.5g} {unit}").format(stress=greatest, angle=at, unit=unit)
+        (dot,) = axes.plot([at], [greatest], "o", color=INK, markersize=5, clip_on=False, zorder=5)
+        key.append((dot, told))
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel(labelled(formula("σ") + ", " + formula("τ"), "MPa"))
+    axes.yaxis.set_major_formatter(Decimals())
+    write_legend(axes, key, inches=HIGH)
+
+
+def _draw_strip(axes: Axes, contact: xarray.Dataset, phi: Array) -> None:
+    """Half width and depth, which are fractions of a millimetre whatever the cam's unit."""
+    key: list[tuple[Artist, str]] = []
+    names = {
+        "contact_half_width": _("half width of the strip"),
+        "contact_depth": _("depth of the greatest shear"),
+    }
+    for number, (name, told) in enumerate(names.items()):
+        (line,) = axes.plot(phi, 1e3 * contact[name].to_numpy(), color=PALETTE[4 + number])
+        key.append((line, told))
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel(labelled(formula("a") + ", " + formula("z"), "mm"))
+    axes.yaxis.set_major_formatter(Decimals())
+    write_legend(axes, key, inches=LOW)
+
+
+# Forces between cam and follower over the angle of the cam.
+
+PANELS = ("follower_push", "follower_moment", "contact_force", "cam_torque", "contact_stress")
+SCALES = {"Pa": (1e-6, "MPa")}
+"""Factors and units of what no display names."""
+
+
+def cam_forces_figure(cam: AnyCam, forces: xarray.Dataset) -> Figure:
+    """Push, contact force, torque and contact stress over a turn of the cam (`ct.cam_forces`)."""
+    with house_style():
+        rows = []
+        for name in PANELS:
+            if name not in forces:
+                continue
+            quantity = QUANTITIES[name]
+            factor, unit = SCALES.get(quantity.unit, (1.0, quantity.unit))
+            title = _(quantity.title)
+            curves = {title: factor * forces[name].to_numpy()}
+            text = labelled(formula(quantity.symbol), unit)
+            rows.append([Panel(text, unit, curves, pens(curves))])
+        return sheet(_("Forces on cam and follower"), _(cam.title), rows, _over_turn(cam, forces))
+
+
+def _over_turn(cam: AnyCam, forces: xarray.Dataset) -> Abscissa:
+    """The cam's angle, in the unit of the display."""
+    factor, unit = shown_as("rad", cam.display)
+    phi = forces["cam_angle"].to_numpy() * factor
+    order = np.argsort(phi, kind="stable")
+    none = np.zeros(0, dtype=np.intp)
+    quantity = QUANTITIES["cam_angle"]
+    label = labelled(f"{_(quantity.title)} {formula(quantity.symbol)}", unit)
+    return Abscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
+
 
 CURVES = ("path_radius", "cam_pressure_angle", "law_curvature")
 RAYS = 15.0

@@ -16,7 +16,7 @@ from matplotlib.patches import Circle, Polygon
 from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.present.curves import write_title
-from centrode.present.shown import labelled, shown_as
+from centrode.present.displayed_units import labelled, shown_as
 from centrode.present.signs import ground, slider
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, house_style
 

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.present.cams.driving import driving_cams
-from centrode.present.gears import pitch_circles
+from centrode.present.cams.driving_cam_drawing import driving_cams
+from centrode.present.displayed_units import shown_as
 from centrode.present.scene import Scene, box, span
-from centrode.present.shown import shown_as
-from centrode.present.wheels import reaches
+from centrode.present.wheels import pitch_circles, reaches
 
 if TYPE_CHECKING:
     import xarray
