@@ -37,7 +37,7 @@ from .model.classics import four_bar as four_bar
 from .model.classics import slider_crank as slider_crank
 
 # Structure and motion
-from .study.checking import check as check
+from .study.check import check as check
 from .kinematics.motion import motion as motion
 from .kinematics.several_inputs.coefficients import kinematic_coefficients as kinematic_coefficients
 from .kinematics.several_inputs.limits import limits as limits
@@ -59,11 +59,11 @@ from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
 from .analysis.transmission import transmission_results as transmission_results
-from .study.running import study as study
-from .study.limiting import limits_sentence as limits_sentence
-from .study.running import range_value as range_value
-from .study.limiting import repair_of_range as repair_of_range
-from .study.running import with_range as with_range
+from .study.run import study as study
+from .study.limits import limits_sentence as limits_sentence
+from .study.run import range_value as range_value
+from .study.limits import repair_of_range as repair_of_range
+from .study.run import with_range as with_range
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
@@ -134,7 +134,7 @@ from .cams.followers.forces import least_push as least_push
 from .cams.followers.forces import jump_speed as jump_speed
 from .cams.followers.forces import preload_needed as preload_needed
 from .cams.followers.forces import stiffness_needed as stiffness_needed
-from .study.cams.forces import forces_rows as forces_rows
+from .study.cams.follower_cam import forces_rows as forces_rows
 from .present import write_cam_forces_csv as write_cam_forces_csv
 from .present import cam_forces_figure as cam_forces_figure
 from .present import animate_cam_body as animate_cam_body
@@ -201,17 +201,17 @@ from .analysis.instant_centres.results import CentrodeResults as CentrodeResults
 from .analysis.instant_centres.bodies import body_names as body_names
 from .model.labels import body_name as body_name
 from .kinematics.motion import initial_place as initial_place
-from .study.wording import place_words as place_words
+from .study.texts import place_words as place_words
 
 # Integration, variants, words
 from .equations.integration import integrate as integrate
 from .equations.integration import integration_results as integration_results
 from .equations.integration import closed_motion as closed_motion
-from .study.variants.computing import variants as variants
-from .study.variants.computing import variant_rows as variant_rows
-from .study.variants.computing import variants_summary as variants_summary
-from .study.variants.telling import spoken_variants as spoken_variants
-from .study.words.describing import describe as describe
+from .study.variant_results import variants as variants
+from .study.variant_results import variant_rows as variant_rows
+from .study.variant_results import variants_summary as variants_summary
+from .study.variant_results import spoken_variants as spoken_variants
+from .study.verbal_description import describe as describe
 
 # Many mechanisms
 from .sweeps.sweep import sweep as sweep

@@ -7,8 +7,8 @@ import pytest
 
 import centrode as ct
 from centrode.cams.followers.forces import meeting_of
-from centrode.study.cams.forces import forces_part
-from centrode.study.cams.said import Asked
+from centrode.study.cams.follower_cam import forces_part
+from centrode.study.cams.parts import Asked
 
 EPS = np.finfo(float).eps
 STEEL = {"elasticity": "206 GPa", "poisson": 0.3}

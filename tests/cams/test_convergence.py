@@ -18,8 +18,8 @@ from centrode.cams.curvature_laws import (
     TextCurvature,
 )
 from centrode.cams.path_series import convergence, expanded_path, series_path
-from centrode.study.cams.routes import routes_part
-from centrode.study.cams.said import Asked
+from centrode.study.cams.parts import Asked
+from centrode.study.cams.paths import routes_part
 
 EPS = float(np.finfo(np.float64).eps)
 

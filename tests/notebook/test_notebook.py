@@ -89,7 +89,7 @@ def test_ipython_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         result: Any = {"Mechanism": ct.Mechanism, "Dataset": xr.Dataset}.get(name)
         if result is not None:
             assert (result.__module__, result.__name__) == (module, name)
-    assert type(ct.check(ct.example("crank-rocker"))).__module__ == "centrode.study.checking"
+    assert type(ct.check(ct.example("crank-rocker"))).__module__ == "centrode.study.check"
     assert type(ct.equations(ct.example("crank-rocker"))).__name__ == "Equations"
 
 

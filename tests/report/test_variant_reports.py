@@ -13,7 +13,7 @@ from centrode.render.document.blocks import Paragraph, Report, Table
 from centrode.report.variants import writing
 from centrode.report.variants.sheet import answer_sheet
 from centrode.report.variants.writing import VariantReport
-from centrode.study.variants.tables import read_variants
+from centrode.study.variant_tables import read_variants
 
 ROWS = [
     {"variant": "first", "l2": 1.0, "l3": 1.2},

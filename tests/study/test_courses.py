@@ -8,8 +8,15 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.study.moving.courses import closes, course_from, course_of, usable
-from centrode.study.moving.films import film_from, film_of, frame_ways
+from centrode.study.animation_frames import (
+    closes,
+    course_from,
+    course_of,
+    film_from,
+    film_of,
+    frame_ways,
+    usable,
+)
 
 EPS = float(np.finfo(float).eps)
 

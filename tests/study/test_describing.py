@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 
 import centrode as ct
-from centrode.study.words.joints import moving_parts
+from centrode.study.verbal_description import moving_parts
 from growing import descriptions, mechanism_of
 from mechanisms import four_bar
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.study.variants.tables import read_variants
+from centrode.study.variant_tables import read_variants
 
 WORKED = ct.example("slider-between-cranks")
 TABLE = Path(__file__).parents[1] / "reference" / "planar-variants.csv"

@@ -15,8 +15,8 @@ import centrode as ct
 from centrode.errors import InputError
 from centrode.locale import speaking
 from centrode.report.variants import tasks
-from centrode.study.variants.computing import VariantRow, computed
-from centrode.study.variants.tables import read_variants
+from centrode.study.variant_results import VariantRow, computed
+from centrode.study.variant_tables import read_variants
 
 WORKED = ct.example("slider-between-cranks")
 TABLE = Path(__file__).parents[1] / "reference" / "planar-variants.csv"

@@ -23,8 +23,8 @@ from centrode.topics.presentation import sheets_of
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet
+    from centrode.study.cams.parts import CamPart
     from centrode.study.cams.results import CamResults
-    from centrode.study.cams.said import CamPart
 
 _DXF = find_spec("ezdxf") is not None
 

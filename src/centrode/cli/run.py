@@ -31,7 +31,7 @@ from centrode.topics.presentation import sheet_of
 from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
-    from centrode.study.running import StudyResults
+    from centrode.study.run import StudyResults
 
 GREATEST = Lazily("centrode.views.reactions", "greatest_joint_force")
 """The fact about reactions that a run prints among its own."""

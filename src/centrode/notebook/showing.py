@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Mechanism
-    from centrode.study.checking import Check
+    from centrode.study.check import Check
 
 __all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html"]
 

@@ -15,8 +15,8 @@ from centrode.model.mechanism import Mechanism
 from centrode.render.document.numbers import Numbers
 from centrode.report.options import Wishes
 from centrode.study.cams.results import CamResults, cam_results
-from centrode.study.checking import Check, check
-from centrode.study.running import StudyResults, study
+from centrode.study.check import Check, check
+from centrode.study.run import StudyResults, study
 
 Made = TypeVar("Made")
 

@@ -10,10 +10,10 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.quantities import status_word
 from centrode.structure.assur import AssurGroup
-from centrode.study.checking import Check
+from centrode.study.check import Check
 
 if TYPE_CHECKING:
-    from centrode.study.running import StudyResults  # brings xarray, which a check does without
+    from centrode.study.run import StudyResults  # brings xarray, which a check does without
 
 Rows: TypeAlias = list[tuple[str, str]]
 

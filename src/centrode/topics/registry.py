@@ -143,7 +143,7 @@ REDUCTION = Topic(
     command=Command(
         help=mark("Reduce masses and loads to the drive, part by part."),
         options=(MotionRange(),),
-        ending=Lazily("centrode.study.limiting", "check_reached"),
+        ending=Lazily("centrode.study.limits", "check_reached"),
     ),
     document=InDocuments(chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),)),
 )
@@ -226,7 +226,7 @@ REACTIONS = Topic(
             Flag("frictionless", mark("Leave out friction that is given by coefficients.")),
             MotionRange(),
         ),
-        ending=Lazily("centrode.study.reached", "refuse_unreached"),
+        ending=Lazily("centrode.study.run", "refuse_unreached"),
         summary=False,
         complete="complete",
     ),

@@ -16,8 +16,7 @@ import centrode as ct
 from centrode.present.animations.cams import FollowerLayer
 from centrode.present.animations.layers import Layer, View, follower_captions, instant_captions, scene_of_film
 from centrode.present.animations.linkages import LinksLayer
-from centrode.study.moving.courses import course_of
-from centrode.study.moving.films import film_of
+from centrode.study.animation_frames import course_of, film_of
 
 EPS = float(np.finfo(float).eps)
 FRAMES = 5

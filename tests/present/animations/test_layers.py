@@ -30,8 +30,7 @@ from centrode.present.animations.vectors import (
     share_scale,
 )
 from centrode.present.style import house_style
-from centrode.study.moving.courses import course_from, course_of
-from centrode.study.moving.films import Film, film_from, film_of
+from centrode.study.animation_frames import Film, course_from, course_of, film_from, film_of
 
 EPS = float(np.finfo(float).eps)
 EVERYTHING = Shown(tuple(sorted(set(MAKERS) - {"forces", "loads"})))

@@ -37,9 +37,8 @@ from centrode.present.animations.video_files import (
 )
 from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe
-from centrode.study.moving.courses import Course, course_from, course_of
-from centrode.study.moving.films import Film, film_from, film_of
-from centrode.study.wording import place_words
+from centrode.study.animation_frames import Course, Film, course_from, course_of, film_from, film_of
+from centrode.study.texts import place_words
 
 if TYPE_CHECKING:
     import xarray

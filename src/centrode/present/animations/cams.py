@@ -31,8 +31,7 @@ from centrode.present.cams.walking_wheel import draw_wheel, reach, wheel_keys
 from centrode.present.displayed_units import shown_as
 from centrode.present.scene import turned
 from centrode.present.style import GROUND, INK, MUTED, PALETTE
-from centrode.study.moving.courses import Loop
-from centrode.study.moving.films import frame_ways
+from centrode.study.animation_frames import Loop, frame_ways
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam

@@ -27,7 +27,7 @@ from centrode.present.window import carried_by, within
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.study.moving.films import Film
+    from centrode.study.animation_frames import Film
 
 FIXED, MOVING, CENTRE_OF_PAIR = "#0072B2", "#D55E00", "#A00000"
 LOOKS = 9

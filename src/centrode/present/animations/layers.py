@@ -25,7 +25,7 @@ from centrode.quantities import QUANTITIES, status_word, typeset_unit
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.model.settings import Display
-    from centrode.study.moving.films import Film
+    from centrode.study.animation_frames import Film
 
 Array = NDArray[np.float64]
 NOTHING: Array = np.empty((0, 2))

@@ -28,7 +28,7 @@ from centrode.present.style import GROUND, INK, MUTED, pens
 from centrode.present.tags import lines, steady_offsets
 
 if TYPE_CHECKING:
-    from centrode.study.moving.films import Film
+    from centrode.study.animation_frames import Film
 
 LOOKS = 12
 """Positions over which places of names are chosen."""

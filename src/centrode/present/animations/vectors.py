@@ -19,10 +19,10 @@ from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe
 from centrode.present.style import INK, pens
 from centrode.quantities import typeset_unit
-from centrode.study.moving.forces import joint_forces, load_forces
+from centrode.study.animation_frames import joint_forces, load_forces
 
 if TYPE_CHECKING:
-    from centrode.study.moving.films import Film
+    from centrode.study.animation_frames import Film
 
 LONGEST = 0.22
 """Length of the longest vector, as a part of the mechanism's extent."""

@@ -21,7 +21,7 @@ from centrode.present.drawing import (
 from centrode.present.linkage_scene import scene_of
 from centrode.present.style import pens
 from centrode.present.window import carried_by
-from centrode.study.wording import place_words
+from centrode.study.texts import place_words
 
 if TYPE_CHECKING:
     import xarray

@@ -21,8 +21,8 @@ from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.report.variants.tasks import Task, WritesMore, finished, run
-from centrode.study.variants.computing import VariantRow
-from centrode.study.variants.tables import Table, read_variants
+from centrode.study.variant_results import VariantRow
+from centrode.study.variant_tables import Table, read_variants
 
 Progress: TypeAlias = Callable[[int, int], None]
 

@@ -14,14 +14,14 @@ from centrode.model.units import KINDS
 from centrode.render.document.blocks import Block, Chapter, Paragraph, Report, Section, Table, shown
 from centrode.render.document.numbers import NOTHING, Numbers
 from centrode.render.document.rows import told
-from centrode.study.variants.computing import STATUS_WORDS
+from centrode.study.variant_results import STATUS_WORDS
 from centrode.version import __version__
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
     from centrode.report.variants.answers import Answers
-    from centrode.study.variants.computing import VariantRow
-    from centrode.study.variants.tables import Variant
+    from centrode.study.variant_results import VariantRow
+    from centrode.study.variant_tables import Variant
 
 WIDE = 8
 """Columns of numbers beside the variant that still fit across a page."""

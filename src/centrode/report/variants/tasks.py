@@ -23,8 +23,8 @@ from centrode.files.inputs import keep_inputs
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_csv
-from centrode.study.variants.computing import FAULT, STEPS, VariantResults, VariantRow, computed
-from centrode.study.variants.tables import Variant
+from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, computed
+from centrode.study.variant_tables import Variant
 from centrode.version import __version__
 from centrode.views import integrations
 

@@ -20,12 +20,12 @@ from centrode.report.variants.answers import Answers, answers_of
 from centrode.report.variants.folders import Progress, write_variants
 from centrode.report.variants.sheet import answer_sheet
 from centrode.report.writing import FORMATS, check_formats, document, write_report
-from centrode.study.variants.tables import Table, read_variants
-from centrode.study.variants.telling import spoken_variants
+from centrode.study.variant_results import spoken_variants
+from centrode.study.variant_tables import Table, read_variants
 
 if TYPE_CHECKING:
     from centrode.present.spelled_tables import TableSpelling
-    from centrode.study.variants.computing import VariantResults, VariantRow
+    from centrode.study.variant_results import VariantResults, VariantRow
 
 ANSWERS = "answers.json"
 

@@ -7,7 +7,7 @@ from centrode.cams.parameter_choice.search import CamChoice, choose_cam
 from centrode.locale import _, ngettext
 from centrode.model.cam import CONSTANT, Cam
 from centrode.sheets.sheet import Scalar
-from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
+from centrode.study.cams.parts import Asked, CamPart, Rows, Table, Units
 
 MEGA = 1e-6
 UNITS = {

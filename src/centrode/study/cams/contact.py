@@ -11,7 +11,7 @@ from centrode.cams.results import cam_contact
 from centrode.locale import _
 from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
-from centrode.study.cams.said import Asked, CamPart, Rows, Units
+from centrode.study.cams.parts import Asked, CamPart, Rows, Units
 
 MEGA = 1e-6
 

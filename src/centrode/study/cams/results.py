@@ -16,13 +16,10 @@ from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
-from centrode.study.cams.forces import forces_part
-from centrode.study.cams.path import path_part
-from centrode.study.cams.plate import plate_part
-from centrode.study.cams.profile import profile_part
-from centrode.study.cams.routes import routes_part
-from centrode.study.cams.said import Asked, CamPart
-from centrode.study.cams.walking import walking_part
+from centrode.study.cams.follower_cam import forces_part, plate_part
+from centrode.study.cams.parts import Asked, CamPart
+from centrode.study.cams.paths import path_part, routes_part
+from centrode.study.cams.profiles import profile_part, walking_part
 
 
 class MakesPart(Protocol):

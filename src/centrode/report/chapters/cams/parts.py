@@ -8,9 +8,9 @@ from centrode.render.document.blocks import Block, Check, Section, Table, shown
 from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.telling import listed
+from centrode.study.cams.parts import Asked, CamPart
+from centrode.study.cams.parts import Table as Told
 from centrode.study.cams.results import PARTS
-from centrode.study.cams.said import Asked, CamPart
-from centrode.study.cams.said import Table as Told
 from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:

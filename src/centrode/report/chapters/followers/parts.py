@@ -12,8 +12,8 @@ from centrode.locale import _
 from centrode.render.document.blocks import Block, Check, Section, Table
 from centrode.render.document.rows import told
 from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.study.cams.parts import Asked, CamPart
 from centrode.study.cams.results import FOLLOWER_PARTS
-from centrode.study.cams.said import Asked, CamPart
 from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from centrode.render.document.rows import small
 from centrode.report.study import ReportStudy
 from centrode.structure.assur import AssurGroup
 from centrode.structure.rank import is_bare, slider_of
-from centrode.study.checking import Check as Checked
+from centrode.study.check import Check as Checked
 
 CLOSES = 1e-9
 """Residual over the greatest length up to which an initial position is accepted as closed."""

@@ -6,7 +6,7 @@ from centrode.locale import _
 from centrode.render.document.blocks import Chapter, Paragraph, Section
 from centrode.render.document.rows import told
 from centrode.report.study import ReportStudy
-from centrode.study.words.describing import describe
+from centrode.study.verbal_description import describe
 
 
 def words_chapter(study: ReportStudy) -> Chapter | None:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.equations.integration import integrate
 from centrode.errors import InputError
 from centrode.kinematics.preparation import ready
-from centrode.locale import _, mark, ngettext, speaking
+from centrode.locale import _, chosen_language, mark, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import Rotation, rotation_of
-from centrode.study.running import StudyResults, study
-from centrode.study.variants.tables import Table, Variant, read_variants
+from centrode.study.run import StudyResults, study
+from centrode.study.variant_tables import Table, Variant, read_variants
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -163,3 +163,35 @@ def variant_rows(rows: Iterable[VariantRow]) -> list[tuple[str, str, str, str, s
         )
         for row in rows
     ]
+
+
+# What is said of variants in the language of the reader: summaries, which files hold, are English.
+
+
+def spoken_variants(topology: Mechanism, table: Table, rows: Sequence[VariantRow]) -> tuple[VariantRow, ...]:
+    """Rows of a summary with groups and causes in the language that is spoken.
+
+    What a variant was refused for, or where it locks, is asked for anew: some 0.1 s each. Faults of the program
+    stay English.
+
+    Parameters
+    ----------
+    topology, table : as of `variants`
+    rows : those that were computed of them, or some of these
+    """
+    if chosen_language() == "en":
+        return tuple(rows)
+    variants = {variant.name: variant for variant in read_variants(topology, table)}
+    return tuple(_spoken(topology, variants[row.variant], row) for row in rows)
+
+
+def _spoken(topology: Mechanism, variant: Variant, row: VariantRow) -> VariantRow:
+    if row.status == REFUSED:
+        try:
+            studied(topology, variant)
+        except InputError as refusal:
+            return replace(row, cause=str(refusal))
+    elif row.group:
+        rotation = rotation_of(ready(variant.of(topology)))
+        return replace(row, group=rotation.group, cause=cause_of(rotation))
+    return row

@@ -25,9 +25,9 @@ from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar
-from centrode.study.checking import Check, check_of
-from centrode.study.limiting import NOT_REACHED, not_reached_sentence
-from centrode.study.wording import Words, extremes
+from centrode.study.check import Check, check_of
+from centrode.study.limits import NOT_REACHED, limits_sentence, not_reached_sentence, repair_of_range
+from centrode.study.texts import Words, extremes
 from centrode.views import flywheel
 from centrode.views import reactions as reactions_view
 
@@ -250,3 +250,20 @@ def _notes(mechanism: Mechanism, solved: Solved, words: Words) -> list[str]:
             _("the motion is given, loads do not change it: centrode reduce reduces them to the drive")
         )
     return notes
+
+
+# Reactions at places that a mechanism does not reach, or where friction lets nothing move, as a failure.
+
+
+def refuse_unreached(results: ReactionResults) -> None:
+    """Raise MotionError where samples are not reached, with the limits of the motion, and at self-locking."""
+    mechanism, status = results.mechanism, results.reactions["status"].to_numpy()
+    missing = int(np.isin(status, NOT_REACHED).sum())
+    if missing:
+        what, where = not_reached_sentence(missing, len(status)), limits_sentence(mechanism)
+        repair = _("ask for places between the limits") if results.at else repair_of_range(mechanism)
+        raise MotionError("", f"{what} ({where})" if where else what, repair)
+    locked = int((results.reactions["reaction_status"] == Status.SELF_LOCKING).sum())
+    if locked:
+        what = self_locking_sentence(locked)
+        raise MotionError("", what, _("make the coefficients or radii less, or the sliders longer"))

@@ -1,8 +1,9 @@
-"""What an animation runs over: the part of a motion that is reached, and whether it runs round or there and back."""
+"""A motion as the frames of an animation, each computed where it stands, with what is shown beside the links."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -10,13 +11,21 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
+from centrode.dynamics.kinetostatics.reactions import reactions
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.state import State, length_unit
+from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.path import INSIDE, grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import FRAME, Mechanism
+
+# What an animation runs over: the part of a motion that is reached, and whether it runs round or there and
+# back.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Loop: TypeAlias = Literal["round", "back"]
@@ -178,3 +187,137 @@ def _several_turns(mechanism: Mechanism, found: xr.Dataset) -> tuple[xr.Dataset,
             samples = min(turns * (found.sizes["sample"] - 1) + 1, SAMPLES_OF_TURNS)
             return motion(mechanism, samples, first, first + turns * turn), turns
     return found, 1
+
+
+@dataclass(frozen=True)
+class Film:
+    """Frames of a motion.
+
+    Attributes
+    ----------
+    course : Course
+        The motion, densely: what paths are drawn from.
+    motion : Dataset
+        Positions of the frames, each once.
+    order : (frame)
+        The sample of `motion` that each frame shows.
+    places : (sample)
+        What `ct.motion` and `ct.reactions` take as `at` for those samples.
+    """
+
+    course: Course
+    motion: xr.Dataset
+    order: npt.NDArray[np.intp]
+    places: Array
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The description."""
+        return self.course.mechanism
+
+    @property
+    def together(self) -> xr.Dataset:
+        """Positions of the frames, and behind them those of the course: everything that a picture has room for."""
+        both = [one.drop_dims("event", errors="ignore") for one in (self.motion, self.course.motion)]
+        return xr.concat(both, dim="sample", data_vars="minimal", join="override")
+
+    @property
+    def passed(self) -> npt.NDArray[np.intp]:
+        """How many samples of the course lie behind each sample of the frames."""
+        along = self.course.places * np.sign(self.course.places[-1] - self.course.places[0])
+        own = self.places * np.sign(self.course.places[-1] - self.course.places[0])
+        return np.asarray(np.searchsorted(along, own, side="right"))
+
+
+def film_of(course: Course, frames: int) -> Film:
+    """Frames evenly spaced over a course; the picture after the last one is the first.
+
+    Round they leave the end out, which is the beginning again. There and back each place but the ends is passed twice;
+    with an odd number of frames none stands on the far end.
+    """
+    ways = frame_ways(course.loop, frames)
+    each, order = np.unique(ways, return_inverse=True)
+    first, last = course.places[0], course.places[-1]
+    places = first + (last - first) * each
+    return Film(course, motion(course.mechanism, at=places), order, places)
+
+
+def film_from(course: Course, frames: int) -> Film:
+    """Frames of a course's own samples: as many as can be had of `frames` round, or one way where it runs back."""
+    count = len(course.places)
+    chosen = np.unique(np.linspace(0, count - 1, frames + 1).round().astype(int))
+    numbers = np.arange(len(chosen))
+    order = numbers[:-1] if course.loop == "round" else np.concatenate([numbers, numbers[-2:0:-1]])
+    return Film(course, course.motion.isel(sample=chosen), order, course.places[chosen])
+
+
+def frame_ways(loop: Loop, frames: int) -> Array:
+    """Where frames stand on their course, from 0 to 1."""
+    numbers = np.arange(frames)
+    if loop == "round":
+        return numbers / frames
+    return np.minimum(2 * numbers, 2 * (frames - numbers)) / frames
+
+
+# Forces on the frames of an animation: of the pins on the links, and of the loads, with the places where they
+# act.
+
+
+@dataclass(frozen=True)
+class LoadForce:
+    """One force of a load.
+
+    Attributes
+    ----------
+    load : str
+        What results call the load.
+    force : (sample, axis) [N]
+    place : (sample, axis)
+        Where it acts [m]; on the sphere as a unit vector.
+    """
+
+    load: str
+    force: Array
+    place: Array
+
+
+def joint_forces(mechanism: Mechanism, places: Array) -> xr.Dataset:
+    """`reactions` at given places, without those on the frame: each link with the forces of its own pins."""
+    found = reactions(mechanism, at=places)
+    return found.isel(side=np.flatnonzero(found["side_link"].to_numpy() != FRAME))
+
+
+def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
+    """Forces of all loads and weights at given places, as `reactions` takes them; moments are not among them."""
+    prepared = ready(mechanism)
+    solved = solve(prepared, grid_at(prepared.kinematics.path, places))
+    burden = MassesAndLoads.for_reactions(mechanism)
+    state = State.of(solved, input_motion_of(solved, burden).moving)
+    found = []
+    for load in burden.loads:
+        with np.errstate(all="ignore"):
+            strengths = load.strengths(state, state.exists)
+            pulls = [
+                pull.times(strength)
+                for effort, strength in zip(load.efforts, strengths, strict=True)
+                for pull in effort.pulls(state)
+            ]
+        found += _joined(load.label, pulls, len(places), length_unit(mechanism))
+    return found
+
+
+def _joined(label: str, pulls: Sequence[Wrench], samples: int, unit: float) -> list[LoadForce]:
+    """Pulls of a load as forces; components on one body are one force."""
+    bodies = dict.fromkeys(pull.body for pull in pulls)
+    found = []
+    for body in bodies:
+        own = [pull for pull in pulls if pull.body == body]
+        force = np.asarray(sum(_rows(pull.force, samples) for pull in own))
+        if np.nan_to_num(force).any():
+            found.append(LoadForce(label, force, _rows(own[0].at, samples) / unit))
+    return found
+
+
+def _rows(vector: Sequence[npt.ArrayLike], samples: int) -> Array:
+    """A vector of numbers or of arrays (1, sample) as (sample, axis)."""
+    return np.stack([np.broadcast_to(np.asarray(x, dtype=float), (1, samples))[0] for x in vector], axis=-1)

@@ -10,7 +10,7 @@ from centrode.errors import MotionError, Status
 from centrode.kinematics.several_inputs.limits import limits
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
-from centrode.study.wording import value_text
+from centrode.study.texts import value_text
 
 if TYPE_CHECKING:
     import xarray as xr
