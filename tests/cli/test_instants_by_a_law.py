@@ -10,7 +10,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.report.options import instant
+from centrode.report.study import instant
 
 Centrode = Callable[..., Any]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from centrode.report import writing
+from centrode.report import files
 
 Centrode = Callable[..., Any]
 
@@ -109,7 +109,7 @@ def test_an_interrupted_report_leaves_nothing(
     def interrupted(report: object) -> bytes:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(writing, "FORMATS", {"pdf": interrupted})
+    monkeypatch.setattr(files, "FORMATS", {"pdf": interrupted})
     before = sorted(folder.iterdir())
     done = centrode("report", "crank-rocker", *QUICK)
     assert (done.code, done.err) == (130, "interrupted\n")

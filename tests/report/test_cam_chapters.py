@@ -11,10 +11,9 @@ import pytest
 import centrode as ct
 from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.cams import chapters as cams
-from centrode.report.chapters.cams.parts import part_of
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.chapters import curvature_cams as cams
+from centrode.report.chapters.curvature_cams import part_of
+from centrode.report.study import ReportOptions, ReportStudy, settled
 
 PRINTED = Path(__file__).parents[1] / "reference" / "cam-curvature-table.csv"
 CAM = ("data", "motion", "path", "routes", "profile", "walking", "contact")

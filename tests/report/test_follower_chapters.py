@@ -17,12 +17,11 @@ from centrode.laws import CURVES as LAWS
 from centrode.laws import LawSegment, SegmentedLaw
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Moving, Outline, Paragraph, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.followers import forces_checks, profile_checks
+from centrode.report.chapters.followers import forces as followers_forces
+from centrode.report.chapters.followers import profile
+from centrode.report.chapters.followers.formulas import Spelled, Textbook
 from centrode.report.chapters.followers.parts import body_of
-from centrode.report.chapters.followers.spelled import Spelled
-from centrode.report.chapters.followers.textbook import Textbook
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.study import ReportOptions, ReportStudy, settled
 from report.formula_values import value_of
 
 EPS = float(np.finfo(float).eps)
@@ -241,12 +240,11 @@ def test_a_wrong_motion_is_found(indexing: ReportStudy, monkeypatch: pytest.Monk
 def test_a_wrong_profile_is_found(indexing: ReportStudy) -> None:
     body = body_of(indexing)
     assert body is not None
-    assert profile_checks.by_instant_centre(body).holds and profile_checks.by_formulas(body).holds
+    assert profile.by_instant_centre(body).holds and profile.by_formulas(body).holds
     other = replace(body, touch=replace(body.touch, roller=body.touch.roller * (1 + 1e-11)))
     monkey = Textbook(other).place(np.array([1.0]), body.motion.lift(np.array([1.0]), 3))
     assert (
-        np.abs(monkey - body.contact(np.array([1.0])).place).max()
-        > profile_checks.ROUNDED * body.base_radius * 1e-3
+        np.abs(monkey - body.contact(np.array([1.0])).place).max() > profile.ROUNDED * body.base_radius * 1e-3
     )
 
 
@@ -279,12 +277,12 @@ def test_a_follower_that_jumps_is_told() -> None:
 
 def test_virtual_work_finds_a_wrong_torque(indexing: ReportStudy, monkeypatch: pytest.MonkeyPatch) -> None:
     forces = ct.follower_forces(indexing.plate)
-    assert forces_checks.by_virtual_work(forces).holds
+    assert followers_forces.by_virtual_work(forces).holds
     real = type(forces).at
     monkeypatch.setattr(
         type(forces), "at", lambda self, phi: replace(real(self, phi), torque=real(self, phi).torque * 1.001)
     )
-    assert not forces_checks.by_virtual_work(forces).holds
+    assert not followers_forces.by_virtual_work(forces).holds
 
 
 def test_cams_without_a_size_tell_their_motion() -> None:

@@ -14,9 +14,8 @@ from blank_canvas import blank_pictures
 from centrode.dynamics import link_motions, reduction_results
 from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.making import report
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.document import report
+from centrode.report.study import ReportOptions, ReportStudy, settled
 from report.typst_reading import TypstReader
 
 FORCES = (

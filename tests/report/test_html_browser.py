@@ -17,8 +17,8 @@ from centrode.present.equations.page import Relation, System, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document import blocks
 from centrode.report.html.page import FONT, HERE, html_page
-from centrode.report.moving import moving_of
-from centrode.report.moving_wheel import moving_wheel
+from centrode.report.player_cams import moving_wheel
+from centrode.report.player_linkages import moving_of
 
 from .browser import Seen, browser, frames, opened, until
 from .made import HOSTILE, moving, report

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.report.html.stage import UNIT, stage_of
-from centrode.report.moving import moving_of
+from centrode.report.player_linkages import moving_of
 
 from .made import HOSTILE, moving
 

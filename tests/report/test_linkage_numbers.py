@@ -16,8 +16,8 @@ from centrode.present.equations.page import Relation, System, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph
 from centrode.render.document.blocks import System as SystemBlock
-from centrode.report.making import report
-from centrode.report.options import ReportOptions
+from centrode.report.document import report
+from centrode.report.study import ReportOptions
 from report.typst_reading import TypstReader
 
 EXAMPLES = (

@@ -12,12 +12,9 @@ import pytest
 import centrode as ct
 from centrode.errors import Status
 from centrode.render.document.blocks import Chapter, Check, Paragraph, Table
-from centrode.report.chapters.linkages.identities import identity_checks, off_rigid
-from centrode.report.chapters.linkages.long_tables import ROWS, WIDE, chosen_rows
-from centrode.report.making import report
-from centrode.report.moments import moments_of
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.chapters.linkages.tables import ROWS, WIDE, chosen_rows, identity_checks, off_rigid
+from centrode.report.document import report
+from centrode.report.study import ReportOptions, ReportStudy, moments_of, settled
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 EPS = float(np.finfo(float).eps)

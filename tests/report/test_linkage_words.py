@@ -13,15 +13,14 @@ from centrode.model.mechanism import Display
 from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Paragraph, Picture, Table
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.rows import small, told
-from centrode.render.document.scaled import drawn_to_scale, scale_of
+from centrode.render.document.scale import drawn_to_scale, scale_of
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.document.vectors import symbol
 from centrode.render.spelling import PlainSpelling
-from centrode.report.making import report
+from centrode.report.document import report
 from centrode.report.mathematics import checked
-from centrode.report.options import ReportOptions
-from centrode.report.pdf.document import pdf_document
-from centrode.report.pdf.source import Source
+from centrode.report.pdf_document import Source, pdf_document
+from centrode.report.study import ReportOptions
 from centrode.sheets.texts import Joined, Number, VectorNotation
 
 NUMBERS = Numbers(Display(), 5)

@@ -11,10 +11,9 @@ import centrode as ct
 from centrode.errors import InputError, MotionError
 from centrode.locale import choose_language, chosen_language
 from centrode.render.document.blocks import Chapter
-from centrode.report import making
+from centrode.report import document
 from centrode.report.chapters import CHAPTERS, Kind
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.study import ReportOptions, ReportStudy, settled
 
 FOUR_BAR = """
 title = "$x$ #panic(1)"
@@ -58,7 +57,7 @@ def test_a_description_has_wishes() -> None:
 
 def test_the_caller_s_wishes_go_first_and_the_study_s_last() -> None:
     asked = ReportOptions(("data",), (0.5,), ("A",), 3)
-    assert settled(four_bar(), asked, CHAPTERS) == making.settled(four_bar(), asked, CHAPTERS)
+    assert settled(four_bar(), asked, CHAPTERS) == document.settled(four_bar(), asked, CHAPTERS)
     wishes = settled(four_bar(), asked, CHAPTERS)
     assert (wishes.chapters, wishes.instants, wishes.points, wishes.digits) == (("data",), (0.5,), ("A",), 3)
     bare = ct.parse_mechanism(FOUR_BAR.partition("[report]")[0])
@@ -135,7 +134,7 @@ def test_a_chapter_that_cannot_be_made_says_why_and_the_rest_is_there(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     kinds = {"structure": Kind("Bad", failing), "words": Kind("Quiet", silent), "data": CHAPTERS["data"]}
-    monkeypatch.setattr(making, "CHAPTERS", kinds)
+    monkeypatch.setattr(document, "CHAPTERS", kinds)
     said: list[tuple[str, int, int]] = []
     asked = ReportOptions(chapters=("structure", "data"))
     made = ct.report(four_bar(), asked, said=lambda *told: said.append(told))

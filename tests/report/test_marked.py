@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from centrode.render.document.blocks import shown
-from centrode.report.marked import Part, parts_of
+from centrode.report.texts import Part, parts_of
 
 TEXTS = st.text(st.sampled_from('$\\a "#<é\n'), max_size=12) | st.text(max_size=12)
 FORMULAS = st.sampled_from(["x", "phi_(1) = 3", 'x_("a\\u{24}")', '"q\\"" + 1', "x\\ y"])

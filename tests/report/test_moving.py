@@ -8,8 +8,8 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError
 from centrode.render.document.blocks import Moving, Outline, Ring
-from centrode.report.moving import moving_of
-from centrode.report.moving_wheel import STEP, moving_wheel
+from centrode.report.player_cams import STEP, moving_wheel
+from centrode.report.player_linkages import moving_of
 
 EPS = np.finfo(float).eps
 

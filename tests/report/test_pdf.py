@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from centrode.render.document.blocks import Chapter, Formula, Paragraph, Report, Section, Table
-from centrode.report.pdf.document import pdf_document
-from centrode.report.pdf.source import Source
+from centrode.report.pdf_document import Source, pdf_document
 
 from .made import HOSTILE, report
 
@@ -78,7 +77,7 @@ def test_the_bytes_repeat_in_another_process() -> None:
     program = (
         "import sys; sys.path.insert(0, sys.argv[1])\n"
         "from report.made import report\n"
-        "from centrode.report.pdf.document import pdf_document\n"
+        "from centrode.report.pdf_document import pdf_document\n"
         "sys.stdout.buffer.write(pdf_document(report()))\n"
     )
     tests = str(Path(__file__).parents[1])

@@ -12,10 +12,9 @@ import pytest
 import centrode as ct
 from centrode.render.document.blocks import Chapter, Check, Formula, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.sphere.tables import sphere_tables_chapter
-from centrode.report.making import report
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.chapters.spherical_linkages import sphere_tables_chapter
+from centrode.report.document import report
+from centrode.report.study import ReportOptions, ReportStudy, settled
 from report.texts import texts_of
 
 SPHERE = ("data", "words", "structure", "equations", "tables", "plots", "rotatability", "axes")

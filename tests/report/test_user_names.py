@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import centrode as ct
-from centrode.report.making import report
-from centrode.report.options import ReportOptions
+from centrode.report.document import report
+from centrode.report.study import ReportOptions
 from report.texts import texts_of
 
 EDITED = pytest.mark.xfail(

@@ -10,9 +10,9 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError
 from centrode.render.document.blocks import Paragraph, Report, Table
-from centrode.report.variants import writing
-from centrode.report.variants.sheet import answer_sheet
-from centrode.report.variants.writing import VariantReport
+from centrode.report.variants import files
+from centrode.report.variants.answer_sheet import answer_sheet
+from centrode.report.variants.files import VariantReport
 from centrode.study.variant_tables import read_variants
 
 ROWS = [
@@ -24,12 +24,12 @@ ROWS = [
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reports of one chapter: what variants add to a report is tested here."""
-    whole = writing.report
+    whole = files.report
 
     def short(mechanism: ct.Mechanism, options: ct.ReportOptions, **more: object) -> Report:
         return whole(mechanism, ct.ReportOptions(chapters=("structure",)), **more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(writing, "report", short)
+    monkeypatch.setattr(files, "report", short)
 
 
 def test_each_variant_has_its_report_and_the_teacher_the_answers(quick: None, tmp_path: Path) -> None:
@@ -62,7 +62,7 @@ def test_what_is_finished_is_not_made_again(
     def never(*_arguments: object, **_more: object) -> Report:
         raise AssertionError("made again")
 
-    monkeypatch.setattr(writing, "report", never)
+    monkeypatch.setattr(files, "report", never)
     ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
     assert (tmp_path / "variant-first" / "report.html").read_bytes() == before
     assert (tmp_path / "answers.html").read_bytes() == sheet

@@ -11,7 +11,7 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError
 from centrode.render.document.blocks import Report
-from centrode.report import writing
+from centrode.report import files
 
 REPORT = Report("a", "b", "en", ())
 
@@ -31,7 +31,7 @@ def test_one_document_that_fails_leaves_none(tmp_path: Path, monkeypatch: pytest
     def interrupted(report: Report) -> bytes:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(writing, "FORMATS", {"pdf": writing.FORMATS["pdf"], "html": interrupted})
+    monkeypatch.setattr(files, "FORMATS", {"pdf": files.FORMATS["pdf"], "html": interrupted})
     with pytest.raises(KeyboardInterrupt):
         ct.write_report(REPORT, tmp_path, ("pdf", "html"))
     assert list(tmp_path.iterdir()) == []
@@ -50,9 +50,9 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: p
 
 
 def test_without_typst_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(writing, "find_spec", lambda name: None)
+    monkeypatch.setattr(files, "find_spec", lambda name: None)
     with pytest.raises(InputError, match="reports need typst, which is not installed"):
-        writing.check_formats(("pdf",))
+        files.check_formats(("pdf",))
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_a_library_that_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.M
     def missing(report: Report) -> bytes:
         raise ModuleNotFoundError("No module named 'typst'", name="typst")
 
-    monkeypatch.setattr(writing, "FORMATS", {"pdf": missing})
+    monkeypatch.setattr(files, "FORMATS", {"pdf": missing})
     with pytest.raises(
         InputError, match=r'reports need typst, .* pip install "centrode\[documents,figures\]"'
     ):

@@ -14,7 +14,7 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError
 from centrode.locale import speaking
-from centrode.report.variants import tasks
+from centrode.report.variants import folders
 from centrode.study.variant_results import VariantRow, computed
 from centrode.study.variant_tables import read_variants
 
@@ -142,7 +142,7 @@ def test_finished_variants_are_not_computed_again(tmp_path: Path, monkeypatch: p
     def refuse(*_anything: object) -> None:
         raise AssertionError("computed again")
 
-    monkeypatch.setattr(tasks, "computed", refuse)
+    monkeypatch.setattr(folders, "computed", refuse)
     assert ct.write_variants(WORKED, TWO, tmp_path) == rows
     assert (stamps(tmp_path), contents(tmp_path)) == (before, all_before)
 
@@ -197,7 +197,7 @@ def test_a_fault_is_told_and_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
         def fail(*_anything: object) -> None:
             raise ArithmeticError("a slip of ours")
 
-        broken.setattr(tasks, "computed", fail)
+        broken.setattr(folders, "computed", fail)
         rows = ct.write_variants(WORKED, TWO, tmp_path)
     assert [row.status for row in rows] == ["fault", "fault"]
     assert rows[0].cause == "ArithmeticError: a slip of ours"

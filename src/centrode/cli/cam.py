@@ -13,8 +13,8 @@ import centrode as ct
 from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.announcements import announce_samples
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
-from centrode.cli.expected import announce_samples
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError

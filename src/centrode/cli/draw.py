@@ -10,8 +10,8 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.announcements import announce_size
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
-from centrode.cli.expected import announce_size
 from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark
 from centrode.topics.topic import Lazily

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 # What they import is too much for a list of commands.
 _options, _writing = (
     functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
-    for name in ("report.options", "report.writing")
+    for name in ("report.study", "report.files")
 )
 
 

@@ -12,6 +12,7 @@ import centrode as ct
 from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.announcements import announce_size
 from centrode.cli.arguments import (
     mechanism_argument,
     no_figures_option,
@@ -21,7 +22,6 @@ from centrode.cli.arguments import (
     start_option,
     stop_option,
 )
-from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import write_sheet

@@ -12,6 +12,7 @@ import centrode as ct
 from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.announcements import announce_size, announce_turns
 from centrode.cli.arguments import (
     dark_option,
     mechanism_argument,
@@ -23,7 +24,6 @@ from centrode.cli.arguments import (
     stop_option,
     written_option,
 )
-from centrode.cli.expected import announce_size, announce_turns
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.showing import check_html, equations_markdown, mechanism_html, motion_html
+    from centrode.notebook.display import check_html, mechanism_html, motion_html
+    from centrode.present.equations.latex import equations_markdown
 
 __all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register"]
 
 __getattr__, __dir__, _names = lazy_loader.attach(
     __name__,
-    submod_attrs={"showing": ["check_html", "equations_markdown", "mechanism_html", "motion_html"]},
+    submod_attrs={"display": ["check_html", "equations_markdown", "mechanism_html", "motion_html"]},
 )
 
 SHOWN = (

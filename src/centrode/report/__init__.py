@@ -9,24 +9,24 @@ from typing import TYPE_CHECKING, Any
 
 import lazy_loader
 
-from centrode.report.writing import lacking
+from centrode.report.files import lacking
 
 if TYPE_CHECKING:
     from centrode.render.document.blocks import Report
-    from centrode.report.making import report
-    from centrode.report.options import ReportOptions
-    from centrode.report.variants.writing import write_variant_reports
-    from centrode.report.writing import write_report
+    from centrode.report.document import report
+    from centrode.report.files import write_report
+    from centrode.report.study import ReportOptions
+    from centrode.report.variants.files import write_variant_reports
 
 __all__ = ["Report", "ReportOptions", "report", "write_report", "write_variant_reports"]
 
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "making": ["Report", "report"],
-        "options": ["ReportOptions"],
-        "variants.writing": ["write_variant_reports"],
-        "writing": ["write_report"],
+        "document": ["Report", "report"],
+        "study": ["ReportOptions"],
+        "variants.files": ["write_variant_reports"],
+        "files": ["write_report"],
     },
 )
 

@@ -2,21 +2,112 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass
 from typing import Any, TypeVar, cast
 
+import numpy as np
 import xarray as xr
 
 from centrode.equations.derivation import Equations, equations
+from centrode.errors import InputError, Status
+from centrode.kinematics.motion import initial_place, motion
+from centrode.locale import _
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import Mechanism
+from centrode.model.motion_parameter import ANGLE
+from centrode.model.reading import nearest, value_text
+from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
+from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
-from centrode.report.options import Wishes
 from centrode.study.cams.results import CamResults, cam_results
 from centrode.study.check import Check, check
 from centrode.study.run import StudyResults, study
+
+# What a report is to hold: the wishes of the description's [report], and those of the caller, which go before
+# them.
+
+Wished = TypeVar("Wished")
+
+
+@dataclass(frozen=True)
+class ReportOptions:
+    """What a report is to hold; what is None is left to the description, and else to the report.
+
+    Attributes
+    ----------
+    chapters : names of chapters, in any order; all that apply if nobody chooses
+    instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives]
+    points : names of points whose velocities and paths are told
+    digits : significant digits of numbers
+    """
+
+    chapters: tuple[str, ...] | None = None
+    instants: tuple[float, ...] | None = None
+    points: tuple[str, ...] | None = None
+    digits: int | None = None
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """The same, settled; chapters and points are None where nobody chose, instants empty."""
+
+    chapters: tuple[str, ...] | None
+    instants: tuple[float, ...]
+    points: tuple[str, ...] | None
+    digits: int
+
+
+def settled(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
+    """The wishes of a caller, where there are none those of the description.
+
+    Raises InputError for a chapter that is not in `known`, for a point that the mechanism has not, for digits out of
+    bounds.
+    """
+    asked = description.report
+    points = asked.points or None if isinstance(asked, ReportWishes) else None
+    found = Wishes(
+        _first(options.chapters, asked.chapters or None),
+        _first(options.instants, asked.instants or description.study.instants) or (),
+        _first(options.points, points),
+        options.digits if options.digits is not None else asked.digits or DIGITS,
+    )
+    where = "chapters" if options.chapters is not None else "[report] chapters"
+    if found.chapters is not None and not found.chapters:
+        raise InputError(where, _("no chapter is named"), nearest("", list(known)))
+    _check(found.chapters, known, where, _("there is no chapter {name}"))
+    names = description.points if isinstance(description, Mechanism) else ()
+    _check(found.points, names, "points", _("unknown point {name}"))
+    moving = description.moving_points if isinstance(description, Mechanism) else ()
+    _check(found.points, moving, "points", _("point {name} does not move"))
+    if not LEAST_DIGITS <= found.digits <= MOST_DIGITS:
+        what = _("numbers have {least} to {most} digits, {digits} were asked for")
+        said = what.format(least=LEAST_DIGITS, most=MOST_DIGITS, digits=found.digits)
+        raise InputError("digits", said)
+    return found
+
+
+def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> float:
+    """Value of the drive, a time with several drives, an angle of a cam [rad, m or s], of a number or a text.
+
+    Raises InputError, which names `where`, for a unit of another kind.
+    """
+    known = description.motion_parameter.variable if isinstance(description, Mechanism) else ANGLE
+    return known.read(text, where)
+
+
+def _first(wish: Wished | None, other: Wished | None) -> Wished | None:
+    return other if wish is None else wish
+
+
+def _check(names: Iterable[str] | None, known: Iterable[str], where: str, what: str) -> None:
+    candidates = list(known)
+    for name in names or ():
+        if name not in candidates:
+            raise InputError(where, what.format(name=value_text(name)), nearest(name, candidates))
+
 
 Made = TypeVar("Made")
 
@@ -134,3 +225,82 @@ class _Failed:
 
     def __init__(self, failure: Exception) -> None:
         self.failure = failure
+
+
+# The instants of a report: places on the motion that tables, formulas with numbers and diagrams are made for.
+
+
+@dataclass(frozen=True)
+class Moment:
+    """One instant.
+
+    Attributes
+    ----------
+    data, sample : the motion that has it, and where
+    at : what `motion` is asked for it: a value of the drive, with a law or several drives a time
+    title : "OA = 90°"
+    status : of the sample
+    """
+
+    data: xr.Dataset
+    sample: int
+    at: float
+    title: str
+
+    @property
+    def status(self) -> Status:
+        """What the sample is worth."""
+        return Status(int(self.data["status"][self.sample]))
+
+    @property
+    def reached(self) -> bool:
+        """Whether everything is known there."""
+        return self.status == Status.OK
+
+    @property
+    def missing(self) -> str:
+        """Why there is nothing to tell of it."""
+        sentence = _("At {place} the sample is {status}: there are no velocities to be told.")
+        return sentence.format(place=self.title, status=status_word(self.status))
+
+
+def moments_of(study: ReportStudy) -> tuple[Moment, ...]:
+    """The instants asked for; else the initial position, or the first sample that is reached."""
+    return study.once("moments", lambda: tuple(_moments(study)))
+
+
+def _moments(study: ReportStudy) -> list[Moment]:
+    mechanism = study.mechanism
+    wished = dict.fromkeys(study.wishes.instants)
+    parameter = mechanism.motion_parameter
+    if not wished:
+        places = [initial_place(mechanism)]
+    elif not parameter.states_instants:
+        # a law may pass a value more than once, so the nearest samples have to do
+        values = parameter.values(study.motion)
+        nearest = dict.fromkeys(int(np.argmin(np.abs(values - value))) for value in wished)
+        places = [float(study.motion["time"][sample]) for sample in nearest]
+    else:
+        places = list(wished)
+    data = motion(mechanism, at=places)
+    return [Moment(data, k, at, _title(study, data, k)) for k, at in enumerate(places)]
+
+
+def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
+    numbers = study.numbers
+    values = data["drive_value"].to_numpy()[sample]
+    told = [
+        f"{drive.id} = {drive_value_text(float(value), study.mechanism.motion_parameter.drive(drive.id).unit, numbers)}"
+        for drive, value in zip(study.mechanism.drives, values, strict=True)
+    ]
+    if not study.mechanism.motion_parameter.is_uniform:
+        told.insert(0, f"t = {numbers.measured(float(data['time'][sample]), 's')}")
+    return ", ".join(told)
+
+
+def drive_value_text(value: float, unit: str, numbers: Numbers) -> str:
+    """A value of a drive with its unit; radians also in degrees, as a person thinks of them."""
+    text = numbers.measured(value, unit)
+    if unit == "rad" and str(numbers.display.angle) == "rad" and value:
+        return f"{text} ({numbers.plain(float(np.degrees(value)))}°)"
+    return text

@@ -8,7 +8,7 @@ from centrode.errors import CentrodeError, InputError, MotionError, NotComputedY
 from centrode.locale import _
 from centrode.render.document.blocks import Chapter, Paragraph, Section, shown
 from centrode.render.document.chapters import document_chapter
-from centrode.report.moments import moments_of
+from centrode.report.study import moments_of
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy

@@ -16,13 +16,13 @@ from centrode.topics.topic import (
     Topic,
 )
 
-READ_SCALES = Lazily("centrode.cli.option_readers", "read_scales")
-READ_PAIRS = Lazily("centrode.cli.option_readers", "read_pairs")
-READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_readers", "read_pairs_of_bodies")
-READ_RANGES = Lazily("centrode.cli.option_readers", "read_ranges")
-READ_VARIED = Lazily("centrode.cli.option_readers", "read_varied")
-READ_INSTANTS = Lazily("centrode.cli.option_readers", "read_instants")
-READ_INSTANT = Lazily("centrode.cli.option_readers", "read_instant")
+READ_SCALES = Lazily("centrode.cli.option_values", "read_scales")
+READ_PAIRS = Lazily("centrode.cli.option_values", "read_pairs")
+READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_values", "read_pairs_of_bodies")
+READ_RANGES = Lazily("centrode.cli.option_values", "read_ranges")
+READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
+READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
+READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
 
 INTEGRATE = Topic(
     name="integrate",
@@ -287,7 +287,7 @@ BALANCE = Topic(
             ),
             Flag("steady", mark("At the real speed of the machine, not at its mean speed.")),
         ),
-        arguments=Lazily("centrode.cli.balance_options", "balance_arguments"),
+        arguments=Lazily("centrode.cli.option_values", "balance_arguments"),
         dark=True,
     ),
 )

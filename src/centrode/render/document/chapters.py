@@ -13,7 +13,7 @@ from centrode.render import figures
 from centrode.render.document import blocks
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers, spelled_number
-from centrode.render.document.scaled import INCH, drawn_to_scale, scale_of
+from centrode.render.document.scale import INCH, drawn_to_scale, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
 from centrode.render.force_pages import drawing_end, group_scales
 from centrode.render.instant_pages import DRAWING as INSTANT

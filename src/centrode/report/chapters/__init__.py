@@ -12,7 +12,9 @@ from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
 from centrode.render.document.blocks import Chapter
-from centrode.report.chapters.cams.chapters import (
+from centrode.report.chapters.curvature_cams import (
+    cam_choice_chapter,
+    cam_contact_chapter,
     cam_data_chapter,
     cam_motion_chapter,
     cam_path_chapter,
@@ -20,25 +22,24 @@ from centrode.report.chapters.cams.chapters import (
     cam_routes_chapter,
     cam_walking_chapter,
 )
-from centrode.report.chapters.cams.contact import cam_choice_chapter, cam_contact_chapter
+from centrode.report.chapters.followers.base_radius import base_radius_chapter
 from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
+from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
-from centrode.report.chapters.followers.sizing import base_radius_chapter
-from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
-from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.linkages.derivation import derivation_chapter
-from centrode.report.chapters.linkages.moving import motion_chapter
-from centrode.report.chapters.linkages.plots import plots_chapter
+from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
+from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
 from centrode.report.chapters.linkages.words import words_chapter
-from centrode.report.chapters.sphere.data import sphere_data_chapter
-from centrode.report.chapters.sphere.pictures import sphere_plots_chapter
-from centrode.report.chapters.sphere.relations import sphere_equations_chapter
-from centrode.report.chapters.sphere.tables import sphere_tables_chapter
+from centrode.report.chapters.spherical_linkages import (
+    sphere_data_chapter,
+    sphere_equations_chapter,
+    sphere_plots_chapter,
+    sphere_tables_chapter,
+)
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order

@@ -23,8 +23,8 @@ from centrode.render.document.blocks import (
 from centrode.report.html.drawings import Drawings
 from centrode.report.html.mathematics import Formulas, fragments_of
 from centrode.report.html.stage import stage_of
-from centrode.report.marked import parts_of
 from centrode.report.mathematics import checked
+from centrode.report.texts import parts_of
 
 BREAK = "<wbr>"
 LONG = 60

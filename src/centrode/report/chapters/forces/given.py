@@ -13,7 +13,7 @@ from centrode.model.labels import LOADS, load_name
 from centrode.quantities import display_unit
 from centrode.render.document.blocks import Block, Chapter, Paragraph, Section, Table
 from centrode.render.document.rows import told
-from centrode.report.telling import facts, listed
+from centrode.report.texts import facts, listed
 
 if TYPE_CHECKING:
     from centrode.dynamics.state import Mass

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.render.document.blocks import shown
-from centrode.report.moments import moments_of
+from centrode.report.study import moments_of
 
 if TYPE_CHECKING:
     import xarray as xr

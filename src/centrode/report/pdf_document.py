@@ -1,4 +1,4 @@
-"""A report as the source of a typst document; everything a user wrote stands in it as a string."""
+"""The PDF of a report."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import singledispatchmethod
+from pathlib import Path
+from typing import Any
+
+import typst
 
 from centrode.locale import _
 from centrode.present.equations.typst import quoted
@@ -23,8 +27,10 @@ from centrode.render.document.blocks import (
     System,
     Table,
 )
-from centrode.report.marked import parts_of
 from centrode.report.mathematics import checked, pieces_of
+from centrode.report.texts import parts_of
+
+# A report as the source of a typst document; everything a user wrote stands in it as a string.
 
 TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 """Inches that a picture may fill of a page, its caption left out."""
@@ -239,3 +245,23 @@ def _width(picture: Picture) -> float:
     height, width, box_width, box_height = (float(one) if one else 0.0 for one in found.groups())
     slope = (height or box_height) / (width or box_width or 1.0)
     return min(picture.width, TEXT_WIDTH, TEXT_HEIGHT / slope if slope else TEXT_WIDTH)
+
+
+STYLE = Path(__file__).with_name("style.typ")
+
+
+def pdf_document(report: Report) -> bytes:
+    """A report as PDF: searchable, with an outline and page numbers; the same bytes from the same report.
+
+    Typst reads nothing but what is handed to it, and no fonts but its own.
+    """
+    source = Source(report)
+    files: Any = {
+        "main": source.text.encode(),
+        "style.typ": STYLE.read_bytes(),
+        **source.files,
+    }
+    compiler = typst.Compiler(ignore_system_fonts=True)
+    document, _warnings = compiler.compile_with_warnings(input=files, format="pdf", timestamp=0)
+    assert isinstance(document, bytes)
+    return document

@@ -2,22 +2,140 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from centrode.locale import _
-from centrode.present.cams.curves import cam_curves_figure, cam_path_figure, cam_routes_figure
+from centrode.present.cams.choice import choice_figures
+from centrode.present.cams.curves import cam_curves_figure, cam_path_figure, cam_routes_figure, contact_figure
 from centrode.present.cams.profiles import cam_body_figures, profile_figure
-from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table, shown
 from centrode.render.document.figures import picture
-from centrode.report.chapters.cams.given import given_of
-from centrode.report.chapters.cams.parts import cam_of, course, part_of, sections_of, told_part
-from centrode.report.moving_wheel import moving_wheel
-from centrode.report.telling import measured
+from centrode.render.document.numbers import Numbers
+from centrode.render.document.rows import rows_table, told
+from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.player_cams import moving_wheel
+from centrode.report.texts import listed, measured
+from centrode.study.cams.parts import Asked, CamPart
+from centrode.study.cams.parts import Table as Told
+from centrode.study.cams.results import PARTS
+from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:
+    import xarray as xr
+
+    from centrode.model.cam import Cam
     from centrode.report.study import ReportStudy
+
+# Parts of a cam's results for a report: each computed when its chapter is made, once.
+
+MEGA = 1e-6
+
+
+def cam_of(study: ReportStudy) -> Cam:
+    """The cam, its tables at the instants of the report."""
+    if not study.wishes.instants:
+        return study.cam
+    asked = study.cam.study.model_copy(update={"instants": study.wishes.instants})
+    return study.cam.model_copy(update={"study": asked})
+
+
+def part_of(study: ReportStudy, name: str) -> CamPart | None:
+    """One part of the results; None where the description does not ask for it."""
+    if not study.is_cam or study.is_plate_cam:
+        return None
+    # the front of best designs takes longer than all the rest: only where the choice is what is asked for
+    front = study.wishes.chapters is not None and "choice" in study.wishes.chapters
+    return study.once(("cam", name), lambda: PARTS[name](cam_of(study), Asked(front=front)))
+
+
+def told_part(study: ReportStudy, part: CamPart) -> tuple[Block, ...]:
+    """What the command prints of a part: rows, tables, what the cam cannot do."""
+    failures = [Check(told(f"{one}.", study.numbers), False) for one in part.failures]
+    return (rows_table(part.rows, study.numbers), *(_listed(study, one) for one in part.tables), *failures)
+
+
+def _listed(study: ReportStudy, table: Told) -> Table:
+    return listed(study.numbers, table.header, table.lines, shown(table.heading))
+
+
+def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str) -> Table:
+    """Variables of a dataset over the angle of the carrier, at even steps."""
+    found = [Column("$phi$", "rad", data["carrier_angle"].to_numpy())]
+    for name, letter in columns:
+        values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
+        scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
+        found.append(Column(f"${letter}$", shown_unit, scale * values))
+    return over_samples(study.numbers, found, rows_shown(data.sizes["sample"]), caption)
+
+
+def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:
+    """Sections with something in them."""
+    return tuple(Section(title, blocks) for title, blocks in titled if blocks)
+
+
+# What a cam's description gives, as a table.
+
+
+def given_of(study: ReportStudy) -> tuple[Block, ...]:
+    """What the cam is, and every number of its description."""
+    text = _(
+        "A roller rides on a fixed cam, led by a carrier that turns about the cam's centre. The curvature of the path"
+        " of its centre is given."
+    )
+    return Paragraph(text), Table((_("what"), _("value")), tuple(_rows(study.cam, study.numbers)))
+
+
+def _rows(cam: Cam, numbers: Numbers) -> Iterator[tuple[str, str]]:
+    yield _("curvature law"), _law(cam, numbers)
+    if cam.curvature.symmetric:
+        yield _("symmetry"), _("the same on both sides of $phi = 0$")
+    yield _("radius at the start"), numbers.measured(cam.start.radius, "m")
+    yield _("pressure angle at the start"), numbers.measured(cam.start.pressure_angle, "rad")
+    first, last = (numbers.measured(one, "rad") for one in (cam.range.start, cam.range.stop))
+    yield _("range"), _("{first} to {last}").format(first=first, last=last)
+    if cam.roller is not None:
+        yield _("radius of the roller"), numbers.measured(cam.roller.radius, "m")
+    if cam.mover is not None:
+        yield _("legs of the wheel"), str(cam.mover.legs)
+        yield _("post of a shoe"), numbers.measured(cam.mover.post, "m")
+    if cam.return_arc is not None:
+        kinds = {"designed": _("designed, without a kink"), "mirrored": _("mirrored")}
+        yield _("return arc"), kinds[cam.return_arc.kind]
+    yield from _contact(cam, numbers)
+
+
+def _law(cam: Cam, numbers: Numbers) -> str:
+    """The law as mathematics with its numbers, a formula of the user's own as it is written."""
+    given = cam.curvature
+    k0 = "" if given.k0 is None else f"$k_0$ = {numbers.measured(given.k0, '1/m')}"
+    if given.law == "constant":
+        return f"$K = k_0$, {k0}"
+    if given.law == "exponential":
+        return f"$K = k_0 e^(k_1 phi)$, {k0}, $k_1$ = {numbers.measured(given.k1 or 0.0, '1/rad')}"
+    if given.law == "linear":
+        return f"$K = k_0 + k_1 phi$, {k0}, $k_1$ = {numbers.measured(given.k1 or 0.0, '1/m/rad')}"
+    if given.law == "spline":
+        return _("spline through {count} points").format(count=len(given.points or ()))
+    return shown(f"K = {given.formula}, 1/m")
+
+
+def _contact(cam: Cam, numbers: Numbers) -> Iterator[tuple[str, str]]:
+    contact = cam.contact
+    if contact is None:
+        return
+    yield _("force along the follower"), numbers.measured(contact.force, "N")
+    yield _("length of the line of contact"), numbers.measured(contact.width, "m")
+    materials = ((_("material of the cam"), contact.cam), (_("material of the roller"), contact.roller))
+    for label, material in materials:
+        if material is not None:
+            modulus = numbers.measured(material.elasticity * 1e-9, "GPa")
+            yield label, f"$E$ = {modulus}, $nu$ = {numbers.plain(material.poisson)}"
+    if contact.admissible is not None:
+        yield _("admissible contact stress"), numbers.measured(contact.admissible * 1e-6, "MPa")
+
 
 ROUNDED = float(np.finfo(float).eps) * (1 << 16)
 """What rounding may leave of sums that are to vanish: series of some twenty terms, quotients near a stall."""
@@ -202,3 +320,56 @@ def _proof(study: ReportStudy) -> tuple[Check, ...]:
         measured(_("The arc of the shoe is as long as the ground travelled, to {share} of it."),
                  told["walking_arc_difference"], told["walking_footprint"], ROUNDED),
     )  # fmt: skip
+
+
+# The chapters on the contact of a cam and its roller, and on the design that was chosen.
+
+
+def cam_contact_chapter(study: ReportStudy) -> Chapter | None:
+    """Hertzian stress between roller and cam."""
+    part = part_of(study, "contact")
+    if part is None:
+        return None
+    text = _(
+        "Roller and cam touch along a line of the length $b$; the force $P$ along the follower makes the normal force"
+        " $P \\/ cos gamma$. With the curvature $K$ of the path"
+    )
+    lines = (
+        ("w", "frac(P, b cos gamma)"),
+        ("kappa", "1/r + 1/R", "frac(1, r (1 - r K))"),
+        ("1/E^*", "frac(1 - nu_1^2, E_1) + frac(1 - nu_2^2, E_2)"),
+        ("sigma", "sqrt(frac(w kappa E^*, pi))"),
+        ("a", "sqrt(frac(4 w, pi kappa E^*))"),
+    )
+    cam, data = cam_of(study), part.datasets["cam-contact"]
+    if cam.contact is not None and cam.contact.outer:
+        lines = (lines[0], ("kappa", "1/r - 1/R", "frac(1, r (1 + r K))"), *lines[2:])
+    columns = [
+        ("cam_curvature_radius", "R"), ("contact_half_width", "a"), ("contact_stress", "sigma"),
+        ("contact_shear", "tau"),
+    ]  # fmt: skip
+    table = course(study, data, columns, _("The contact over the working arc"))
+    sections = sections_of(
+        ("", (Paragraph(text), Formula(lines), *told_part(study, part))),
+        (_("Over the working arc"), (table,)),
+        (_("Figures"), (picture(contact_figure(cam, data), _("Contact stress over the working arc")),)),
+    )
+    return Chapter("contact", _("Contact of roller and cam"), sections)
+
+
+def cam_choice_chapter(study: ReportStudy) -> Chapter | None:
+    """The parameters that make one measure least while others keep their bounds."""
+    part = part_of(study, "choice")
+    if part is None:
+        return None
+    text = _(
+        "The numbers named below are chosen so that one measure is least while the others keep their bounds; the rest"
+        " of this document is about the description as it is given, not about the choice."
+    )
+    figures = choice_figures(part.objects["choice"])
+    captions = {"cam-choice": _("What a bound costs: the best values over the bound that is moved")}
+    drawn = tuple(
+        picture(figure, captions.get(name, _("The chosen cam"))) for name, figure in figures.items()
+    )
+    sections = sections_of(("", (Paragraph(text), *told_part(study, part))), (_("Figures"), drawn))
+    return Chapter("choice", _("Chosen parameters"), sections)

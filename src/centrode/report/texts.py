@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from centrode.render.document.blocks import Check, Table
 from centrode.render.document.numbers import NOTHING, Numbers, spelled_number
@@ -47,3 +48,31 @@ def measured(text: str, off: float, size: float, allowed: float) -> Check:
 def share_text(share: float) -> str:
     """A small share as a check tells it."""
     return spelled_number(f"{share:.1e}") if share else "0"
+
+
+# Text with mathematics between dollar signs, taken apart.
+
+PART = re.compile(r"\$((?:[^$\\]|\\.)*)\$|((?:[^$\\]|\\.)+|.)", re.DOTALL)
+"""Mathematics, which keeps its backslashes, or text; a dollar sign or backslash that has no partner is text."""
+ESCAPED = re.compile(r"\\([\\$])")
+
+
+@dataclass(frozen=True)
+class Part:
+    """A stretch of text, or of mathematics."""
+
+    text: str
+    mathematics: bool = False
+
+
+def parts_of(marked: str) -> list[Part]:
+    """The parts of a text in their order; neighbours of one kind are one part."""
+    found: list[Part] = []
+    for formula, plain in PART.findall(marked):
+        if formula:
+            found.append(Part(formula, mathematics=True))
+        elif found and not found[-1].mathematics:
+            found[-1] = Part(found[-1].text + ESCAPED.sub(r"\1", plain))
+        else:
+            found.append(Part(ESCAPED.sub(r"\1", plain)))
+    return [part for part in found if part.text]

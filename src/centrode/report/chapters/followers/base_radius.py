@@ -15,9 +15,9 @@ from centrode.locale import _
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Table, shown
 from centrode.render.document.numbers import NOTHING
 from centrode.render.document.rows import small
+from centrode.report.chapters.followers.formulas import Spelled
 from centrode.report.chapters.followers.parts import body_of, motion_of, sections_of
-from centrode.report.chapters.followers.profile_checks import closed_forms
-from centrode.report.chapters.followers.spelled import Spelled
+from centrode.report.chapters.followers.profile import closed_forms
 
 if TYPE_CHECKING:
     from centrode.cams.followers.base_circle import Least

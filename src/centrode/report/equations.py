@@ -7,8 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from centrode.equations.spelling import SymbolFormula, spell_formula
 from centrode.equations.symbols import Letter, Parts, SumTerm, Wave
+from centrode.locale import _
+from centrode.present.equations import page
 from centrode.present.equations.typst import LONG, TypstSpelling, in_degrees, unbracketed
-from centrode.render.document.numbers import Numbers
+from centrode.render.document.blocks import Block, Formula, Paragraph, Section, System, Table, shown
+from centrode.render.document.numbers import Numbers, respelled
+from centrode.render.document.rows import degrees
 
 MOST_TERMS, MOST_NUMBERS = 6, 26
 """Terms and numbers of the longest formula that is written with its numbers: beyond them nobody follows."""
@@ -100,3 +104,36 @@ def cleaned(values: Mapping[Letter, float], rates: Iterable[Letter]) -> dict[Let
         if abs(values[letter]) <= NOTHING * max(sizes, default=0.0):
             found[letter] = 0.0
     return found
+
+
+# Equations spelled for a page as blocks of a report: the relations and systems that `centrode equations`
+# prints.
+
+
+def section_of(section: page.Section) -> Section:
+    """A section of the equations' page as one of a report."""
+    return Section(section.heading, blocks_of(section.entries))
+
+
+def blocks_of(entries: Iterable[page.Entry]) -> tuple[Block, ...]:
+    """Relations that follow each other stand below each other."""
+    found: list[Block] = []
+    lines: list[tuple[str, ...]] = []
+    for entry in entries:
+        if isinstance(entry, page.Relation):
+            lines.append(entry.parts)
+            continue
+        if lines:
+            found.append(Formula(tuple(lines)))
+            lines = []
+        found.append(_block(entry))
+    return (*found, Formula(tuple(lines))) if lines else tuple(found)
+
+
+def _block(entry: page.System | page.Symbols | page.Note) -> Block:
+    if isinstance(entry, page.System):
+        return System(entry.matrix, entry.unknowns, entry.right)
+    if isinstance(entry, page.Note):
+        return Paragraph(entry.text)
+    rows = tuple((f"${name}$", respelled(degrees(value)), shown(words)) for name, value, words in entry.rows)
+    return Table((_("symbol"), _("value"), _("meaning")), rows, "", (False, True, False))

@@ -1,4 +1,4 @@
-"""The motion as figures: the mechanism, the paths of its points, curves of everything that moves."""
+"""The motion to be played."""
 
 from __future__ import annotations
 
@@ -6,8 +6,19 @@ from centrode.locale import _, mark
 from centrode.present.figures import motion_figures
 from centrode.render.document.blocks import Chapter, Section
 from centrode.render.document.figures import picture
-from centrode.report.moments import moments_of
-from centrode.report.study import ReportStudy
+from centrode.report.player_linkages import moving_of
+from centrode.report.study import ReportStudy, moments_of
+
+
+def motion_chapter(study: ReportStudy) -> Chapter | None:
+    """The mechanism in motion, which a page plays and a PDF shows in its initial position."""
+    if study.is_cam:
+        return None
+    moving = study.once("moving", lambda: moving_of(study.mechanism, study.motion))
+    return Chapter("motion", _("Motion"), (Section("", (moving,)),))
+
+
+# The motion as figures: the mechanism, the paths of its points, curves of everything that moves.
 
 CAPTIONS = {
     "mechanism": mark("The mechanism"),

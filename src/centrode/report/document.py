@@ -12,8 +12,7 @@ from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import Chapter, Report
 from centrode.report.chapters import CHAPTERS, Kind
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
+from centrode.report.study import ReportOptions, ReportStudy, settled
 from centrode.version import __version__
 
 Said: TypeAlias = Callable[[str, int, int], None]

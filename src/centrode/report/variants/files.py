@@ -13,13 +13,11 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.settings import DIGITS
 from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
-from centrode.report.making import report
-from centrode.report.options import ReportOptions, settled
-from centrode.report.study import ReportStudy
-from centrode.report.variants.answers import Answers, answers_of
+from centrode.report.document import report
+from centrode.report.files import FORMATS, check_formats, document, write_report
+from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.variants.answer_sheet import Answers, answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, write_variants
-from centrode.report.variants.sheet import answer_sheet
-from centrode.report.writing import FORMATS, check_formats, document, write_report
 from centrode.study.variant_results import spoken_variants
 from centrode.study.variant_tables import Table, read_variants
 

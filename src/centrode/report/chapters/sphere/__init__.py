@@ -1,1 +1,0 @@
-"""Chapters of linkages on the sphere."""
