@@ -101,7 +101,7 @@ def _convergence(axes: Axes) -> None:
     axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=PALETTE[0], linewidth=1.0)
     axes.plot([0.0, 90.0], [0.0, 0.0], color=INK, linewidth=2.4, solid_capstyle="butt")
     axes.plot([x, x], [y, -y], "x", color=PALETTE[1], markersize=7, markeredgewidth=2)
-    stall = math.degrees(float(ct.path_of(ct.varied(cam, {"range.to": 2.3})).stall or math.nan))
+    stall = math.degrees(float(ct.path_of(ct.vary_cam(cam, {"range.to": 2.3})).stall or math.nan))
     axes.plot([stall], [0.0], "D", color=PALETTE[1], markersize=4)
     axes.annotate("cos γ = 0", (x, y), (x + 8, y + 4), color=PALETTE[1])
     axes.annotate("stall", (stall, 0.0), (stall - 9, 7), color=PALETTE[1])

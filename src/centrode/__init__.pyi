@@ -20,7 +20,7 @@ from .model.schema import mechanism_schema as mechanism_schema
 # The description of a cam
 from .model.cam import Cam as Cam
 from .model.follower_cam import PlateCam as PlateCam
-from .model.cam import varied as varied
+from .model.cam import vary_cam as vary_cam
 from .model.cam_files import read_cam as read_cam
 from .model.cam_files import parse_cam as parse_cam
 from .model.cam_files import cam_text as cam_text

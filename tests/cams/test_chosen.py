@@ -24,7 +24,7 @@ from centrode.cams.parameter_choice.search import (
 from centrode.cams.path_series import path_of
 from centrode.cams.return_arc import design_return, working_arc
 from centrode.cams.walking_wheel import mover
-from centrode.model.cam import Cam, varied
+from centrode.model.cam import Cam, vary_cam
 
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]
 
@@ -207,7 +207,7 @@ def test_nothing_admissible_is_told() -> None:
     ends = np.array(list(cam.choose.parameters.values()))
     for share in rng.random((40, 3)):
         values = (ends[:, 0] + share * (ends[:, 1] - ends[:, 0])).tolist()
-        near = varied(cam, dict(zip(cam.choose.parameters, values, strict=True)))
+        near = vary_cam(cam, dict(zip(cam.choose.parameters, values, strict=True)))
         assert excess_of(measures_of(near, 61), bounds_of(cam)) >= worst * (1 - 1e-6)
 
 

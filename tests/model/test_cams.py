@@ -117,13 +117,13 @@ def test_laws_have_the_keys_they_need(tmp_path: Path) -> None:
 
 def test_numbers_are_changed_by_their_path() -> None:
     cam = parse_cam(FULL)
-    other = ct.varied(cam, {"curvature.k0": 11.0, "roller.radius": 0.009})
+    other = ct.vary_cam(cam, {"curvature.k0": 11.0, "roller.radius": 0.009})
     assert (other.curvature.k0, cam.curvature.k0) == (11.0, 10.0)
     assert other.roller is not None and other.roller.radius == 0.009
     with pytest.raises(InputError, match="the cam has no"):
-        ct.varied(cam, {"curve.k0": 1.0})
+        ct.vary_cam(cam, {"curve.k0": 1.0})
     with pytest.raises(InputError, match="must be positive"):
-        ct.varied(cam, {"curvature.k0": -1.0})
+        ct.vary_cam(cam, {"curvature.k0": -1.0})
 
 
 WRONG = [

@@ -301,9 +301,9 @@ def test_nothing_that_moves_is_refused() -> None:
 
 def test_other_numbers_may_be_put_in() -> None:
     cam = parse_cam(FULL)
-    other = ct.varied(cam, {"cam.base_radius": 0.05, "follower.offset": 0.0})
+    other = ct.vary_cam(cam, {"cam.base_radius": 0.05, "follower.offset": 0.0})
     assert isinstance(other, ct.PlateCam)
     assert (other.body.base_radius, other.follower.offset) == (0.05, 0.0)
-    assert ct.varied(cam, {}) == cam
+    assert ct.vary_cam(cam, {}) == cam
     with pytest.raises(InputError, match="the cam has no"):
-        ct.varied(cam, {"curvature.k0": 1.0})
+        ct.vary_cam(cam, {"curvature.k0": 1.0})

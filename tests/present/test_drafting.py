@@ -16,7 +16,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
 import centrode as ct
-from centrode.present.drafting.board import Cover, Drawing, Ring, Stroke, Words, visible
+from centrode.present.drafting.board import BoardWords, Cover, Drawing, Ring, Stroke, visible
 from centrode.present.drafting.svg import MARGIN
 from centrode.present.drawing import NAME_POINTS
 from centrode.present.linkage_scene import scene_of
@@ -237,7 +237,7 @@ CAPITALS = 0.729
     "WWW MMM",
 ])  # fmt: skip
 def test_the_sheet_has_room_for_its_words(text: str) -> None:
-    low, high = Drawing(words=[Words("title", text, (0.0, 0.0), 1.0, left=True)]).box()
+    low, high = Drawing(words=[BoardWords("title", text, (0.0, 0.0), 1.0, left=True)]).box()
     set_width = text_to_path.get_text_width_height_descent(
         text, FontProperties(family="DejaVu Sans", size=1.0 / CAPITALS), False
     )[0]

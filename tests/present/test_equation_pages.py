@@ -8,8 +8,8 @@ import matplotlib.mathtext
 import pytest
 
 import centrode as ct
-from centrode.present.equations.latex import LatexSpelling, escaped
-from centrode.present.equations.page import LONGEST, Relation, System, sections
+from centrode.present.equations.latex import LatexSpelling, escape
+from centrode.present.equations.page import LONGEST, PageSystem, Relation, sections
 from centrode.present.equations.text import split_at_signs
 
 WIDTH = 110
@@ -32,7 +32,7 @@ def test_every_formula_is_mathematics_to_matplotlib(name: str) -> None:
             texts: list[str] = []
             if isinstance(entry, Relation):
                 texts = list(entry.parts)
-            if isinstance(entry, System):
+            if isinstance(entry, PageSystem):
                 texts = [*entry.unknowns, *entry.right, *(x for row in entry.matrix for x in row)]
             for text in texts:
                 # what matplotlib spells otherwise
@@ -91,7 +91,7 @@ def test_units_of_the_description_are_shown() -> None:
 
 
 def test_latex_shows_names_as_they_are() -> None:
-    assert escaped("a_b & 5 % \\ ~") == r"a\_b \& 5 \% \char92{} \char126{}"
+    assert escape("a_b & 5 % \\ ~") == r"a\_b \& 5 \% \char92{} \char126{}"
 
 
 def test_velocities_are_told_in_rates_and_put_in() -> None:

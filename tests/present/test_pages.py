@@ -16,7 +16,7 @@ from matplotlib.text import Text
 import centrode as ct
 from boxes import outside, overlapping
 from centrode.present.diagram_drawing import CORNER, SIZE, symbol, typeset
-from centrode.present.page import INCH, View, crossed, new_page
+from centrode.present.page import INCH, PageView, count_crossings, new_page
 from centrode.present.style import house_style
 from centrode.render.vector_diagrams import SHORT, TOGETHER
 
@@ -116,7 +116,7 @@ def test_pages_are_the_same_bytes_twice(tmp_path: Path) -> None:
 
 
 def test_a_view_is_true_to_scale() -> None:
-    view = View.about(CORNER, SIZE, np.array([[0.0, 0.0], [2.0, 1.0]]), 0.02)
+    view = PageView.about(CORNER, SIZE, np.array([[0.0, 0.0], [2.0, 1.0]]), 0.02)
     assert np.hypot(*(view.mm([1.0, 0.0]) - view.mm([0.0, 0.0]))) == pytest.approx(50)
     assert view.mm([1.0, 0.5]) == pytest.approx(CORNER + SIZE / 2)
 
@@ -125,8 +125,8 @@ def test_segments_through_a_box() -> None:
     low, high = np.array([0.0, 0.0]), np.array([1.0, 1.0])
     through = [(np.array([-1.0, 0.5]), np.array([2.0, 0.5])), (np.array([0.5, 0.5]), np.array([0.6, 9.0]))]
     beside = [(np.array([-1.0, 1.5]), np.array([2.0, 1.5])), (np.array([2.0, -1.0]), np.array([2.0, 9.0]))]
-    assert crossed(low, high, [*through, *beside]) == 2
-    assert crossed(low, high, []) == 0
+    assert count_crossings(low, high, [*through, *beside]) == 2
+    assert count_crossings(low, high, []) == 0
 
 
 def test_names_stand_beside_what_they_name() -> None:

@@ -6,17 +6,17 @@ import numpy as np
 
 from centrode.render.document.blocks import (
     Block,
-    Chapter,
-    Check,
-    Formula,
-    Items,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ItemsBlock,
     Moving,
-    Paragraph,
+    ParagraphBlock,
     Picture,
     Report,
-    Section,
-    System,
-    Table,
+    SectionBlocks,
+    SystemBlock,
+    TableBlock,
     shown,
 )
 
@@ -50,23 +50,25 @@ def blocks(text: str = HOSTILE) -> tuple[Block, ...]:
     told = shown(text)
     matrix = tuple(tuple(f"l_({i}) cos (phi_({i}) - phi_({j}))" for j in range(9)) for i in range(9))
     return (
-        Paragraph(f"{told} $x^(2)$ {told}"),
-        Items((told, "$a + b$ " + told), numbered=True),
-        Items((told,)),
-        Formula((("x_(1)", "1", "2"), (f'x_("{name(text)}")', long_sum(9)), (long_sum(8), "0"))),
-        Formula((("epsilon", f"-frac(1, Delta) ({long_sum(12)})"),)),
-        Formula((("y", " ".join(["frac(a b c d e f g h i j k l m n o, c)"] * 9)),)),
-        System((("a", "0"), ("0", "b + c")), ("x", "y"), ("1", "-d")),
-        System(matrix, tuple(f"omega_({i})" for i in range(9)), ("0",) * 9),
-        Table(("name", "$x$, m"), tuple((told, f"{k}.5") for k in range(3)), told, (False, True)),
-        Table(("", ""), ()),
-        Table(tuple(f"$x_({k})$, m" for k in range(30)), (("123.4567",) * 30,) * 40, "Wide", (True,) * 30),
-        Table(("words", "more"), (("word " * 60, "x" * 30),), "Long"),
+        ParagraphBlock(f"{told} $x^(2)$ {told}"),
+        ItemsBlock((told, "$a + b$ " + told), numbered=True),
+        ItemsBlock((told,)),
+        FormulaBlock((("x_(1)", "1", "2"), (f'x_("{name(text)}")', long_sum(9)), (long_sum(8), "0"))),
+        FormulaBlock((("epsilon", f"-frac(1, Delta) ({long_sum(12)})"),)),
+        FormulaBlock((("y", " ".join(["frac(a b c d e f g h i j k l m n o, c)"] * 9)),)),
+        SystemBlock((("a", "0"), ("0", "b + c")), ("x", "y"), ("1", "-d")),
+        SystemBlock(matrix, tuple(f"omega_({i})" for i in range(9)), ("0",) * 9),
+        TableBlock(("name", "$x$, m"), tuple((told, f"{k}.5") for k in range(3)), told, (False, True)),
+        TableBlock(("", ""), ()),
+        TableBlock(
+            tuple(f"$x_({k})$, m" for k in range(30)), (("123.4567",) * 30,) * 40, "Wide", (True,) * 30
+        ),
+        TableBlock(("words", "more"), (("word " * 60, "x" * 30),), "Long"),
         Picture(svg(2000, 300), told, 27.0),
         Picture(svg(300, 2000), "", 4.0),
         Picture(svg(595.3, 419.5), "To scale", 8.268, to_scale=True),
-        Check(told, holds=True),
-        Check("$10^(-15)$ off", holds=False),
+        CheckBlock(told, holds=True),
+        CheckBlock("$10^(-15)$ off", holds=False),
         moving(),
     )
 
@@ -82,7 +84,9 @@ def report(text: str = HOSTILE, language: str = "en") -> Report:
         text,
         language,
         (
-            Chapter("one", text, (Section("", blocks(text)), Section(text, (Paragraph("end"),)))),
-            Chapter("two", "Two", missing=text),
+            ChapterBlocks(
+                "one", text, (SectionBlocks("", blocks(text)), SectionBlocks(text, (ParagraphBlock("end"),)))
+            ),
+            ChapterBlocks("two", "Two", missing=text),
         ),
     )

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import centrode as ct
-from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Table
+from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBlock, Moving, TableBlock
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters import curvature_cams as cams
 from centrode.report.chapters.curvature_cams import part_of
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 
 PRINTED = Path(__file__).parents[1] / "reference" / "cam-curvature-table.csv"
 CAM = ("data", "motion", "path", "routes", "profile", "walking", "contact")
@@ -21,10 +21,10 @@ CAM = ("data", "motion", "path", "routes", "profile", "walking", "contact")
 
 def study_of(name: str, **wishes: object) -> ReportStudy:
     description = ct.load_cam(name)
-    return ReportStudy(description, settled(description, ReportOptions(**wishes), CHAPTERS))  # type: ignore[arg-type]
+    return ReportStudy(description, settle_options(description, ReportOptions(**wishes), CHAPTERS))  # type: ignore[arg-type]
 
 
-def blocks_of(chapter: Chapter | None, kind: type) -> list:
+def blocks_of(chapter: ChapterBlocks | None, kind: type) -> list:
     assert chapter is not None
     return [block for section in chapter.sections for block in section.blocks if isinstance(block, kind)]
 
@@ -39,7 +39,7 @@ def test_the_table_of_routes_is_the_printed_one() -> None:
     with PRINTED.open(encoding="utf-8") as file:
         printed = {float(row["phi_deg"]): row for row in csv.DictReader(file)}
     study = study_of("cam-from-curvature")
-    table = blocks_of(CHAPTERS["routes"].make(study), Table)[-1]
+    table = blocks_of(CHAPTERS["routes"].make(study), TableBlock)[-1]
     shown = {float(row[0]): row for row in table.rows if float(row[0]) in printed}
     assert len(shown) >= 5
     for angle, row in shown.items():
@@ -50,10 +50,10 @@ def test_the_table_of_routes_is_the_printed_one() -> None:
 def test_every_chapter_is_there_and_its_checks_hold(wheel: ReportStudy) -> None:
     made = {key: CHAPTERS[key].make(wheel) for key in CAM}
     assert all(chapter is not None and not chapter.missing for chapter in made.values())
-    checks = [one for key in CAM for one in blocks_of(made[key], Check)]
+    checks = [one for key in CAM for one in blocks_of(made[key], CheckBlock)]
     assert len(checks) >= 6 and all(one.holds for one in checks)
     assert len(blocks_of(made["motion"], Moving)) == 1
-    assert all(blocks_of(made[key], Formula) for key in CAM[2:])
+    assert all(blocks_of(made[key], FormulaBlock) for key in CAM[2:])
 
 
 def test_chapters_of_linkages_are_none_of_cams(wheel: ReportStudy) -> None:
@@ -68,18 +68,18 @@ def test_a_wrong_path_is_found(monkeypatch: pytest.MonkeyPatch, wheel: ReportStu
     data["pressure_sine"] = data["pressure_sine"] * (1.0 + 1e-9)
     wrong = replace(part, datasets={"cam-path": data})
     monkeypatch.setattr(cams, "part_of", lambda study, name: wrong)
-    assert [one.holds for one in blocks_of(cams.cam_path_chapter(wheel), Check)] == [False]
+    assert [one.holds for one in blocks_of(cams.cam_path_chapter(wheel), CheckBlock)] == [False]
 
 
 def test_a_cam_that_stalls_says_so() -> None:
     cam = ct.load_cam("cam-from-curvature")
     longer = cam.model_copy(update={"range": cam.range.model_copy(update={"stop": 3.0})})
-    study = ReportStudy(longer, settled(longer, ReportOptions(), CHAPTERS))
-    failed = [one for one in blocks_of(CHAPTERS["path"].make(study), Check) if not one.holds]
+    study = ReportStudy(longer, settle_options(longer, ReportOptions(), CHAPTERS))
+    failed = [one for one in blocks_of(CHAPTERS["path"].make(study), CheckBlock) if not one.holds]
     assert len(failed) == 1 and "stalls" in failed[0].text
 
 
 def test_tables_stand_at_the_instants_that_are_asked_for() -> None:
     study = study_of("cam-from-curvature", instants=(0.0, 0.5, 1.0))
-    table = blocks_of(CHAPTERS["routes"].make(study), Table)[-1]
+    table = blocks_of(CHAPTERS["routes"].make(study), TableBlock)[-1]
     assert len(table.rows) == 3

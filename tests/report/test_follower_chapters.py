@@ -15,13 +15,22 @@ from centrode.cams.followers.curve_formulas import CURVES, PEAKS, shares_of
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.laws import CURVES as LAWS
 from centrode.laws import LawSegment, SegmentedLaw
-from centrode.render.document.blocks import Block, Chapter, Check, Formula, Moving, Outline, Paragraph, Table
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    Moving,
+    Outline,
+    ParagraphBlock,
+    TableBlock,
+)
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.followers import forces as followers_forces
 from centrode.report.chapters.followers import profile
 from centrode.report.chapters.followers.formulas import Spelled, Textbook
 from centrode.report.chapters.followers.parts import body_of
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from report.formula_values import value_of
 
 EPS = float(np.finfo(float).eps)
@@ -68,10 +77,10 @@ def described(follower: str = "roller", turn: str = "counter-clockwise", more: s
 
 def study_of(cam: object, **wishes: object) -> ReportStudy:
     options = ReportOptions(**wishes)  # type: ignore[arg-type]
-    return ReportStudy(cam, settled(cam, options, CHAPTERS))  # type: ignore[arg-type]
+    return ReportStudy(cam, settle_options(cam, options, CHAPTERS))  # type: ignore[arg-type]
 
 
-def blocks_of(chapter: Chapter | None, kind: type) -> list:
+def blocks_of(chapter: ChapterBlocks | None, kind: type) -> list:
     assert chapter is not None
     return [block for section in chapter.sections for block in section.blocks if isinstance(block, kind)]
 
@@ -175,7 +184,7 @@ def test_every_follower_has_all_chapters(follower: str) -> None:
     for name in NAMES:
         chapter = CHAPTERS[name].make(study)
         assert chapter is not None and not chapter.missing, name
-        failed = [one.text for one in blocks_of(chapter, Check) if not one.holds]
+        failed = [one.text for one in blocks_of(chapter, CheckBlock) if not one.holds]
         assert failed == [], name
 
 
@@ -184,30 +193,30 @@ def test_every_follower_has_all_chapters(follower: str) -> None:
 def test_chapters_of_the_examples(name: str) -> None:
     report = ct.report(ct.load_cam(name))
     assert [chapter.name for chapter in report.chapters] == list(NAMES)
-    checks = [one for chapter in report.chapters for one in blocks_of(chapter, Check)]
+    checks = [one for chapter in report.chapters for one in blocks_of(chapter, CheckBlock)]
     assert len(checks) >= 9 and all(one.holds for one in checks)
 
 
 def test_hand_calculation_of_the_valve_cam(valve: ReportStudy) -> None:
     """3-4-5 by 8 mm over 75 deg: 15/8 h/beta, 10/sqrt 3 h/beta^2; at the nose 180 + 25 * 8 N, no acceleration."""
     beta = math.radians(75)
-    lines = [line for block in blocks_of(CHAPTERS["lift"].make(valve), Formula) for line in block.lines]
+    lines = [line for block in blocks_of(CHAPTERS["lift"].make(valve), FormulaBlock) for line in block.lines]
     told = {line[0]: line[-1] for line in lines}
     assert value_of(told['abs(s\')_"max"']) == pytest.approx(15 / 8 * 8 / beta, rel=1e-4)
     assert value_of(told["abs(s'')_\"max\""]) == pytest.approx(10 / 3**0.5 * 8 / beta**2, rel=1e-4)
     forces = [
-        line for block in blocks_of(CHAPTERS["cam-forces"].make(valve), Formula) for line in block.lines
+        line for block in blocks_of(CHAPTERS["cam-forces"].make(valve), FormulaBlock) for line in block.lines
     ]
     assert ("N", "frac(Q, b_n + mu b_t)", "frac(380, 1 + 0.08 dot.op 0)", '380 thin "N"') in forces
     least = [
-        line for block in blocks_of(CHAPTERS["base-radius"].make(valve), Formula) for line in block.lines
+        line for block in blocks_of(CHAPTERS["base-radius"].make(valve), FormulaBlock) for line in block.lines
     ]
     decided = [line for line in least if line[0] == "R" and len(line) > 2]
     assert decided[0][-1].startswith("0 ")
 
 
 def test_worked_forces_give_what_they_say(indexing: ReportStudy) -> None:
-    for block in blocks_of(CHAPTERS["cam-forces"].make(indexing), Formula):
+    for block in blocks_of(CHAPTERS["cam-forces"].make(indexing), FormulaBlock):
         for line in block.lines:
             if len(line) == 4 and not line[0].startswith("frac"):
                 scale = 1e6 if "MPa" in line[-1] else 1.0
@@ -222,15 +231,15 @@ def test_cycloidal_case_of_the_literature() -> None:
     text = 'kind = "cam"\n[follower]\ncontact = "flat"\n[bounds]\ncurvature_radius = 0.25\n'
     study = study_of(ct.parse_cam(text + moves[0] + dwell + moves[1] + dwell))
     chapter = CHAPTERS["base-radius"].make(study)
-    lines = [line for block in blocks_of(chapter, Formula) for line in block.lines]
+    lines = [line for block in blocks_of(chapter, FormulaBlock) for line in block.lines]
     assert ("r_0", '1.8926 thin "m"') in lines
     assert any(line[0] == "R" and line[-1] == '0.25 thin "m"' for line in lines)
-    assert any("is made with this radius" in one.text for one in blocks_of(chapter, Paragraph))
+    assert any("is made with this radius" in one.text for one in blocks_of(chapter, ParagraphBlock))
 
 
 def test_a_wrong_motion_is_found(indexing: ReportStudy, monkeypatch: pytest.MonkeyPatch) -> None:
-    def formulas_check() -> Check:
-        return blocks_of(CHAPTERS["lift"].make(study_of(indexing.plate)), Check)[0]
+    def formulas_check() -> CheckBlock:
+        return blocks_of(CHAPTERS["lift"].make(study_of(indexing.plate)), CheckBlock)[0]
 
     assert "The formulas, with numbers put in" in formulas_check().text and formulas_check().holds
     monkeypatch.setattr(motion_results, "shares_of", lambda curve, u: shares_of(curve, u) * (1 + 1e-11))
@@ -255,7 +264,7 @@ def test_an_undercut_profile_is_told() -> None:
         "study": cam.study.model_copy(update={"show_undercut": True}),
     })  # fmt: skip
     study = study_of(steep)
-    failed = [one.text for one in blocks_of(CHAPTERS["profile"].make(study), Check) if not one.holds]
+    failed = [one.text for one in blocks_of(CHAPTERS["profile"].make(study), CheckBlock) if not one.holds]
     assert any("is undercut at" in text for text in failed)
     refused = ct.report(steep.model_copy(update={"study": cam.study}))
     missing = {chapter.name: chapter.missing for chapter in refused.chapters if chapter.missing}
@@ -267,10 +276,13 @@ def test_a_follower_that_jumps_is_told() -> None:
     cam = ct.load_cam("valve-cam")
     fast = cam.model_copy(update={"body": cam.body.model_copy(update={"speed": 400.0})})
     chapter = CHAPTERS["cam-forces"].make(study_of(fast))
-    failed = [one.text for one in blocks_of(chapter, Check) if not one.holds]
+    failed = [one.text for one in blocks_of(chapter, CheckBlock) if not one.holds]
     assert len(failed) == 1 and "jumps off the cam" in failed[0]
     needed = [
-        line for block in blocks_of(chapter, Formula) for line in block.lines if line[0].startswith("F_(0")
+        line
+        for block in blocks_of(chapter, FormulaBlock)
+        for line in block.lines
+        if line[0].startswith("F_(0")
     ]
     assert value_of(needed[0][-1]) > 180.0
 
@@ -292,7 +304,7 @@ def test_cams_without_a_size_tell_their_motion() -> None:
     text += 'through = [["60 deg", "4 mm"], ["90 deg", "3 mm"]]\nat_start = [0, 0]\nat_end = [0, 0]\n'
     made = ct.report(ct.parse_cam(text))
     assert [chapter.name for chapter in made.chapters] == ["data", "lift", "laws"]
-    tables = blocks_of(made.chapters[1], Table)
+    tables = blocks_of(made.chapters[1], TableBlock)
     assert any(table.caption == "Coefficients of segment 2" for table in tables)
 
 
@@ -303,7 +315,9 @@ def test_wishes_of_a_cam(valve: ReportStudy) -> None:
     )
     made = ct.report(asked)
     assert [chapter.name for chapter in made.chapters] == ["lift"]
-    table = next(one for one in blocks_of(made.chapters[0], Table) if one.caption == "At the chosen angles")
+    table = next(
+        one for one in blocks_of(made.chapters[0], TableBlock) if one.caption == "At the chosen angles"
+    )
     assert [row[0] for row in table.rows] == ["30.00000", "60.00000"]
     # h (u - sin(2 pi u)/(2 pi)) at u = 1/4 and 1/2
     assert [float(row[1]) for row in table.rows] == pytest.approx([14 * (0.25 - 1 / math.tau), 7.0], abs=1e-6)
@@ -336,7 +350,7 @@ def _dense(corners: np.ndarray) -> np.ndarray:
 
 def test_a_linkage_shows_and_tells_its_cam() -> None:
     study = study_of(ct.example("cam-driven-linkage"))
-    captions = [one.caption for one in blocks_of(CHAPTERS["data"].make(study), Table)]
+    captions = [one.caption for one in blocks_of(CHAPTERS["data"].make(study), TableBlock)]
     assert "Cam Indexing cam, which moves drive lever" in captions and "Segments of a turn" in captions
     moving = blocks_of(CHAPTERS["motion"].make(study), Moving)[0]
     profile = next(one for one in moving.shapes if isinstance(one, Outline) and one.filled)

@@ -12,10 +12,17 @@ import pytest
 import centrode as ct
 from blank_canvas import blank_pictures
 from centrode.dynamics import link_motions, reduction_results
-from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
+from centrode.render.document.blocks import (
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ParagraphBlock,
+    Picture,
+    TableBlock,
+)
 from centrode.report.chapters import CHAPTERS
 from centrode.report.document import report
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from report.typst_reading import TypstReader
 
 FORCES = (
@@ -26,12 +33,12 @@ UNIT = re.compile(r' thin "[^"]*"$')
 LETTER = re.compile(r'[A-Za-z](?!\w*")')
 
 
-def made(name: str, chapters: tuple[str, ...], language: str = "en", **wishes: object) -> list[Chapter]:
+def made(name: str, chapters: tuple[str, ...], language: str = "en", **wishes: object) -> list[ChapterBlocks]:
     options = ReportOptions(chapters=chapters, **wishes)  # type: ignore[arg-type]
     return list(report(ct.example(name), options, language=language).chapters)
 
 
-def blocks_of(chapter: Chapter, kind: type) -> list:
+def blocks_of(chapter: ChapterBlocks, kind: type) -> list:
     return [block for section in chapter.sections for block in section.blocks if isinstance(block, kind)]
 
 
@@ -44,13 +51,13 @@ def value_of(part: str) -> float | None:
 
 
 @pytest.fixture(scope="module")
-def press() -> dict[str, Chapter]:
+def press() -> dict[str, ChapterBlocks]:
     with blank_pictures():
         return {chapter.name: chapter for chapter in made("six-bar-press-printed", FORCES, digits=DIGITS)}
 
 
 @pytest.fixture(scope="module")
-def corrected() -> dict[str, Chapter]:
+def corrected() -> dict[str, ChapterBlocks]:
     with blank_pictures():
         return {chapter.name: chapter for chapter in made("six-bar-press", FORCES)}
 
@@ -58,11 +65,11 @@ def corrected() -> dict[str, Chapter]:
 def study_of(name: str) -> ReportStudy:
     """A study whose chapters nobody chose."""
     description = ct.example(name)
-    return ReportStudy(description, settled(description, ReportOptions(), CHAPTERS))
+    return ReportStudy(description, settle_options(description, ReportOptions(), CHAPTERS))
 
 
-def line(chapter: Chapter, left: str, nth: int = -1) -> tuple[str, ...]:
-    found = [one for block in blocks_of(chapter, Formula) for one in block.lines if one[0] == left]
+def line(chapter: ChapterBlocks, left: str, nth: int = -1) -> tuple[str, ...]:
+    found = [one for block in blocks_of(chapter, FormulaBlock) for one in block.lines if one[0] == left]
     return found[nth]
 
 
@@ -78,16 +85,16 @@ def line(chapter: Chapter, left: str, nth: int = -1) -> tuple[str, ...]:
     ],
 )
 def test_numbers_of_the_coursework(
-    press: dict[str, Chapter], chapter: str, left: str, printed: float, half: float, nth: int
+    press: dict[str, ChapterBlocks], chapter: str, left: str, printed: float, half: float, nth: int
 ) -> None:
     value = value_of(line(press[chapter], left, nth)[-1])
     assert value is not None and abs(value - printed) <= half
 
 
-def test_numbers_put_in_give_the_numbers_told(press: dict[str, Chapter]) -> None:
+def test_numbers_put_in_give_the_numbers_told(press: dict[str, ChapterBlocks]) -> None:
     read = 0
     for name in ("reduction", "flywheel", "reactions"):
-        for block in blocks_of(press[name], Formula):
+        for block in blocks_of(press[name], FormulaBlock):
             for one in block.lines:
                 values = [value for part in one[1:] if (value := value_of(part)) is not None]
                 for first, second in pairwise(values):
@@ -98,9 +105,9 @@ def test_numbers_put_in_give_the_numbers_told(press: dict[str, Chapter]) -> None
     assert read >= 8
 
 
-def test_all_checks_hold(corrected: dict[str, Chapter]) -> None:
+def test_all_checks_hold(corrected: dict[str, ChapterBlocks]) -> None:
     engine = made("single-cylinder-engine", ("reduction", "reactions", "force-polygons"))
-    found = [one for chapter in (*corrected.values(), *engine) for one in blocks_of(chapter, Check)]
+    found = [one for chapter in (*corrected.values(), *engine) for one in blocks_of(chapter, CheckBlock)]
     assert len(found) >= 15
     assert [one.text for one in found if not one.holds] == []
 
@@ -114,7 +121,7 @@ def test_a_wrong_sum_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(reduction_results, "motions_of_links", off)
     (chapter,) = made("six-bar-press", ("reduction",))
-    assert not blocks_of(chapter, Check)[0].holds
+    assert not blocks_of(chapter, CheckBlock)[0].holds
 
 
 def test_centres_of_mass_beside_the_line_of_their_link() -> None:
@@ -123,7 +130,7 @@ def test_centres_of_mass_beside_the_line_of_their_link() -> None:
     text = ct.mechanism_text(press).replace('centre = "S4"', "centre = [0.6, 0.25]")
     options = ReportOptions(chapters=("reduction",), instants=(0.3, 2.0))
     (chapter,) = report(ct.parse_mechanism(text), options, language="en").chapters
-    checks = blocks_of(chapter, Check)
+    checks = blocks_of(chapter, CheckBlock)
     assert len(checks) == 4 and all(one.holds for one in checks)
 
 
@@ -182,7 +189,7 @@ def test_reactions_that_cannot_be_had_fail_only_where_they_are_asked_for() -> No
     name = "spherical-crank-rocker"
     told = CHAPTERS["reactions"].make(study_of(name))
     assert told is not None and not told.missing
-    assert "plain sum" in blocks_of(told, Paragraph)[0].text
+    assert "plain sum" in blocks_of(told, ParagraphBlock)[0].text
     (asked,) = made(name, ("reactions",))
     assert "plain sum" in asked.missing
 
@@ -192,7 +199,7 @@ def test_decimals_and_minus_signs_of_the_language() -> None:
     english = re.compile(r"\d\.\d")
     ascii_minus = re.compile(r"(?<![\w–])-\d")
     for chapter in made("six-bar-press", ("reduction", "flywheel"), "ru"):
-        for table in blocks_of(chapter, Table):
+        for table in blocks_of(chapter, TableBlock):
             cells = [cell for row in table.rows for cell in row if "$" not in cell]
             assert not [cell for cell in cells if english.search(cell) or ascii_minus.search(cell)]
 
@@ -205,7 +212,7 @@ def test_names_of_users_are_no_mathematics() -> None:
     cells = [
         cell
         for chapter in made_.chapters
-        for table in blocks_of(chapter, Table)
+        for table in blocks_of(chapter, TableBlock)
         for row in table.rows
         for cell in row
         if "#a" in cell
@@ -213,7 +220,7 @@ def test_names_of_users_are_no_mathematics() -> None:
     assert cells and all(r"\$x\$ #a" in cell for cell in cells)
 
 
-def test_force_polygons_fit_between_the_margins(corrected: dict[str, Chapter]) -> None:
+def test_force_polygons_fit_between_the_margins(corrected: dict[str, ChapterBlocks]) -> None:
     drawings = blocks_of(corrected["force-polygons"], Picture)
     assert len(drawings) == 4
     assert all(one.width * 25.4 <= 170.0 for one in drawings)  # so that they are not scaled down

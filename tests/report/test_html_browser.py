@@ -13,7 +13,7 @@ from fontTools.ttLib import TTFont
 
 import centrode as ct
 from centrode.locale import speaking
-from centrode.present.equations.page import Relation, System, sections
+from centrode.present.equations.page import PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document import blocks
 from centrode.report.html.page import FONT, HERE, html_page
@@ -46,7 +46,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
         tracks=(MARKUP,),
         drive_texts=(MARKUP,) * len(still.drive),
     )
-    chapter = blocks.Chapter("names", MARKUP, (blocks.Section(MARKUP, (named,)),))
+    chapter = blocks.ChapterBlocks("names", MARKUP, (blocks.SectionBlocks(MARKUP, (named,)),))
     file.write_bytes(html_page(replace(made, chapters=(*made.chapters, chapter))))
     return file
 
@@ -57,7 +57,10 @@ def motions(tmp_path_factory: pytest.TempPathFactory) -> Path:
     cam = ct.load_cam(WHEEL)
     moved = [moving_of(ct.example(name), ct.motion(ct.example(name))) for name in (PLANE, SPHERE)]
     moved.append(moving_wheel(ct.walking_wheel(cam), cam.title))
-    chapters = [blocks.Chapter(f"{k}", f"{k}", (blocks.Section("", (one,)),)) for k, one in enumerate(moved)]
+    chapters = [
+        blocks.ChapterBlocks(f"{k}", f"{k}", (blocks.SectionBlocks("", (one,)),))
+        for k, one in enumerate(moved)
+    ]
     file = tmp_path_factory.mktemp("pages") / "motions.html"
     file.write_bytes(html_page(blocks.Report("Motions", "", "en", tuple(chapters))))
     return file
@@ -70,8 +73,8 @@ def formulas(tmp_path_factory: pytest.TempPathFactory) -> Path:
         chapters = []
         for name in ("six-bar-press", "third-class-triad"):
             found = sections(ct.equations(ct.example(name)), TypstSpelling(), ())
-            parts = tuple(blocks.Section(one.heading, tuple(_blocks(one.entries))) for one in found)
-            chapters.append(blocks.Chapter(name, name, parts))
+            parts = tuple(blocks.SectionBlocks(one.heading, tuple(_blocks(one.entries))) for one in found)
+            chapters.append(blocks.ChapterBlocks(name, name, parts))
         file = tmp_path_factory.mktemp("pages") / "formulas.html"
         file.write_bytes(html_page(blocks.Report("Formulas", "", "uk", tuple(chapters))))
     return file
@@ -80,9 +83,9 @@ def formulas(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _blocks(entries: tuple[Any, ...]) -> Iterator[blocks.Block]:
     for one in entries:
         if isinstance(one, Relation):
-            yield blocks.Formula((one.parts,))
-        elif isinstance(one, System):
-            yield blocks.System(one.matrix, one.unknowns, one.right)
+            yield blocks.FormulaBlock((one.parts,))
+        elif isinstance(one, PageSystem):
+            yield blocks.SystemBlock(one.matrix, one.unknowns, one.right)
 
 
 def silent(seen: Seen, file: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
-from centrode.present.equations.page import Relation, System, sections
+from centrode.present.equations.page import PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.report.html.mathematics import formulas_of, fragments_of
 
@@ -47,7 +47,7 @@ def test_the_letters_are_those_of_the_text(name: str) -> None:
         for entry, same in zip(one.entries, other.entries, strict=True):
             if isinstance(entry, Relation) and isinstance(same, Relation):
                 pairs = list(zip(entry.parts, same.parts, strict=True))
-            elif isinstance(entry, System) and isinstance(same, System):
+            elif isinstance(entry, PageSystem) and isinstance(same, PageSystem):
                 pairs = [
                     pair
                     for row, line in zip(entry.matrix, same.matrix, strict=True)

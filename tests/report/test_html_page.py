@@ -12,7 +12,14 @@ from html.parser import HTMLParser
 
 import pytest
 
-from centrode.render.document.blocks import Chapter, Formula, Paragraph, Report, Section, Table
+from centrode.render.document.blocks import (
+    ChapterBlocks,
+    FormulaBlock,
+    ParagraphBlock,
+    Report,
+    SectionBlocks,
+    TableBlock,
+)
 from centrode.report.html.page import html_page
 
 from .made import HOSTILE, report
@@ -134,8 +141,14 @@ def _environment(seed: str) -> dict[str, str]:
 
 
 def test_chapters_and_sections_are_counted() -> None:
-    sections = (Section("", (Paragraph("a"),)), Section("First", ()), Section("Second", ()))
-    made = Report("T", "", "en", (Chapter("x", "One", sections), Chapter("y", "Two", missing="it locks")))
+    sections = (
+        SectionBlocks("", (ParagraphBlock("a"),)),
+        SectionBlocks("First", ()),
+        SectionBlocks("Second", ()),
+    )
+    made = Report(
+        "T", "", "en", (ChapterBlocks("x", "One", sections), ChapterBlocks("y", "Two", missing="it locks"))
+    )
     reader = Reader(html_page(made))
     heads = [one["id"] for tag, one in reader.elements if tag in ("h2", "h3")]
     assert heads == ["c1", "c1-1", "c1-2", "c2"]
@@ -144,17 +157,21 @@ def test_chapters_and_sections_are_counted() -> None:
 
 
 def test_columns_of_numbers_are_flush_right() -> None:
-    table = Table(("name", "$x$, m"), (("a", "1.5"), ("b", "−2.5")), "Places", (False, True))
-    reader = Reader(html_page(Report("T", "", "en", (Chapter("x", "X", (Section("", (table,)),)),))))
+    table = TableBlock(("name", "$x$, m"), (("a", "1.5"), ("b", "−2.5")), "Places", (False, True))
+    reader = Reader(
+        html_page(Report("T", "", "en", (ChapterBlocks("x", "X", (SectionBlocks("", (table,)),)),)))
+    )
     assert [one.get("class") for one in reader.all("th")] == [None, "n"]
     assert [one.get("class") for one in reader.all("td")] == [None, "n"] * 2
     assert ("b", "Table 1") in reader.texts or ("b", "Table 1.") in reader.texts
 
 
 def test_lines_are_aligned_unless_a_left_side_is_long() -> None:
-    short = Formula((("a", "b + c"), ("d", "e", "1")))
-    long = Formula(((" + ".join(f"l_({k}) cos phi_({k})" for k in range(9)), "0"), ("a", "1")))
-    reader = Reader(html_page(Report("T", "", "en", (Chapter("x", "X", (Section("", (short, long)),)),))))
+    short = FormulaBlock((("a", "b + c"), ("d", "e", "1")))
+    long = FormulaBlock(((" + ".join(f"l_({k}) cos phi_({k})" for k in range(9)), "0"), ("a", "1")))
+    reader = Reader(
+        html_page(Report("T", "", "en", (ChapterBlocks("x", "X", (SectionBlocks("", (short, long)),)),)))
+    )
     kinds = [one.get("class") for one in reader.all("div")]
     assert kinds.count("aligned") == kinds.count("running") == 1
     assert kinds.count("left") == kinds.count("right") == 2

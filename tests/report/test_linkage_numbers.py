@@ -12,10 +12,15 @@ import centrode as ct
 from centrode.equations import instants
 from centrode.equations.instants import instant_of, rates_compared
 from centrode.locale import speaking
-from centrode.present.equations.page import Relation, System, sections
+from centrode.present.equations.page import PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling
-from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph
-from centrode.render.document.blocks import System as SystemBlock
+from centrode.render.document.blocks import (
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ParagraphBlock,
+    SystemBlock,
+)
 from centrode.report.document import report
 from centrode.report.study import ReportOptions
 from report.typst_reading import TypstReader
@@ -30,19 +35,19 @@ NUMBER = re.compile(r'-?"?\d[\d.,]*"?(?: dot\.op 10\^\(-?\d+\))?')
 DIGITS = 12
 
 
-def chapter(name: str, mechanism: ct.Mechanism, **wishes: object) -> Chapter:
+def chapter(name: str, mechanism: ct.Mechanism, **wishes: object) -> ChapterBlocks:
     options = ReportOptions(chapters=(name,), digits=DIGITS, **wishes)  # type: ignore[arg-type]
     (found,) = report(mechanism, options, language="en").chapters
     assert not found.missing
     return found
 
 
-def lines_of(found: Chapter) -> list[tuple[str, ...]]:
+def lines_of(found: ChapterBlocks) -> list[tuple[str, ...]]:
     return [
         line
         for section in found.sections
         for block in section.blocks
-        if isinstance(block, Formula)
+        if isinstance(block, FormulaBlock)
         for line in block.lines
     ]
 
@@ -62,7 +67,7 @@ def test_numbers_put_in_give_the_numbers_told(name: str) -> None:
     assert sections_with_numbers
     for section in sections_with_numbers:
         for block in section.blocks:
-            for line in block.lines if isinstance(block, Formula) else ():
+            for line in block.lines if isinstance(block, FormulaBlock) else ():
                 *inside, last = line[1:]
                 value = value_of(last)
                 for part in inside:
@@ -82,7 +87,10 @@ def test_the_textbook_s_numbers() -> None:
     ).chapters[0]
     quarter = found.sections[-1]
     told = {
-        line[0]: line[-1] for block in quarter.blocks if isinstance(block, Formula) for line in block.lines
+        line[0]: line[-1]
+        for block in quarter.blocks
+        if isinstance(block, FormulaBlock)
+        for line in block.lines
     }
     # what the assignment prints for t = pi/2; its velocities have three figures
     assert told["phi_(4)"] == '3.59 thin "rad"' and told["omega_(3)"] == '-0.411 thin "rad/s"'
@@ -95,7 +103,9 @@ def test_formulas_are_those_of_the_equations() -> None:
         equations = ct.equations(mechanism)
         page = sections(equations, TypstSpelling(), equations.sliding)
         relations = [e.parts for s in page for e in s.entries if isinstance(e, Relation)]
-        systems = [(e.matrix, e.unknowns, e.right) for s in page for e in s.entries if isinstance(e, System)]
+        systems = [
+            (e.matrix, e.unknowns, e.right) for s in page for e in s.entries if isinstance(e, PageSystem)
+        ]
         own = [chapter(key, mechanism) for key in ("equations", "derivation")]
         symbolic = [
             line
@@ -103,12 +113,12 @@ def test_formulas_are_those_of_the_equations() -> None:
             for section in part.sections
             if not section.title.startswith("Numbers")
             for block in section.blocks
-            if isinstance(block, Formula)
+            if isinstance(block, FormulaBlock)
             for line in block.lines
         ]
         assert symbolic == relations
         assert len(relations) + len(systems) == sum(
-            isinstance(e, (Relation, System)) for s in sections(equations, TypstSpelling(), equations.sliding)
+            isinstance(e, (Relation, PageSystem)) for s in sections(equations, TypstSpelling(), equations.sliding)
             for e in s.entries
         )  # fmt: skip
         told = [
@@ -145,9 +155,9 @@ def test_what_is_not_reached_has_no_numbers() -> None:
     mechanism = ct.example("slider-between-cranks-locked")
     found = chapter("derivation", mechanism, instants=(1.0, 3.0))
     *_symbolic, reached, beyond = found.sections
-    assert any(isinstance(block, Formula) for block in reached.blocks)
+    assert any(isinstance(block, FormulaBlock) for block in reached.blocks)
     (only,) = beyond.blocks
-    assert isinstance(only, Paragraph) and "open" in only.text
+    assert isinstance(only, ParagraphBlock) and "open" in only.text
 
 
 def test_a_wrong_motion_is_noticed() -> None:
@@ -167,7 +177,7 @@ def test_checks_of_a_wrong_system_do_not_hold(monkeypatch: pytest.MonkeyPatch) -
 
     def checks() -> list[bool]:
         found = report(ct.example("six-bar-press"), ReportOptions(chapters=("derivation",))).chapters[0]
-        return [b.holds for s in found.sections for b in s.blocks if isinstance(b, Check)]
+        return [b.holds for s in found.sections for b in s.blocks if isinstance(b, CheckBlock)]
 
     with speaking("en"):
         assert checks() == [True]

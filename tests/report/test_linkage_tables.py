@@ -11,28 +11,28 @@ import pytest
 
 import centrode as ct
 from centrode.errors import Status
-from centrode.render.document.blocks import Chapter, Check, Paragraph, Table
+from centrode.render.document.blocks import ChapterBlocks, CheckBlock, ParagraphBlock, TableBlock
 from centrode.report.chapters.linkages.tables import ROWS, WIDE, chosen_rows, identity_checks, off_rigid
 from centrode.report.document import report
-from centrode.report.study import ReportOptions, ReportStudy, moments_of, settled
+from centrode.report.study import ReportOptions, ReportStudy, moments_of, settle_options
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 EPS = float(np.finfo(float).eps)
 
 
-def made(key: str, mechanism: ct.Mechanism, **wishes: object) -> Chapter:
+def made(key: str, mechanism: ct.Mechanism, **wishes: object) -> ChapterBlocks:
     (found,) = report(mechanism, ReportOptions(chapters=(key,), **wishes), language="en").chapters  # type: ignore[arg-type]
     assert not found.missing
     return found
 
 
-def tables(found: Chapter, section: str | None = None) -> list[Table]:
+def tables(found: ChapterBlocks, section: str | None = None) -> list[TableBlock]:
     return [
         block
         for each in found.sections
         if section is None or each.title == section
         for block in each.blocks
-        if isinstance(block, Table)
+        if isinstance(block, TableBlock)
     ]
 
 
@@ -41,7 +41,7 @@ def number(text: str) -> float:
 
 
 def study_of(mechanism: ct.Mechanism, **wishes: object) -> ReportStudy:
-    return ReportStudy(mechanism, settled(mechanism, ReportOptions(**wishes), ["tables"]))  # type: ignore[arg-type]
+    return ReportStudy(mechanism, settle_options(mechanism, ReportOptions(**wishes), ["tables"]))  # type: ignore[arg-type]
 
 
 def test_the_assignment_s_table_is_that_of_the_report() -> None:
@@ -90,7 +90,7 @@ def test_statuses_are_told_where_not_all_is_reached() -> None:
         for row in table.rows:
             blank = [cell == "—" for k, cell in enumerate(row) if k not in (0, column)]
             assert all(blank) if row[column] == "open" else not any(blank)
-    said = [b.text for s in found.sections for b in s.blocks if isinstance(b, Paragraph)]
+    said = [b.text for s in found.sections for b in s.blocks if isinstance(b, ParagraphBlock)]
     assert any("locks" in text and "1.7999 rad" in text for text in said)
 
 
@@ -114,7 +114,7 @@ def test_no_table_is_wider_than_a_page() -> None:
 def test_what_stays_the_same_is_a_sentence() -> None:
     mechanism = ct.example("six-bar-press")
     found = made("tables", mechanism)
-    said = " ".join(b.text for s in found.sections for b in s.blocks if isinstance(b, Paragraph))
+    said = " ".join(b.text for s in found.sections for b in s.blocks if isinstance(b, ParagraphBlock))
     assert "$y_(H)$ = 0.9" in said and "$phi_(5)$ = 0°" in said
     heads = {head for table in tables(found, "The whole motion") for head in table.head}
     assert not any("y_(H)" in head or "_(5)" in head for head in heads)
@@ -169,7 +169,7 @@ def test_checks_of_all_chapters_hold() -> None:
         mechanism = ct.example(name)
         keys = ("structure", "equations", "derivation", "tables")
         for chapter in report(mechanism, ReportOptions(chapters=keys), language="en").chapters:
-            checks = [b for s in chapter.sections for b in s.blocks if isinstance(b, Check)]
+            checks = [b for s in chapter.sections for b in s.blocks if isinstance(b, CheckBlock)]
             no_loop = name == "two-link-arm" and chapter.name in ("equations", "derivation")  # nothing closes
             assert checks or no_loop, (name, chapter.name)
             assert all(check.holds for check in checks), (name, [c.text for c in checks if not c.holds])

@@ -10,7 +10,15 @@ import pytest
 import centrode as ct
 from centrode.locale import speaking
 from centrode.model.mechanism import Display
-from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Paragraph, Picture, Table
+from centrode.render.document.blocks import (
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    Moving,
+    ParagraphBlock,
+    Picture,
+    TableBlock,
+)
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.rows import small, told
 from centrode.render.document.scale import drawn_to_scale, scale_of
@@ -18,7 +26,7 @@ from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.document.vectors import symbol
 from centrode.render.spelling import PlainSpelling
 from centrode.report.document import report
-from centrode.report.mathematics import checked
+from centrode.report.mathematics import check_formula
 from centrode.report.pdf_document import Source, pdf_document
 from centrode.report.study import ReportOptions
 from centrode.sheets.texts import Joined, Number, VectorNotation
@@ -30,13 +38,13 @@ LINKAGES = (
 )  # fmt: skip
 
 
-def made(key: str, mechanism: ct.Mechanism, **wishes: object) -> Chapter:
+def made(key: str, mechanism: ct.Mechanism, **wishes: object) -> ChapterBlocks:
     (found,) = report(mechanism, ReportOptions(chapters=(key,), **wishes), language="en").chapters  # type: ignore[arg-type]
     assert not found.missing
     return found
 
 
-def blocks(found: Chapter, kind: type) -> list:  # type: ignore[type-arg]
+def blocks(found: ChapterBlocks, kind: type) -> list:  # type: ignore[type-arg]
     return [block for section in found.sections for block in section.blocks if isinstance(block, kind)]
 
 
@@ -70,8 +78,8 @@ def test_numbers_of_a_relation_fill_its_holes() -> None:
 
 def test_nothing_in_a_name_is_code() -> None:
     for name in ("#panic(1)", "a$b", "B'", "точка 1", '"', "\\", "`x`", "@ref", "//", "_", "a/b"):
-        checked(symbol("v", name))
-        checked(DocumentSpelling(NUMBERS).mathematics(VectorNotation(f"v_{name} = v_A (⊥ {name})")))
+        check_formula(symbol("v", name))
+        check_formula(DocumentSpelling(NUMBERS).mathematics(VectorNotation(f"v_{name} = v_A (⊥ {name})")))
 
 
 def test_sentences_take_the_report_s_digits_and_marks() -> None:
@@ -91,21 +99,21 @@ def test_sentences_take_the_report_s_digits_and_marks() -> None:
 
 def test_what_stops_a_locking_mechanism_and_its_repair() -> None:
     found = made("rotatability", ct.example("slider-between-cranks-locked"))
-    cells = [cell for table in blocks(found, Table) for row in table.rows for cell in row]
+    cells = [cell for table in blocks(found, TableBlock) for row in table.rows for cell in row]
     assert any("$sin(phi_(3) - phi_(4)) = 0$" in cell for cell in cells)
     assert any("OA = 1.7999 rad (103.13°)" in cell for cell in cells)
     assert [section.title for section in found.sections] == ["", "Transmission angles", "Repair"]
-    assert all(check.holds for check in blocks(found, Check)) and blocks(found, Check)
+    assert all(check.holds for check in blocks(found, CheckBlock)) and blocks(found, CheckBlock)
     turning = made("rotatability", ct.example("six-bar-press"))
     assert [section.title for section in turning.sections] == ["", "Transmission angles"]
 
 
 def test_the_drawing_agrees_with_the_closed_forms_and_says_how_far() -> None:
     found = made("graphic", ct.example("six-bar-press"))
-    assert all(check.holds for check in blocks(found, Check)) and len(blocks(found, Check)) == 1
-    lines = [line for block in blocks(found, Formula) for line in block.lines]
+    assert all(check.holds for check in blocks(found, CheckBlock)) and len(blocks(found, CheckBlock)) == 1
+    lines = [line for block in blocks(found, FormulaBlock) for line in block.lines]
     assert ("arrow(v)_(H)", 'arrow(v)_(D) + arrow(v)_(italic("HD")) ( perp italic("HD") )') in lines
-    table = blocks(found, Table)[-1]
+    table = blocks(found, TableBlock)[-1]
     drawn, integrated, closed = (table.head.index(word) for word in ("drawn", "integrated", "closed form"))
     rates = [row for row in table.rows if "ω" in row[0] or "v_" in row[0]]
     assert rates and all(row[drawn] == row[integrated] == row[closed] for row in rates)
@@ -118,7 +126,7 @@ def test_an_instant_that_is_not_reached_is_said_to_be_so() -> None:
         found = made(key, mechanism, instants=(3.0,))
         section = next(section for section in found.sections if section.title.startswith("OA = 3"))
         (only,) = section.blocks
-        assert isinstance(only, Paragraph) and "open" in only.text
+        assert isinstance(only, ParagraphBlock) and "open" in only.text
 
 
 def test_a_point_of_the_frame_has_no_velocity_to_be_told() -> None:

@@ -10,10 +10,10 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError, MotionError
 from centrode.locale import choose_language, chosen_language
-from centrode.render.document.blocks import Chapter
+from centrode.render.document.blocks import ChapterBlocks
 from centrode.report import document
 from centrode.report.chapters import CHAPTERS, Kind
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 
 FOUR_BAR = """
 title = "$x$ #panic(1)"
@@ -49,7 +49,7 @@ def four_bar() -> ct.Mechanism:
 def test_a_description_has_wishes() -> None:
     mechanism = four_bar()
     assert ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
-    wishes = settled(mechanism, ReportOptions(), CHAPTERS)
+    wishes = settle_options(mechanism, ReportOptions(), CHAPTERS)
     assert wishes.chapters == ("structure", "data")
     assert wishes.instants == pytest.approx((1.0, 1.5707963267948966), rel=1e-15)
     assert (wishes.points, wishes.digits) == (("B",), 7)
@@ -57,11 +57,11 @@ def test_a_description_has_wishes() -> None:
 
 def test_the_caller_s_wishes_go_first_and_the_study_s_last() -> None:
     asked = ReportOptions(("data",), (0.5,), ("A",), 3)
-    assert settled(four_bar(), asked, CHAPTERS) == document.settled(four_bar(), asked, CHAPTERS)
-    wishes = settled(four_bar(), asked, CHAPTERS)
+    assert settle_options(four_bar(), asked, CHAPTERS) == document.settle_options(four_bar(), asked, CHAPTERS)
+    wishes = settle_options(four_bar(), asked, CHAPTERS)
     assert (wishes.chapters, wishes.instants, wishes.points, wishes.digits) == (("data",), (0.5,), ("A",), 3)
     bare = ct.parse_mechanism(FOUR_BAR.partition("[report]")[0])
-    wishes = settled(bare, ReportOptions(), CHAPTERS)
+    wishes = settle_options(bare, ReportOptions(), CHAPTERS)
     assert (wishes.chapters, wishes.instants, wishes.points, wishes.digits) == (None, (2.0,), None, 5)
 
 
@@ -122,11 +122,11 @@ def test_a_mechanism_that_does_not_assemble_has_no_report() -> None:
         ct.report(ct.parse_mechanism(FOUR_BAR.replace("length = 3.5", "length = 0.5")))
 
 
-def failing(study: ReportStudy) -> Chapter | None:
+def failing(study: ReportStudy) -> ChapterBlocks | None:
     raise MotionError("here", "it locks", "turn it back")
 
 
-def silent(study: ReportStudy) -> Chapter | None:
+def silent(study: ReportStudy) -> ChapterBlocks | None:
     return None
 
 
@@ -151,7 +151,7 @@ def test_a_chapter_that_cannot_be_made_says_why_and_the_rest_is_there(
 
 
 def test_what_is_computed_is_computed_once() -> None:
-    study = ReportStudy(four_bar(), settled(four_bar(), ReportOptions(), CHAPTERS))
+    study = ReportStudy(four_bar(), settle_options(four_bar(), ReportOptions(), CHAPTERS))
     assert study.motion is study.motion
     assert study.check is study.check
     calls: list[int] = []

@@ -7,7 +7,7 @@ import pytest
 import centrode as ct
 from centrode.present.equations.page import Relation, sections
 from centrode.present.equations.typst import TypstSpelling
-from centrode.report.mathematics import checked, pieces_of
+from centrode.report.mathematics import check_formula, pieces_of
 
 
 @pytest.mark.parametrize(
@@ -49,11 +49,11 @@ def test_nothing_is_lost_between_pieces(name: str) -> None:
 )
 def test_code_is_no_formula(code: str) -> None:
     with pytest.raises(ValueError, match="not a formula"):
-        checked(code)
+        check_formula(code)
 
 
 @pytest.mark.parametrize(
     "formula", ['x_("#a $b @c `d")', 'x_("a\\"b")', "a \\/ b", 'mat(delim: "|", a, b; c, d)']
 )
 def test_names_may_hold_anything(formula: str) -> None:
-    assert checked(formula) == formula
+    assert check_formula(formula) == formula

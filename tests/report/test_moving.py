@@ -7,7 +7,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.render.document.blocks import Moving, Outline, Ring
+from centrode.render.document.blocks import Moving, Outline, RingBlock
 from centrode.report.player_cams import STEP, moving_wheel
 from centrode.report.player_linkages import moving_of
 
@@ -114,7 +114,7 @@ def test_cylinders_have_barrel_and_rod() -> None:
 
 def test_a_guide_of_the_sphere_is_a_circle_about_its_pole() -> None:
     _mechanism, moving = of("spherical-crank-guide")
-    (ring,) = (one for one in moving.shapes if isinstance(one, Ring))
+    (ring,) = (one for one in moving.shapes if isinstance(one, RingBlock))
     assert moving.view is not None
     np.testing.assert_allclose(moving.view @ moving.view.T, np.eye(3), atol=8 * EPS)
     arcs = np.arccos(moving.places["C"] @ ring.poles[0])

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from centrode.locale import speaking
 from centrode.model.settings import Display
-from centrode.render.document.numbers import MINUS, Numbers, respelled, spelled_unit
+from centrode.render.document.numbers import MINUS, Numbers, respell, spelled_unit
 
 FINITE = st.floats(-1e9, 1e9, allow_subnormal=False)
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -107,7 +107,7 @@ def test_the_decimal_mark_is_the_language_s() -> None:
 )
 def test_numbers_inside_of_texts(text: str, told: str) -> None:
     with speaking("ru"):
-        assert respelled(text) == told
+        assert respell(text) == told
 
 
 def test_names_of_units() -> None:

@@ -10,7 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from centrode.render.document.blocks import Chapter, Formula, Paragraph, Report, Section, Table
+from centrode.render.document.blocks import (
+    ChapterBlocks,
+    FormulaBlock,
+    ParagraphBlock,
+    Report,
+    SectionBlocks,
+    TableBlock,
+)
 from centrode.report.pdf_document import Source, pdf_document
 
 from .made import HOSTILE, report
@@ -67,7 +74,7 @@ def test_heads_of_tables_are_repeated_and_columns_shared_out(document: Path) -> 
 @reads_pdf
 @pytest.mark.parametrize(("language", "word"), [("ru", "механизм"), ("uk", "механізм")])
 def test_text_can_be_searched(tmp_path: Path, language: str, word: str) -> None:
-    chapter = Chapter("a", word.capitalize(), (Section("", (Paragraph(f"Це {word}."),)),))
+    chapter = ChapterBlocks("a", word.capitalize(), (SectionBlocks("", (ParagraphBlock(f"Це {word}."),)),))
     (tmp_path / "a.pdf").write_bytes(pdf_document(Report(word, "", language, (chapter,))))
     assert word in text_of(tmp_path / "a.pdf")
     assert "Таблица" not in text_of(tmp_path / "a.pdf")
@@ -89,7 +96,8 @@ def test_the_bytes_repeat_in_another_process() -> None:
 def test_long_contents_share_a_page_with_the_first_chapter(tmp_path: Path) -> None:
     for count, page in ((3, 1), (60, 1)):
         chapters = tuple(
-            Chapter(f"c{k}", f"Chapter {k}", (Section("", (Paragraph(f"begin{k}"),)),)) for k in range(count)
+            ChapterBlocks(f"c{k}", f"Chapter {k}", (SectionBlocks("", (ParagraphBlock(f"begin{k}"),)),))
+            for k in range(count)
         )
         (tmp_path / "a.pdf").write_bytes(pdf_document(Report("T", "", "en", chapters)))
         pages = text_of(tmp_path / "a.pdf").split("\f")
@@ -102,8 +110,10 @@ def test_long_contents_share_a_page_with_the_first_chapter(tmp_path: Path) -> No
 @pytest.mark.parametrize("count", [2, 30, 37, 39, 47, 80])
 def test_contents_name_the_right_pages(tmp_path: Path, count: int, titled: bool) -> None:
     rows = tuple((f"row{k}", "1") for k in range(20))
-    section = Section("Headed" if titled else "", (Table(("a", "b"), rows),))
-    chapters = tuple(Chapter(f"c{k}", f"Chapter {k}k", (section,)) for k in range(count // (1 + titled)))
+    section = SectionBlocks("Headed" if titled else "", (TableBlock(("a", "b"), rows),))
+    chapters = tuple(
+        ChapterBlocks(f"c{k}", f"Chapter {k}k", (section,)) for k in range(count // (1 + titled))
+    )
     (tmp_path / "a.pdf").write_bytes(pdf_document(Report("T", "", "en", chapters)))
     pages = text_of(tmp_path / "a.pdf", "-layout").split("\f")
     for k in range(len(chapters)):
@@ -115,9 +125,14 @@ def test_contents_name_the_right_pages(tmp_path: Path, count: int, titled: bool)
 @pytest.mark.parametrize("lines", range(30, 50, 2))
 def test_a_table_begins_with_more_than_a_row(tmp_path: Path, lines: int) -> None:
     rows = tuple((f"row{k}", "1") for k in range(40))
-    filling = tuple(Paragraph("filling") for _ in range(lines))
-    sections = (Section("", filling), Section("Headed", (Table(("a", "b"), rows, "Captioned"),)))
-    (tmp_path / "a.pdf").write_bytes(pdf_document(Report("T", "", "en", (Chapter("a", "A", sections),))))
+    filling = tuple(ParagraphBlock("filling") for _ in range(lines))
+    sections = (
+        SectionBlocks("", filling),
+        SectionBlocks("Headed", (TableBlock(("a", "b"), rows, "Captioned"),)),
+    )
+    (tmp_path / "a.pdf").write_bytes(
+        pdf_document(Report("T", "", "en", (ChapterBlocks("a", "A", sections),)))
+    )
     _contents, *pages = text_of(tmp_path / "a.pdf").split("\f")
     (page,) = (page for page in pages if "Captioned" in page)
     assert "Headed" in page
@@ -125,8 +140,13 @@ def test_a_table_begins_with_more_than_a_row(tmp_path: Path, lines: int) -> None
 
 
 def test_what_announces_a_line_stays_with_it() -> None:
-    blocks = (Paragraph("Group by group:"), Paragraph("point A"), Formula((("x", "1"),)), Paragraph("Last."))
-    source = Source(Report("", "", "en", (Chapter("a", "A", (Section("", blocks),)),))).text
+    blocks = (
+        ParagraphBlock("Group by group:"),
+        ParagraphBlock("point A"),
+        FormulaBlock((("x", "1"),)),
+        ParagraphBlock("Last."),
+    )
+    source = Source(Report("", "", "en", (ChapterBlocks("a", "A", (SectionBlocks("", blocks),)),))).text
     kept = [line for line in source.splitlines() if "sticky: true" in line]
     assert [any(word in line for line in kept) for word in ("Group", "point A", "Last")] == [
         True,
@@ -136,7 +156,7 @@ def test_what_announces_a_line_stays_with_it() -> None:
 
 
 def test_code_in_a_formula_is_a_fault() -> None:
-    chapter = Chapter("a", "A", (Section("", (Formula((("x", '#read("style.typ")'),)),)),))
+    chapter = ChapterBlocks("a", "A", (SectionBlocks("", (FormulaBlock((("x", '#read("style.typ")'),)),)),))
     with pytest.raises(ValueError, match="not a formula"):
         Source(Report("", "", "en", (chapter,)))
 

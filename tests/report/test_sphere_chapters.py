@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.render.document.blocks import Chapter, Check, Formula, Table
+from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBlock, TableBlock
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.spherical_linkages import sphere_tables_chapter
 from centrode.report.document import report
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from report.texts import texts_of
 
 SPHERE = ("data", "words", "structure", "equations", "tables", "plots", "rotatability", "axes")
@@ -23,17 +23,21 @@ AB, BC = math.pi / 12, math.pi / 4
 
 def study_of(name: str, **wishes: object) -> ReportStudy:
     description = ct.example(name)
-    return ReportStudy(description, settled(description, ReportOptions(**wishes), CHAPTERS))  # type: ignore[arg-type]
+    return ReportStudy(description, settle_options(description, ReportOptions(**wishes), CHAPTERS))  # type: ignore[arg-type]
 
 
-def tables_of(chapter: Chapter | None) -> list[Table]:
+def tables_of(chapter: ChapterBlocks | None) -> list[TableBlock]:
     assert chapter is not None
-    return [block for section in chapter.sections for block in section.blocks if isinstance(block, Table)]
+    return [
+        block for section in chapter.sections for block in section.blocks if isinstance(block, TableBlock)
+    ]
 
 
-def checks_of(chapter: Chapter | None) -> list[Check]:
+def checks_of(chapter: ChapterBlocks | None) -> list[CheckBlock]:
     assert chapter is not None
-    return [block for section in chapter.sections for block in section.blocks if isinstance(block, Check)]
+    return [
+        block for section in chapter.sections for block in section.blocks if isinstance(block, CheckBlock)
+    ]
 
 
 def number(text: str) -> float:
@@ -76,7 +80,7 @@ def test_formulas_are_those_of_the_equations() -> None:
         line
         for section in chapter.sections
         for block in section.blocks
-        if isinstance(block, Formula)
+        if isinstance(block, FormulaBlock)
         for line in block.lines
     ]
     closure = ('cos italic("BC")', 'sin italic("AB") sin phi_(1) cos phi_(3) + cos italic("AB") sin phi_(3)')

@@ -14,8 +14,8 @@ import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.locale import speaking
-from centrode.present.equations.page import Relation, Section, System, sections
-from centrode.present.equations.typst import TypstSpelling, decimal, quoted, word
+from centrode.present.equations.page import PageSection, PageSystem, Relation, sections
+from centrode.present.equations.typst import TypstSpelling, decimal, quote, word
 
 from .typst_reading import read
 
@@ -89,12 +89,12 @@ class Noting(TypstSpelling):
         return told
 
 
-def formulas(page: Sequence[Section]) -> Iterator[str]:
+def formulas(page: Sequence[PageSection]) -> Iterator[str]:
     for section in page:
         for entry in section.entries:
             if isinstance(entry, Relation):
                 yield from entry.parts
-            elif isinstance(entry, System):
+            elif isinstance(entry, PageSystem):
                 yield from (one for row in entry.matrix for one in row)
                 yield from (*entry.unknowns, *entry.right)
 
@@ -159,8 +159,8 @@ def test_decimals(printed: str, english: str, russian: str) -> None:
 
 
 def test_what_is_quoted_ends_where_it_should() -> None:
-    assert quoted('a"b\\c') == '"a\\"b\\\\c"'
-    assert quoted("a$b") == '"a\\u{24}b"'  # mathematics stands between dollar signs
-    assert quoted("a\nb\u200e") == '"a b "'
+    assert quote('a"b\\c') == '"a\\"b\\\\c"'
+    assert quote("a$b") == '"a\\u{24}b"'  # mathematics stands between dollar signs
+    assert quote("a\nb\u200e") == '"a b "'
     assert word("x") == "x"
     assert word("12") == "12"

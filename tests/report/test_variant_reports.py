@@ -9,7 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.render.document.blocks import Paragraph, Report, Table
+from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
 from centrode.report.variants import files
 from centrode.report.variants.answer_sheet import answer_sheet
 from centrode.report.variants.files import VariantReport
@@ -89,12 +89,12 @@ def test_the_sheet_tells_every_variant() -> None:
     ]
     sheet = answer_sheet(topology, table, rows, answers, 4)
     blocks = [block for chapter in sheet.chapters for section in chapter.sections for block in section.blocks]
-    tables = [block for block in blocks if isinstance(block, Table)]
+    tables = [block for block in blocks if isinstance(block, TableBlock)]
     assert tables[0].rows == (("a", "1.000"), (r"\$b\$", "1.500"))
     assert [cells[0] for cells in tables[1].rows] == ["a", r"\$b\$", "c"]
     assert tables[2].rows == (("a", "0.5000", "1.000"), (r"\$b\$", "0.2500", "1.000"))
     assert [cells[1] for cells in tables[3].rows] == ["0", "0"]  # rounding beside the rates of its kind
-    assert any(isinstance(block, Paragraph) and "c" in block.text for block in blocks)
+    assert any(isinstance(block, ParagraphBlock) and "c" in block.text for block in blocks)
 
 
 def test_files_depend_on_formats_and_language() -> None:

@@ -15,7 +15,7 @@ import centrode as ct
 from centrode.errors import InputError
 from centrode.locale import speaking
 from centrode.report.variants import folders
-from centrode.study.variant_results import VariantRow, computed
+from centrode.study.variant_results import VariantRow, compute_variant
 from centrode.study.variant_tables import read_variants
 
 WORKED = ct.example("slider-between-cranks")
@@ -54,7 +54,7 @@ def test_all_thirty_on_the_worked_topology() -> None:
     expected = [first_limit(row) for row in rows]
     assert sum(limit is None for limit in expected) == 7
     for row, limit, variant in zip(rows, expected, read_variants(WORKED, TABLE), strict=True):
-        found = computed(WORKED, variant).row
+        found = compute_variant(WORKED, variant).row
         assert found.turns_fully == (limit is None), row
         if limit is None:
             assert (found.limit, found.status) == (None, "ok")
@@ -142,7 +142,7 @@ def test_finished_variants_are_not_computed_again(tmp_path: Path, monkeypatch: p
     def refuse(*_anything: object) -> None:
         raise AssertionError("computed again")
 
-    monkeypatch.setattr(folders, "computed", refuse)
+    monkeypatch.setattr(folders, "compute_variant", refuse)
     assert ct.write_variants(WORKED, TWO, tmp_path) == rows
     assert (stamps(tmp_path), contents(tmp_path)) == (before, all_before)
 
@@ -197,7 +197,7 @@ def test_a_fault_is_told_and_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
         def fail(*_anything: object) -> None:
             raise ArithmeticError("a slip of ours")
 
-        broken.setattr(folders, "computed", fail)
+        broken.setattr(folders, "compute_variant", fail)
         rows = ct.write_variants(WORKED, TWO, tmp_path)
     assert [row.status for row in rows] == ["fault", "fault"]
     assert rows[0].cause == "ArithmeticError: a slip of ours"

@@ -15,7 +15,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.files.locks import locked
+from centrode.files.locks import hold_lock
 from centrode.sweeps import designs
 from samples import few
 
@@ -259,7 +259,7 @@ def test_two_runs_at_once_are_refused_and_a_dead_one_is_not_feared(tmp_path: Pat
         holder.kill()
     found = ct.sweep(crank_rocker(), ct.grid(VARY), "angle", 5, store=store)
     assert found.attrs["mechanisms"] == 45
-    with locked(store / "progress" / "lock", ""), pytest.raises(ct.InputError, match="another run"):
+    with hold_lock(store / "progress" / "lock", ""), pytest.raises(ct.InputError, match="another run"):
         ct.sweep(crank_rocker(), ct.grid(VARY), "angle", 5, store=store)
 
 

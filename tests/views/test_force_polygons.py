@@ -27,7 +27,7 @@ def loaded(name: str, link: str) -> ct.Mechanism:
     return ct.parse_mechanism(ct.example_text(name) + TORQUE.format(link=link))
 
 
-def chapter_of(results: ForcePolygonResults) -> blocks.Chapter:
+def chapter_of(results: ForcePolygonResults) -> blocks.ChapterBlocks:
     numbers = Numbers(results.mechanism.display)
     return document_chapter("force-polygons", FORCE_POLYGONS.view(results), numbers)
 
@@ -63,7 +63,7 @@ def test_an_instant_without_forces_is_said_in_its_place(
     assert [found is None for found in results.polygons] == [False, True]
     assert list(ct.tables(results)) == ["polygons-1"]
     (said,) = chapter_of(results).sections[-1].blocks
-    assert isinstance(said, blocks.Paragraph)
+    assert isinstance(said, blocks.ParagraphBlock)
     assert said.text == f"The mechanism is {status} there: no finite forces keep it in equilibrium."
 
 
@@ -75,7 +75,9 @@ def test_links_of_any_name_are_called_by_it(hostile: str) -> None:
     assert f"Group 4, 5 (RRP): DH, {hostile}" in ct.summary(results)
     assert f"5 {hostile}" in ct.summary(results)
     titles = [
-        block.text for block in chapter_of(results).sections[1].blocks if isinstance(block, blocks.Paragraph)
+        block.text
+        for block in chapter_of(results).sections[1].blocks
+        if isinstance(block, blocks.ParagraphBlock)
     ]
     assert f"Group 4, 5 (RRP): DH, {hostile}." in [title.replace(r"\$", "$") for title in titles]
 
@@ -95,12 +97,12 @@ def test_a_chapter_has_every_step_and_its_drawings_to_scale() -> None:
     (found,) = results.polygons
     assert found is not None
     parts = chapter_of(results).sections[1].blocks
-    steps = [block for block in parts if isinstance(block, blocks.Items)]
+    steps = [block for block in parts if isinstance(block, blocks.ItemsBlock)]
     assert [len(items.texts) for items in steps] == [len(group.steps) for group in found.groups]
     assert all(items.numbered for items in steps)
     drawings = [block for block in parts if isinstance(block, blocks.Picture)]
     assert len(drawings) == len(found.groups) + len(found.levers)
     for group, drawing in zip(found.groups, drawings, strict=False):
         assert f"$mu_F$ = {group.polygon.scale:g} N/mm" in drawing.caption
-    checks = [block for block in parts if isinstance(block, blocks.Check)]
+    checks = [block for block in parts if isinstance(block, blocks.CheckBlock)]
     assert checks and all(check.holds for check in checks)

@@ -17,7 +17,7 @@ import pytest
 import centrode as ct
 from centrode.locale import _, choose_language
 from centrode.model.settings import Display
-from centrode.present.equations.typst import quoted
+from centrode.present.equations.typst import quote
 from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
@@ -32,7 +32,7 @@ from centrode.sheets.sheet import Column, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
 from centrode.topics.order import in_order
 from centrode.topics.registry import CENTRES, DIAGRAMS, TOPICS
-from centrode.topics.topic import Given, Lazily, Topic
+from centrode.topics.topic import Lazily, Topic, ValueOption
 
 SOURCE = Path(ct.__file__).parent
 HOSTILE = ("No 1.23456", "run 30 deg", "2.50 kg", "$x_1$", "<b>", "#a")
@@ -67,10 +67,10 @@ def lazy_functions(value: object) -> Iterator[Lazily]:
             yield from lazy_functions(getattr(value, field.name))
 
 
-def required_options(topic: Topic) -> list[Given]:
+def required_options(topic: Topic) -> list[ValueOption]:
     """Options without which a command does not begin."""
     options = () if topic.command is None else topic.command.options
-    return [option for option in options if isinstance(option, Given) and option.required]
+    return [option for option in options if isinstance(option, ValueOption) and option.required]
 
 
 def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
@@ -291,7 +291,7 @@ def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
     assert any(label.replace(r"\$", "$").endswith(f" {hostile}") for label in key)
     sheet = CENTRES.view(results)
     document = document_chapter("centres", sheet, Numbers(mechanism.display))
-    (table,) = [block for block in document.sections[1].blocks if isinstance(block, blocks.Table)]
+    (table,) = [block for block in document.sections[1].blocks if isinstance(block, blocks.TableBlock)]
     assert f"{hostile} – frame" in [row[1].replace(r"\$", "$") for row in table.rows]
 
 
@@ -313,6 +313,6 @@ def test_names_in_a_graphic_check_come_out_character_by_character(hostile: str) 
     (table,) = [
         block
         for block in chapter.sections[0].blocks
-        if isinstance(block, blocks.Table) and len(block.head) == 6
+        if isinstance(block, blocks.TableBlock) and len(block.head) == 6
     ]
-    assert any(quoted(hostile) in row[0] for row in table.rows)
+    assert any(quote(hostile) in row[0] for row in table.rows)

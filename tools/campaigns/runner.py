@@ -9,7 +9,7 @@ from typing import Any
 
 import centrode
 from centrode.cli.progress import Progress
-from centrode.files.locks import locked
+from centrode.files.locks import hold_lock
 from tools.campaigns.campaign import Campaign, Tally
 from tools.campaigns.page import page
 from tools.campaigns.record import Record
@@ -35,7 +35,7 @@ def run_campaign(
     file = folder / f"{campaign.name}-{seed}.jsonl"
     heading: dict[str, Any] = {"campaign": campaign.name, "seed": seed, "program": state_of_the_program()}
     folder.mkdir(parents=True, exist_ok=True)
-    with locked(folder / f"{campaign.name}-{seed}.lock", str(file)), Progress() as progress:
+    with hold_lock(folder / f"{campaign.name}-{seed}.lock", str(file)), Progress() as progress:
         if anew:
             file.unlink(missing_ok=True)
         record = Record.opened(file, heading)

@@ -88,7 +88,7 @@ def animate(
     force: bool,
 ) -> None:
     """Write the animation; exit code 3 if a range was asked for that is not all reached (the rest is written)."""
-    description = _ranged(ct.load_either(described), ranged)
+    description = _in_range(ct.load_either(described), ranged)
     path = out if out is not None else Path(f"{Path(described).stem}.gif")
     if path.suffix.lower() not in ENDINGS:
         raise InputError("--out", _("an animation is a .gif or a .mp4"), _("name such a file"))
@@ -127,7 +127,7 @@ def animate(
         raise MotionError(described, what.format(n=made.left_out), _("ask for a range between the limits"))
 
 
-def _ranged(
+def _in_range(
     description: ct.Mechanism | ct.Cam | ct.PlateCam, ranged: str | None
 ) -> ct.Mechanism | ct.Cam | ct.PlateCam:
     """A linkage with the range asked for by a word."""

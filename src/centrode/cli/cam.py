@@ -81,7 +81,7 @@ def cam(
                 _write(results, sheets, draft, progress, groove=groove, figures=not no_figures, dark=dark)
                 if animate:
                     _animate(results, draft, progress, dark=dark)
-                names = output.finished(draft)
+                names = output.finish_folder(draft)
     click.echo(_(description.title) or cam)
     for sheet in sheets:
         click.echo("\n" + render.sheet_text(sheet, description.display))

@@ -33,10 +33,10 @@ from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
-from centrode.cli.translation import language_option, translated, wished_language, with_language
+from centrode.cli.translation import language_option, translate_command, wished_language, with_language
 from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
-from centrode.files.inputs import guarded
+from centrode.files.inputs import guard_inputs
 from centrode.locale import _, choose_language_of_process, mark
 from centrode.topics import order
 from centrode.topics.order import in_order
@@ -95,7 +95,7 @@ def build_app() -> click.Command:
     click.version_option(ct.__version__, prog_name="centrode")(app)
     for command in COMMANDS:
         app.add_command(with_language(command))
-    return translated(app)
+    return translate_command(app)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -141,7 +141,7 @@ def _termination_as_interruption() -> Iterator[None]:
 def _run(app: click.Command, arguments: list[str]) -> object:
     """What `app.main` does, less its own idea of how a program ends."""
     try:
-        with guarded(), app.make_context("centrode", arguments) as context:
+        with guard_inputs(), app.make_context("centrode", arguments) as context:
             return app.invoke(context)
     except click.exceptions.Exit as done:
         return done.exit_code

@@ -41,7 +41,7 @@ def files_in(folder: Path, names: Sequence[str]) -> str:
     return paragraph(count.format(n=len(names), folder=folder) + ":", names)
 
 
-def finished(draft: Path) -> list[str]:
+def finish_folder(draft: Path) -> list[str]:
     """Names of the files in a draft folder, after its tables have been spelled as the command was asked to."""
     spell_tables(draft)
     return sorted(path.name for path in draft.iterdir())

@@ -73,13 +73,13 @@ def report(
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
     described = ct.load_either(description)
     folder = output.folder_of(out, description, "report")
-    kinds = _listed(formats)
+    kinds = _names_in(formats)
     _writing().check_formats(kinds)
     with about(description):
         options = ct.ReportOptions(
-            None if chapters is None else _listed(chapters),
+            None if chapters is None else _names_in(chapters),
             tuple(_options().instant(described, text, "--at") for text in instants) or None,
-            None if points is None else _listed(points),
+            None if points is None else _names_in(points),
             digits,
         )
     with output.output_folder(folder) as draft, Progress() as progress:
@@ -94,7 +94,7 @@ def report(
     _told(made, description)
 
 
-def _listed(text: str) -> tuple[str, ...]:
+def _names_in(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(",") if part.strip())
 
 

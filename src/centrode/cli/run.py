@@ -72,7 +72,7 @@ def run(
         if animate:
             with about(mechanism):
                 _animate(study, draft, progress)
-        names = output.finished(draft)
+        names = output.finish_folder(draft)
     click.echo(summary_text(study, mechanism))
     click.echo("\n" + output.files_in(folder, names))
     if study.failure is not None:

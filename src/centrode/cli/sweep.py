@@ -68,7 +68,7 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
             warnings.simplefilter(
                 "ignore", RuntimeWarning
             )  # an interruption is told in the command's own words
-            data = _computed(asked, study, None)
+            data = _compute(asked, study, None)
         if data.attrs["mechanisms"] < data["samples_ok"].size:
             raise KeyboardInterrupt  # a part of a table looks like a whole one
         draft.write_text(ct.sweep_csv(data), encoding="utf-8", newline="\n")
@@ -78,7 +78,7 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
 def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
     try:
         with _damage_told():
-            data = _computed(asked, study, target)
+            data = _compute(asked, study, target)
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
         output.tell(note.format(folder=target))
@@ -113,7 +113,7 @@ def _damage_told() -> Iterator[None]:
         yield
 
 
-def _computed(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
+def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
     with about(study), Progress() as progress:
         start, stop = (
             None if end is None else ct.range_value(asked.mechanism, end, key)

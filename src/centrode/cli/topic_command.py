@@ -28,7 +28,15 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, chosen_language, mark, speaking
-from centrode.topics.topic import Choice, Command, Flag, Given, InstantsOption, MotionRange, Option
+from centrode.topics.topic import (
+    ChoiceOption,
+    Command,
+    FlagOption,
+    InstantsOption,
+    Option,
+    RangeOptions,
+    ValueOption,
+)
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Display, Mechanism
@@ -101,23 +109,23 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
 def _of_option(option: Option) -> Iterator[click.Parameter]:
     """An option of a topic as options of its command."""
     match option:
-        case Choice(name, words, text, has_default):
+        case ChoiceOption(name, words, text, has_default):
             default = words[0] if has_default else None
-            yield click.Option([_spelled(name)], type=click.Choice(words), default=default, help=text)
-        case Given(name, metavar, text, kind, several, required):
+            yield click.Option([_option_name(name)], type=click.Choice(words), default=default, help=text)
+        case ValueOption(name, metavar, text, kind, several, required):
             yield click.Option(
-                [_spelled(name), name],
+                [_option_name(name), name],
                 type=kind,
                 metavar=metavar,
                 help=text,
                 multiple=several,
                 required=required,
             )
-        case Flag(name, text):
-            yield click.Option([_spelled(name)], is_flag=True, help=text)
+        case FlagOption(name, text):
+            yield click.Option([_option_name(name)], is_flag=True, help=text)
         case InstantsOption(text, required=required):
             yield click.Option(["--at"], multiple=True, required=required, metavar=mark("VALUE"), help=text)
-        case MotionRange():
+        case RangeOptions():
             yield from _made_by([start_option, stop_option, range_option])
         case _:
             assert_never(option)
@@ -134,7 +142,7 @@ def _made_by(decorators: list[Any]) -> list[click.Parameter]:
     return list(reversed(cast("Any", nothing).__click_params__))
 
 
-def _spelled(name: str) -> str:
+def _option_name(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
@@ -175,10 +183,10 @@ def _arguments(command: Command, mechanism: Mechanism, given: dict[str, Any]) ->
         return dict(command.arguments(given))
     arguments = {name: value for name, value in given.items() if value is not None and value != ()}
     for option in command.options:
-        if isinstance(option, Given) and option.name in arguments:
+        if isinstance(option, ValueOption) and option.name in arguments:
             value = arguments.pop(option.name)
             if option.read is not None:
-                value = option.read(mechanism, value, _spelled(option.name))
+                value = option.read(mechanism, value, _option_name(option.name))
             arguments[option.parameter or option.name] = value
     return arguments
 
@@ -229,7 +237,7 @@ def _beside_folder(
             progress.say(_("drawing {name}").format(name=animation))
             with about(name):
                 command.animation(result, draft / animation, written["dark"])
-        names = output.finished(draft)
+        names = output.finish_folder(draft)
     return result, sheet, output.files_in(folder, names)
 
 

@@ -44,7 +44,7 @@ def with_language(command: click.Command) -> click.Command:
     return speaking
 
 
-def translated(command: click.Command) -> click.Command:
+def translate_command(command: click.Command) -> click.Command:
     """A copy of the command, its subcommands and parameters with every text in the chosen language."""
     spoken = copy.copy(command)
     spoken.help, spoken.epilog = _said(command.help), _said(command.epilog)
@@ -53,7 +53,7 @@ def translated(command: click.Command) -> click.Command:
     spoken.options_metavar = _said(command.options_metavar)
     if isinstance(spoken, click.Group) and isinstance(command, click.Group):
         spoken.subcommand_metavar = _(command.subcommand_metavar)
-        spoken.commands = {name: translated(child) for name, child in command.commands.items()}
+        spoken.commands = {name: translate_command(child) for name, child in command.commands.items()}
     return spoken
 
 

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from centrode.equations.linear import Condition, Draft, Place, Unknown
+from centrode.equations.linear import Condition, Draft, Unknown, UnknownPlace
 from centrode.equations.plane_chains import Chains, shorten
 from centrode.equations.symbol_table import SymbolTable
 from centrode.equations.symbols import BEARING, LENGTH, RATIO, ZERO, Angle, Letter, Sum, SumTerm
@@ -195,8 +195,8 @@ def _project(draft: Draft, pair: int) -> None:
     line = both[0].closing
     place = draft.conditions.index(x)
     draft.conditions = [one for one in draft.conditions if one.pair != pair]
-    vector = Place(x.residual, y.residual)
-    full = Place(x.full, y.full).plus(Place(x.right, y.right), -1).across(line)
+    vector = UnknownPlace(x.residual, y.residual)
+    full = UnknownPlace(x.full, y.full).plus(UnknownPlace(x.right, y.right), -1).across(line)
     one = replace(
         x,
         name=x.name.replace("x_", "n_", 1),

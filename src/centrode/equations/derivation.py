@@ -13,8 +13,8 @@ from centrode.equations.linear import (
     GroupEquations,
     GroupSolution,
     LinearSystem,
-    Place,
     Unknown,
+    UnknownPlace,
     system_of,
 )
 from centrode.equations.spelling import SymbolFormula, formula_of
@@ -101,7 +101,7 @@ class PointVelocity:
     """
 
     point: str
-    place: Place | SpherePlace
+    place: UnknownPlace | SpherePlace
     x: SymbolFormula
     y: SymbolFormula
     z: SymbolFormula | None
@@ -126,7 +126,7 @@ class PointVelocity:
 
 def velocity_of(
     point: str,
-    place: Place | SpherePlace,
+    place: UnknownPlace | SpherePlace,
     board: SymbolTable | SphereBoard,
     given: Given,
     closed: Mapping[Letter, Sum],
@@ -135,7 +135,7 @@ def velocity_of(
     rates = [given.put(total.rate(board.moves)) for total in place]
     x, y, *more = (formula_of(total) for total in rates)
     z = more[0] if more else None
-    along = _along(point, Place(*rates), board) if isinstance(board, SymbolTable) else None
+    along = _along(point, UnknownPlace(*rates), board) if isinstance(board, SymbolTable) else None
 
     def short(formula: SymbolFormula | None) -> SymbolFormula | None:
         if formula is None or not formula.total.letters & closed.keys():
@@ -146,7 +146,7 @@ def velocity_of(
     return PointVelocity(point, place, x, y, z, along, short(x), short(y), short(z), short(along))
 
 
-def _along(point: str, rates: Place, board: SymbolTable) -> SymbolFormula | None:
+def _along(point: str, rates: UnknownPlace, board: SymbolTable) -> SymbolFormula | None:
     """The component along a guide of the frame in which a point runs."""
     heading = next(
         (board.heading(line) for line in board.guides if line.point == point and line.on == FRAME), None

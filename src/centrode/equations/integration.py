@@ -15,7 +15,7 @@ import xarray as xr
 
 from centrode.equations.chain_assembly import assemble_chains
 from centrode.equations.derivation import equations
-from centrode.equations.linear import LinearSystem, Place, Unknown, system_of
+from centrode.equations.linear import LinearSystem, Unknown, UnknownPlace, system_of
 from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import (
@@ -291,7 +291,7 @@ class CauchyForm:
     unknowns: tuple[Unknown, ...]
     systems: tuple[LinearSystem, ...]
     residuals: tuple[Sum, ...]
-    places: Mapping[str, Place]
+    places: Mapping[str, UnknownPlace]
     constants: Mapping[Letter, float]
     drives: tuple[tuple[Letter, Letter, DrivenBy], ...]
 

@@ -154,15 +154,15 @@ def _along(
 # Places in symbols: two coordinates, each a sum.
 
 
-class Place(NamedTuple):
+class UnknownPlace(NamedTuple):
     """A vector in the frame's axes."""
 
     x: Sum
     y: Sum
 
-    def plus(self, other: Place, factor: int = 1) -> Place:
+    def plus(self, other: UnknownPlace, factor: int = 1) -> UnknownPlace:
         """The vector and `factor` times the other."""
-        return Place(self.x + other.x.scale(factor), self.y + other.y.scale(factor))
+        return UnknownPlace(self.x + other.x.scale(factor), self.y + other.y.scale(factor))
 
     def along(self, angle: Angle) -> Sum:
         """Component in a direction."""
@@ -173,12 +173,12 @@ class Place(NamedTuple):
         return self.along(angle.turned(1))
 
 
-ORIGIN = Place(ZERO, ZERO)
+ORIGIN = UnknownPlace(ZERO, ZERO)
 
 
-def polar(size: Sum, angle: Angle) -> Place:
+def polar(size: Sum, angle: Angle) -> UnknownPlace:
     """A vector by its size and direction."""
-    return Place(size * Sum.wave("cos", angle), size * Sum.wave("sin", angle))
+    return UnknownPlace(size * Sum.wave("cos", angle), size * Sum.wave("sin", angle))
 
 
 # What is found while the vector chains of a mechanism are laid: unknowns and constraints, group by group.
@@ -221,7 +221,7 @@ class Condition:
     right: Sum
     pair: int = -1
     closing: Angle | None = None
-    vector: Place | None = None
+    vector: UnknownPlace | None = None
 
     @property
     def residual(self) -> Sum:
@@ -242,7 +242,7 @@ class Condition:
         x, y = self.vector
         for _time in range(times):
             x, y = x.rate(moves), y.rate(moves)
-        return Place(x, y).across(self.closing)
+        return UnknownPlace(x, y).across(self.closing)
 
 
 @dataclass

@@ -10,7 +10,7 @@ import heapq
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from centrode.equations.linear import Condition, Draft, Place, polar
+from centrode.equations.linear import Condition, Draft, UnknownPlace, polar
 from centrode.equations.symbol_table import SymbolLine, SymbolRod, SymbolTable, lines_of, rods_of
 from centrode.equations.symbols import Angle, Sum, quarters_of
 from centrode.structure.constraints import FRAME, AngleDrive, NoTurning
@@ -48,13 +48,15 @@ class Closing:
                 self.rods.remove(rod)
                 self._along_rod(rod, start, end, draft)
 
-    def meet(self, point: str, at: Place, full: Place, closing: Angle, of: str, draft: Draft) -> None:
+    def meet(
+        self, point: str, at: UnknownPlace, full: UnknownPlace, closing: Angle, of: str, draft: Draft
+    ) -> None:
         """A chain ends at a place that is known: two constraints."""
         board = self.board
         known = board.points[point]
         if point not in board.moving:
             fixed = board.numbers.frame[point]
-            known = Place(*(Sum.letter(board.alphabet.constant(float(x), "m")) for x in fixed))
+            known = UnknownPlace(*(Sum.letter(board.alphabet.constant(float(x), "m")) for x in fixed))
         self.pairs += 1
         for axis, left, long, right in zip("xy", at, full, known, strict=True):
             name = self._name(f"{axis}_{point}", of)
@@ -71,7 +73,9 @@ class Closing:
             constant = Sum.letter(board.alphabet.constant(y if axis == "y" else x, "m"))
             name = self._name(f"{axis}_{line.point}", line.name)
             left, long = (at.y, full.y) if axis == "y" else (at.x, full.x)
-            board.points[line.point] = Place(at.x, constant) if axis == "y" else Place(constant, at.y)
+            board.points[line.point] = (
+                UnknownPlace(at.x, constant) if axis == "y" else UnknownPlace(constant, at.y)
+            )
         else:
             heading = board.heading(line)
             ux, uy = line.direction
@@ -93,7 +97,11 @@ class Closing:
         self.meet(line.point, at, full, board.heading(line), line.name, draft)
 
     def _along_rod(
-        self, rod: SymbolRod, start: tuple[Place, Place], end: tuple[Place, Place], draft: Draft
+        self,
+        rod: SymbolRod,
+        start: tuple[UnknownPlace, UnknownPlace],
+        end: tuple[UnknownPlace, UnknownPlace],
+        draft: Draft,
     ) -> None:
         board = self.board
         size, angle = board.bearing(rod, draft)
@@ -103,7 +111,9 @@ class Closing:
         else:
             self.meet(rod.second, start[0].plus(way), start[1].plus(way), angle, rod.name, draft)
 
-    def rod_ends(self, rod: SymbolRod) -> tuple[tuple[Place, Place] | None, tuple[Place, Place] | None]:
+    def rod_ends(
+        self, rod: SymbolRod
+    ) -> tuple[tuple[UnknownPlace, UnknownPlace] | None, tuple[UnknownPlace, UnknownPlace] | None]:
         """Places of both ends of a cylinder, as put in and in full, where they are known."""
         board = self.board
         second = board.points.get(rod.second)
@@ -333,7 +343,7 @@ def shorten(board: SymbolTable) -> None:
     ways = _ways(board)
     points, full = dict(board.points), dict(board.full)
 
-    def place(name: str, known: dict[str, Place], found: dict[str, Place]) -> Place:
+    def place(name: str, known: dict[str, UnknownPlace], found: dict[str, UnknownPlace]) -> UnknownPlace:
         if name not in found:
             step = ways[name]
             found[name] = (
@@ -344,7 +354,7 @@ def shorten(board: SymbolTable) -> None:
         return found[name]
 
     for known in (points, full):
-        found: dict[str, Place] = {}
+        found: dict[str, UnknownPlace] = {}
         for name in known:
             place(name, known, found)
         (board.points if known is points else board.full).update(found)

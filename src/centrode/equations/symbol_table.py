@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from centrode.equations.linear import ORIGIN, Draft, Place, Unknown, polar
+from centrode.equations.linear import ORIGIN, Draft, Unknown, UnknownPlace, polar
 from centrode.equations.symbols import (
     BEARING,
     LENGTH,
@@ -162,9 +162,9 @@ class SymbolTable(Lettering):
     def __init__(self, ready: Ready) -> None:
         super().__init__(ready)
         self.angles: dict[str, Angle] = {FRAME: Angle()}
-        self.points: dict[str, Place] = {}
+        self.points: dict[str, UnknownPlace] = {}
         """With what constraints say put in: y_C = C1."""
-        self.full: dict[str, Place] = {}
+        self.full: dict[str, UnknownPlace] = {}
         """In angles, lengths and slides alone."""
         self.placed: set[str] = {FRAME}
         self.guides = lines_of(ready)
@@ -253,7 +253,7 @@ class SymbolTable(Lettering):
 
     # places
 
-    def arm(self, link: str, first: str, second: str) -> Place:
+    def arm(self, link: str, first: str, second: str) -> UnknownPlace:
         """Vector from one point of a link to another."""
         local = self.local(link)
         names = list(local)
@@ -273,7 +273,7 @@ class SymbolTable(Lettering):
         turn = self.alphabet.angle(name, "angle in link", (link, first, second), (bx - ax, by - ay))
         return polar(size, self.angles[link].plus(turn))
 
-    def spot(self, body: str, local: Vector, label: str, full: bool = False) -> Place:
+    def spot(self, body: str, local: Vector, label: str, full: bool = False) -> UnknownPlace:
         """Place of coordinates of a placed body; `label` names them where no point of the body is there."""
         places = self.full if full else self.points
         own = self.local(body)
@@ -291,15 +291,15 @@ class SymbolTable(Lettering):
         turn = self.alphabet.angle(f"alpha_{index}", "angle in link", (body, first, label), (x, y))
         return places[first].plus(polar(size, self.angles[body].plus(turn)))
 
-    def _fixed_place(self, label: str, at: Vector) -> Place:
-        return Place(
+    def _fixed_place(self, label: str, at: Vector) -> UnknownPlace:
+        return UnknownPlace(
             *(
                 self.alphabet.size(PLACE, f"{axis}_{label}", "coordinate", (label, axis), value)
                 for axis, value in zip("xy", at, strict=True)
             )
         )
 
-    def put(self, point: str, at: Place, full: Place) -> None:
+    def put(self, point: str, at: UnknownPlace, full: UnknownPlace) -> None:
         """Note where a point lies."""
         self.points[point], self.full[point] = at, full
         self.moving.append(point)
@@ -325,7 +325,7 @@ class SymbolTable(Lettering):
                     return name
         return next(iter(own))
 
-    def track(self, line: SymbolLine, slide: Sum) -> Place:
+    def track(self, line: SymbolLine, slide: Sum) -> UnknownPlace:
         """Vector from a line's base to a displacement along it."""
         base = self.base(line)
         start = (0.0, 0.0) if base is None else self.local(line.on)[base]

@@ -48,7 +48,7 @@ _READ: ContextVar[list[Input] | None] = ContextVar("files that the command has r
 
 
 @contextmanager
-def guarded() -> Iterator[None]:
+def guard_inputs() -> Iterator[None]:
     """While the block runs, the files that it reads are kept from being replaced by what it writes."""
     token = _READ.set([])
     try:
@@ -64,7 +64,7 @@ def note(path: Path, status: os.stat_result) -> None:
         read.append(Input(str(path), _real(path), status.st_dev, status.st_ino))
 
 
-def noted() -> tuple[Input, ...]:
+def inputs_read() -> tuple[Input, ...]:
     """The files read so far."""
     return tuple(_READ.get() or ())
 
@@ -77,14 +77,14 @@ def carry_on(read: Sequence[Input]) -> None:
 def keep_inputs(*outputs: Path) -> None:
     """Raise InputError where one of the outputs would replace a file that was read."""
     for output in outputs:
-        for read in noted():
+        for read in inputs_read():
             if read.is_at(output):
                 raise _refusal(output, read)
 
 
 def keep_inputs_below(folder: Path) -> None:
     """Raise InputError where a file that was read stands in a folder that is to be cleared."""
-    for read in noted():
+    for read in inputs_read():
         if read.is_below(folder):
             raise _refusal(folder, read)
 

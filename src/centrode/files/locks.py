@@ -19,7 +19,7 @@ else:
 
 
 @contextmanager
-def locked(file: Path, what: str) -> Iterator[None]:
+def hold_lock(file: Path, what: str) -> Iterator[None]:
     """Hold the lock in `file` while the block runs.
 
     Raises InputError about `what` where another process holds it. A lock left by a process that was killed does
@@ -28,7 +28,7 @@ def locked(file: Path, what: str) -> Iterator[None]:
     try:
         stream = taken(file)
     except OSError as refusal:
-        raise _refused(what, refusal) from refusal
+        raise _is_refused(what, refusal) from refusal
     if stream is None:
         busy = _("another run is writing into it")
         raise InputError(what, busy, _("wait until it ends, or name another place"))
@@ -56,7 +56,7 @@ def taken(file: Path) -> IO[bytes] | None:
     return None
 
 
-def _refused(what: str, refusal: OSError) -> InputError:
+def _is_refused(what: str, refusal: OSError) -> InputError:
     """A file system that cannot lock, or lets nobody write."""
     reason = refusal.strerror or str(refusal)
     return InputError(what, _("cannot be locked: {reason}").format(reason=reason), _("name another place"))

@@ -528,7 +528,7 @@ def _has(cam: Cam, name: str) -> bool:
     return getattr(getattr(cam, table), key, None) is not None
 
 
-def varied(cam: SomeCam, values: Mapping[str, float]) -> SomeCam:
+def vary_cam(cam: SomeCam, values: Mapping[str, float]) -> SomeCam:
     """The cam with other numbers [SI] at paths such as "curvature.k0"; InputError for a path it does not have."""
     tables = part_tables(cam)
     for path, value in values.items():

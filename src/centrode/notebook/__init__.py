@@ -24,7 +24,7 @@ __getattr__, __dir__, _names = lazy_loader.attach(
 
 SHOWN = (
     ("text/html", "centrode.model.mechanism", "Mechanism", "mechanism_html"),
-    ("text/html", "centrode.study.check", "Check", "check_html"),
+    ("text/html", "centrode.study.check", "MechanismCheck", "check_html"),
     ("text/html", "xarray.core.dataset", "Dataset", "motion_html"),
     ("text/markdown", "centrode.equations.derivation", "Equations", "equations_markdown"),
 )

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Mechanism
-    from centrode.study.check import Check
+    from centrode.study.check import MechanismCheck
 
 __all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html"]
 
@@ -44,7 +44,7 @@ def mechanism_html(mechanism: Mechanism) -> str:
     return drawing + _table(heads, rows)
 
 
-def check_html(checked: Check) -> str:
+def check_html(checked: MechanismCheck) -> str:
     """A structure as a table: mobility, redundant constraints, loops, groups, initial position."""
     title = html.escape(_(checked.title))
     return (f"<h4>{title}</h4>" if title else "") + _table((), check_rows(checked))

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from centrode.equations.instants import CHANGE_POINT
 from centrode.errors import Status
 from centrode.locale import _
-from centrode.present.displayed_units import formula, labelled, plain, shown_as
+from centrode.present.displayed_units import formula, label_with_unit, plain, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, Pen
 from centrode.quantities import QUANTITIES
 from centrode.views.abscissa import LIMIT, events, in_time, limits_between, passings, within
@@ -42,7 +42,7 @@ STEPS = {
 
 
 @dataclass(frozen=True)
-class Abscissa:
+class DrawnAbscissa:
     """The horizontal axis of curves.
 
     Attributes
@@ -79,25 +79,25 @@ class Abscissa:
         return np.insert(self.values, self.breaks, np.nan)
 
 
-def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
+def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> DrawnAbscissa:
     """The drive's value if one drive turns or moves uniformly, else time."""
     return over_drive(mechanism, dataset) if mechanism.motion_parameter.is_uniform else over_time(dataset)
 
 
-def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
+def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> DrawnAbscissa:
     """The value of the only drive, in the unit of the display."""
     coordinate = mechanism.motion_parameter.drives[0]
     factor, unit = shown_as(coordinate.unit, mechanism.display)
     text = text_of_drive(coordinate)
     values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
     marks = within(values, events(dataset))
-    return Abscissa(
+    return DrawnAbscissa(
         factor * values,
         order,
         limits_between(dataset, values),
         dataset["status"].to_numpy() == Status.CUT_OFF,
         tuple((factor * value, kind) for value, kind in marks),
-        labelled(text, unit),
+        label_with_unit(text, unit),
         unit,
     )
 
@@ -112,7 +112,7 @@ def text_of_drive(coordinate: DriveCoordinate) -> str:
     return text.format(symbol=formula(coordinate.symbol), name=plain(coordinate.name))
 
 
-def over_time(dataset: xarray.Dataset) -> Abscissa:
+def over_time(dataset: xarray.Dataset) -> DrawnAbscissa:
     """Time; events stand where the only drive passes them, with several drives at their own times."""
     times, order = in_time(dataset, dataset["time"].to_numpy())
     if dataset.sizes["drive"] == 1:
@@ -123,8 +123,8 @@ def over_time(dataset: xarray.Dataset) -> Abscissa:
         breaks, marks = limits_between(dataset, times), events(dataset)
     cut = dataset["status"].to_numpy() == Status.CUT_OFF
     quantity = QUANTITIES["time"]
-    label = labelled(f"{quantity.title} {formula(quantity.symbol)}", quantity.unit)
-    return Abscissa(times, order, breaks, cut, tuple(within(times, marks)), label, quantity.unit)
+    label = label_with_unit(f"{quantity.title} {formula(quantity.symbol)}", quantity.unit)
+    return DrawnAbscissa(times, order, breaks, cut, tuple(within(times, marks)), label, quantity.unit)
 
 
 def angle_ticks(axis: Axis, low: float, high: float, unit: str, most: int) -> None:
@@ -186,7 +186,7 @@ class Panel:
     legend: bool = True
 
 
-def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: Abscissa) -> Figure:
+def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: DrawnAbscissa) -> Figure:
     """A figure of panels in rows and columns, all over the same abscissa."""
     columns = max(map(len, rows))
     beside = [
@@ -217,7 +217,7 @@ def write_title(figure: Figure, title: str, subtitle: str) -> None:
     figure.suptitle("\n".join([title, *textwrap.wrap(plain(subtitle), width)]), fontsize=11)
 
 
-def draw_panel(axes: Axes, panel: Panel, abscissa: Abscissa) -> list[tuple[Line2D, str]]:
+def draw_panel(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> list[tuple[Line2D, str]]:
     """Draw the curves with their events; returns a handle and a name for each."""
     across = (abscissa.drawn, abscissa.drawn)
     widths = band_widths(panel)
@@ -293,7 +293,7 @@ def lonely(values: Array) -> dict[str, Any]:
     )
 
 
-def set_range(axes: Axes, panel: Panel, abscissa: Abscissa) -> None:
+def set_range(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> None:
     """Limits of both axes: the whole motion across, what can be read up and down."""
     across = abscissa.values[np.isfinite(abscissa.values)]
     if across.size and across.max() > across.min():
@@ -336,7 +336,7 @@ def say_nothing_known(axes: Axes) -> None:
     )
 
 
-def draw_key(abscissa: Abscissa, panel: Panel) -> list[tuple[Artist, str]]:
+def draw_key(abscissa: DrawnAbscissa, panel: Panel) -> list[tuple[Artist, str]]:
     """Entries of the legend for what is not a curve of its own."""
     kinds = {kind for _value, kind in abscissa.marks}
     words = {LIMIT: _("limit"), CHANGE_POINT: _("change point")}
@@ -391,7 +391,7 @@ class Motion:
 
     mechanism: Mechanism
     dataset: xarray.Dataset
-    abscissa: Abscissa
+    abscissa: DrawnAbscissa
     pens: Mapping[str, Mapping[str, Pen]]
 
     @property
@@ -472,4 +472,4 @@ def panel(
     curves = {name: factor * component(values.sel({dim: name}), part) for name in names}
     text = formula(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "")
     scale = factor * great_value(motion.dataset, variable)
-    return Panel(labelled(text, shown), shown, curves, motion.pens[dim], scale, legend)
+    return Panel(label_with_unit(text, shown), shown, curves, motion.pens[dim], scale, legend)

@@ -50,6 +50,6 @@ def formula(symbol: str, subscript: str = "") -> str:
     return f"${{{symbol}}}_{{{subscript}}}$" if subscript else f"${symbol}$"
 
 
-def labelled(text: str, unit: str) -> str:
+def label_with_unit(text: str, unit: str) -> str:
     """A text with its unit behind it: "v, mm/s²"; a plain number has none."""
     return f"{text}, {typeset_unit(unit)}" if unit not in ("", "1") else text

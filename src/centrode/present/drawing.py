@@ -13,7 +13,7 @@ from centrode.model.mechanism import FRAME
 from centrode.present import signs
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.displayed_units import plain
-from centrode.present.scene import Array, Scene, corners
+from centrode.present.scene import Array, LinkageScene, corners
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.present.tags import drive_arcs, ground_line, label_places, lines, unit
 from centrode.present.wheels import cylinders, pitch_circles, round_track, straight_track, wheel_at
@@ -27,7 +27,7 @@ NAME_POINTS = 10.0  # height of the names of points [pt]
 
 def draw_mechanism(
     axes: Axes,
-    scene: Scene,
+    scene: LinkageScene,
     sample: int,
     *,
     faded: Iterable[int] = (),
@@ -40,7 +40,7 @@ def draw_mechanism(
     ----------
     axes : Axes
         They get equal scales and limits that hold the whole motion.
-    scene : Scene
+    scene : LinkageScene
         The motion, read by `scene_of`.
     sample : int
         What cannot be placed at this sample is left out.
@@ -68,7 +68,7 @@ def draw_mechanism(
         draw_names(axes, scene, sample)
 
 
-def frame_axes(axes: Axes, scene: Scene) -> None:
+def frame_axes(axes: Axes, scene: LinkageScene) -> None:
     """Equal scales, and limits that hold the whole motion with its signs."""
     room = MARGIN * scene.extent
     axes.set_aspect("equal", adjustable="box")
@@ -76,7 +76,9 @@ def frame_axes(axes: Axes, scene: Scene) -> None:
     axes.set_ylim(scene.low[1] - room, scene.high[1] + room)
 
 
-def draw_links(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], alpha: float = 1.0) -> None:
+def draw_links(
+    axes: Axes, scene: LinkageScene, sample: int, links: Mapping[str, Pen], alpha: float = 1.0
+) -> None:
     """Links as lines and filled polygons, their slots, and the sliders."""
     places = scene.at(sample)
     draw_wheels(axes, scene, sample, links, alpha)
@@ -101,7 +103,7 @@ def draw_links(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], 
             signs.slider(axes, places[guide.point], turn + guide.direction_angle, scene.sign, tint, alpha)
 
 
-def draw_wheels(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], alpha: float) -> None:
+def draw_wheels(axes: Axes, scene: LinkageScene, sample: int, links: Mapping[str, Pen], alpha: float) -> None:
     """Rolling wheels with a spoke, and the tracks that moving links carry."""
     for wheel in scene.mechanism.rolling:
         disc = wheel_at(scene, wheel, sample)
@@ -149,7 +151,13 @@ def draw_body(
 
 
 def draw_slot(
-    axes: Axes, scene: Scene, sample: int, guide: Guide, line: tuple[Array, Array], pen: Pen, alpha: float
+    axes: Axes,
+    scene: LinkageScene,
+    sample: int,
+    guide: Guide,
+    line: tuple[Array, Array],
+    pen: Pen,
+    alpha: float,
 ) -> None:
     """A slot with round ends, or a rod through the block that slides on it, and what joins it to its link."""
     places = scene.at(sample)
@@ -166,7 +174,7 @@ def draw_slot(
         draw_body(axes, [start - along, end + along], pen, alpha, guide.on, behind=True)
 
 
-def draw_frame(axes: Axes, scene: Scene, sample: int) -> None:
+def draw_frame(axes: Axes, scene: LinkageScene, sample: int) -> None:
     """Hatched guides and tracks of the frame and its fixed hinges."""
     used, places = used_points(scene), scene.at(sample)
     for guide in scene.mechanism.guides:
@@ -183,13 +191,13 @@ def draw_frame(axes: Axes, scene: Scene, sample: int) -> None:
             signs.traced_point(axes, places[name], scene.sign, GROUND)
 
 
-def used_points(scene: Scene) -> set[str]:
+def used_points(scene: LinkageScene) -> set[str]:
     """Points that links and cylinders stand on."""
     used = {point for link in scene.mechanism.links.values() for point in link.coordinates}
     return used | {point for drive in scene.mechanism.drives for point in drive.distance or ()}
 
 
-def draw_track(axes: Axes, scene: Scene, wheel: Rolling) -> None:
+def draw_track(axes: Axes, scene: LinkageScene, wheel: Rolling) -> None:
     """A line or a circle of the frame, hatched on the side away from its wheel."""
     track, line = round_track(scene, wheel, 0), straight_track(scene, wheel, 0)
     if track is not None:
@@ -199,7 +207,7 @@ def draw_track(axes: Axes, scene: Scene, wheel: Rolling) -> None:
         signs.ground(axes, *line, np.array([y, -x]), scene.sign)
 
 
-def draw_hinges(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen]) -> None:
+def draw_hinges(axes: Axes, scene: LinkageScene, sample: int, links: Mapping[str, Pen]) -> None:
     """Circles where links are hinged, dots at points of one link alone."""
     for name, place in scene.at(sample).items():
         if name in scene.mechanism.frame.points:
@@ -213,13 +221,13 @@ def draw_hinges(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen])
             signs.traced_point(axes, place, scene.sign, links[owners[0]].colour if owners else INK)
 
 
-def draw_drive(axes: Axes, scene: Scene, sample: int) -> None:
+def draw_drive(axes: Axes, scene: LinkageScene, sample: int) -> None:
     """An arrow around the fixed hinge of each link that is driven against the frame."""
     for arc in drive_arcs(scene, sample):
         signs.turning_arrow(axes, arc, GROUND)
 
 
-def draw_names(axes: Axes, scene: Scene, sample: int) -> None:
+def draw_names(axes: Axes, scene: LinkageScene, sample: int) -> None:
     """The points' names beside them, on the side away from the lines."""
     places = scene.at(sample)
     point = scene.extent / (72.0 * scene.inches)

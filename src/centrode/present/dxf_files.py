@@ -38,7 +38,7 @@ def dxf_document(path: Path) -> Iterator[tuple[Any, Any]]:
             _('install it with pip install "centrode[drawings]"'),
         )
     library = _ezdxf()
-    with _fixed(library):
+    with _without_time(library):
         document = library.new(VERSION, units=MILLIMETRES)
         document.header["$MEASUREMENT"] = 1
         document.styles.get("Standard").dxf.font = FONT
@@ -54,7 +54,7 @@ def _declare(document: Any) -> None:
 
 
 @contextmanager
-def _fixed(library: Any) -> Iterator[None]:
+def _without_time(library: Any) -> Iterator[None]:
     """Context in which files carry no time and no chance identity."""
     options = library.options
     before = options.write_fixed_meta_data_for_testing

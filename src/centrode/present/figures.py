@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from centrode.locale import _
 from centrode.present.curves import (
-    Abscissa,
+    DrawnAbscissa,
     Motion,
     Rows,
     main_abscissa,
@@ -24,7 +24,7 @@ from centrode.present.curves import (
 )
 from centrode.present.linkage_scene import scene_of
 from centrode.present.pictures import mechanism_figure, paths_figure
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import Globe, globe_of
 from centrode.present.style import house_style, pens
 
@@ -80,7 +80,7 @@ def motion_figures(
 
 def _with(
     mechanism: Mechanism, dataset: xarray.Dataset, more: xarray.Dataset | None
-) -> tuple[Scene | Globe, xarray.Dataset]:
+) -> tuple[LinkageScene | Globe, xarray.Dataset]:
     """Scene and samples of a motion, with samples of another behind them."""
     if more is None:
         return read_scene(mechanism, dataset), dataset
@@ -89,13 +89,13 @@ def _with(
     return read_scene(mechanism, joined), joined
 
 
-def read_scene(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene | Globe:
+def read_scene(mechanism: Mechanism, dataset: xarray.Dataset) -> LinkageScene | Globe:
     """Where everything stands, in the plane or on the sphere."""
     on_sphere = mechanism.space == "sphere"
     return globe_of(mechanism, dataset) if on_sphere else scene_of(mechanism, dataset)
 
 
-def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
+def sheets(motion: Motion) -> dict[str, tuple[str, Rows, DrawnAbscissa]]:
     """Title, panels and abscissa of every figure of curves."""
     main = motion.abscissa
     found = {
@@ -125,7 +125,7 @@ def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
     return found
 
 
-def joint_sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
+def joint_sheets(motion: Motion) -> dict[str, tuple[str, Rows, DrawnAbscissa]]:
     """Angles of links from their reference arcs, and the rates of these."""
     main = motion.abscissa
     return {

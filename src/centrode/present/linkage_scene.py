@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.present.cams.driving_cam_drawing import driving_cams
 from centrode.present.displayed_units import shown_as
-from centrode.present.scene import Scene, box, span
+from centrode.present.scene import LinkageScene, box, span
 from centrode.present.wheels import pitch_circles, reaches
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
 
 
-def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
+def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> LinkageScene:
     """Read a motion for drawing.
 
     Parameters
@@ -42,7 +42,7 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
         guide.id: factor * span(dataset["slide"].sel(guide=guide.id).to_numpy()) for guide in mechanism.guides
     }
     low, high = box(list(tracks.values()))
-    scene = Scene(
+    scene = LinkageScene(
         mechanism=mechanism,
         tracks=tracks,
         turns=turns,

@@ -199,7 +199,7 @@ def outline(places: list[Place]) -> list[tuple[Place, Place]]:
 # Numbers and plane vectors as the XML spells them.
 
 
-def turned(vector: Sequence[float], angle: float) -> Place:
+def turn_vector(vector: Sequence[float], angle: float) -> Place:
     """A vector turned by an angle [rad]."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return cosine * vector[0] - sine * vector[1], sine * vector[0] + cosine * vector[1]
@@ -277,7 +277,7 @@ class Pose:
         return float(self.least * (0.1 * self.size) ** 2)
 
     def _direction(self, guide: Guide) -> Place:
-        return turned(guide.unit, self.angles[guide.on])
+        return turn_vector(guide.unit, self.angles[guide.on])
 
     def turns(self, factors: Mapping[str, float]) -> dict[str, float]:
         """A sum of links' turns as joints and their factors."""
@@ -359,7 +359,7 @@ def _inertial(pose: Pose, body: ET.Element, name: str, own: Place) -> None:
     about = max(float(inertia), pose.nominal_inertia)
     centre = (0.0, 0.0)
     if known is not None and isinstance(known.centre, Centre):
-        way = turned((float(known.centre.along), float(known.centre.across)), pose.angles[name])
+        way = turn_vector((float(known.centre.along), float(known.centre.across)), pose.angles[name])
         base = pose.places[known.centre.base]
         centre = less((base[0] + way[0], base[1] + way[1]), own)
     # a flat body: MuJoCo wants moments that some body in space can have
@@ -403,7 +403,7 @@ def add_constraints(pose: Pose, root: ET.Element) -> None:
         tendons = ET.SubElement(root, "tendon")
         for gear in gears:
             first, second = gear.links
-            _fixed(tendons, f"gear {gear.id}", pose.turns({second: 1.0, gear.carrier: gear.ratio - 1.0,
+            _fixed_tendon(tendons, f"gear {gear.id}", pose.turns({second: 1.0, gear.carrier: gear.ratio - 1.0,
                                                             first: -gear.ratio}))  # fmt: skip
     equality = ET.SubElement(root, "equality")
     for pair in pose.tree.closures:
@@ -432,7 +432,7 @@ def add_drives(pose: Pose, root: ET.Element) -> None:
             continue
         if tendons is None:
             tendons = ET.SubElement(root, "tendon")
-        _fixed(tendons, f"drive {drive.id}", joints)
+        _fixed_tendon(tendons, f"drive {drive.id}", joints)
         actuators.append((f"drive {drive.id}", {"tendon": f"drive {drive.id}"}))
     if not actuators:
         return
@@ -472,7 +472,7 @@ def _joints(pose: Pose, drive: Drive) -> dict[str, float]:
     return {f"guide {drive.guide}": 1.0}
 
 
-def _fixed(tendons: ET.Element, name: str, joints: Mapping[str, float]) -> None:
+def _fixed_tendon(tendons: ET.Element, name: str, joints: Mapping[str, float]) -> None:
     """A tendon whose length is a sum of coordinates."""
     tendon = ET.SubElement(tendons, "fixed", name=name)
     for joint, factor in joints.items():

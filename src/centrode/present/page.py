@@ -117,10 +117,10 @@ class Page:
         for box in self.boxes:
             if (low < box[1]).all() and (high > box[0]).all():
                 return 1e6
-        return CROSSING * crossed(low - THICK, high + THICK, self.segments)
+        return CROSSING * count_crossings(low - THICK, high + THICK, self.segments)
 
 
-def crossed(low: Array, high: Array, segments: Sequence[tuple[Array, Array]]) -> int:
+def count_crossings(low: Array, high: Array, segments: Sequence[tuple[Array, Array]]) -> int:
     """How many segments pass through a box (Liang and Barsky)."""
     if not segments:
         return 0
@@ -149,7 +149,7 @@ def new_page(size: tuple[float, float] = (WIDE, HIGH)) -> Page:
 
 
 @dataclass(frozen=True)
-class View:
+class PageView:
     """A rectangle of a page that shows a plane at true scale.
 
     Attributes
@@ -165,7 +165,7 @@ class View:
     scale: float
 
     @classmethod
-    def about(cls, corner: Array, size: Array, places: Array, scale: float) -> View:
+    def about(cls, corner: Array, size: Array, places: Array, scale: float) -> PageView:
         """A view with a set of places in its middle."""
         middle = (places.min(axis=0) + places.max(axis=0)) / 2
         return cls(corner, size, middle - scale * size / 2, scale)

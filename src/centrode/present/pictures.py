@@ -15,16 +15,16 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.present.curves import (
     CUT_DASHES,
-    Abscissa,
+    DrawnAbscissa,
     draw_parts,
     legend_width,
     say_nothing_known,
     write_legend,
     write_title,
 )
-from centrode.present.displayed_units import formula, labelled, shown_as
+from centrode.present.displayed_units import formula, label_with_unit, shown_as
 from centrode.present.drawing import MARGIN, draw_mechanism
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import HIDDEN, Globe, draw_globe
 from centrode.present.style import MUTED, Decimals, Pen, pens
 from centrode.quantities import status_word, typeset_unit
@@ -39,7 +39,9 @@ COLUMNS = 3
 FAINT = "#B4B4B4"
 
 
-def mechanism_figure(scene: Scene | Globe, dataset: xarray.Dataset, instants: Sequence[float]) -> Figure:
+def mechanism_figure(
+    scene: LinkageScene | Globe, dataset: xarray.Dataset, instants: Sequence[float]
+) -> Figure:
     """The mechanism at the chosen values of the drive, or initially over fading pictures of its motion."""
     samples = [nearest_sample(scene.mechanism, dataset, instant) for instant in instants]
     samples = samples or [initial_sample(scene, dataset)]
@@ -59,7 +61,7 @@ def mechanism_figure(scene: Scene | Globe, dataset: xarray.Dataset, instants: Se
 
 
 def paths_figure(
-    scene: Scene | Globe, dataset: xarray.Dataset, abscissa: Abscissa, points: Mapping[str, Pen]
+    scene: LinkageScene | Globe, dataset: xarray.Dataset, abscissa: DrawnAbscissa, points: Mapping[str, Pen]
 ) -> Figure:
     """Paths of all moving points, with the mechanism faint in its initial position."""
     scene, figure = picture(scene, list(points))
@@ -86,7 +88,7 @@ def paths_figure(
     return figure
 
 
-def draw(axes: Axes, scene: Scene | Globe, sample: int, **how: Any) -> None:
+def draw(axes: Axes, scene: LinkageScene | Globe, sample: int, **how: Any) -> None:
     """A mechanism in the plane with its coordinates along the axes, or on the sphere."""
     if isinstance(scene, Globe):
         draw_globe(axes, scene, sample, **how)
@@ -96,8 +98,8 @@ def draw(axes: Axes, scene: Scene | Globe, sample: int, **how: Any) -> None:
 
 
 def picture(
-    scene: Scene | Globe, names: Sequence[str], rows: int = 1, columns: int = 1
-) -> tuple[Scene | Globe, Figure]:
+    scene: LinkageScene | Globe, names: Sequence[str], rows: int = 1, columns: int = 1
+) -> tuple[LinkageScene | Globe, Figure]:
     """The scene at the size that it gets on paper, and an empty figure in its proportions."""
     inches = 5.2 if columns == 1 else 3.6
     wide, high = inches * ((scene.high - scene.low) / scene.extent + 2 * MARGIN)
@@ -106,11 +108,11 @@ def picture(
     return replace(scene, inches=inches), Figure(figsize=(width, height), layout="constrained")
 
 
-def label_lengths(axes: Axes, scene: Scene) -> None:
+def label_lengths(axes: Axes, scene: LinkageScene) -> None:
     """Coordinates along both axes, in the unit of the display."""
     unit = shown_as("m", scene.mechanism.display)[1]
-    axes.set_xlabel(labelled(formula("x"), unit))
-    axes.set_ylabel(labelled(formula("y"), unit))
+    axes.set_xlabel(label_with_unit(formula("x"), unit))
+    axes.set_ylabel(label_with_unit(formula("y"), unit))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(Decimals())
 
@@ -146,7 +148,7 @@ def nearest_sample(mechanism: Mechanism, dataset: xarray.Dataset, value: float) 
     return int(np.argmin(np.abs(mechanism.motion_parameter.values(dataset) - value)))
 
 
-def initial_sample(scene: Scene | Globe, dataset: xarray.Dataset) -> int:
+def initial_sample(scene: LinkageScene | Globe, dataset: xarray.Dataset) -> int:
     """The sample nearest to the start, at time zero, among those with every point in place."""
     known = complete(scene)
     if not known.any():
@@ -156,7 +158,7 @@ def initial_sample(scene: Scene | Globe, dataset: xarray.Dataset) -> int:
     return int(np.lexsort((distance, worth, ~known))[0])
 
 
-def ghosts(scene: Scene | Globe, dataset: xarray.Dataset, sample: int) -> list[int]:
+def ghosts(scene: LinkageScene | Globe, dataset: xarray.Dataset, sample: int) -> list[int]:
     """Samples evenly spread over the motion's regular part, the nearest to the given one last."""
     regular = np.flatnonzero(complete(scene) & (dataset["status"].to_numpy() == Status.OK))
     if regular.size < 2:
@@ -165,7 +167,7 @@ def ghosts(scene: Scene | Globe, dataset: xarray.Dataset, sample: int) -> list[i
     return sorted({int(k) for k in chosen} - {sample}, key=lambda k: -abs(k - sample))
 
 
-def complete(scene: Scene | Globe) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def complete(scene: LinkageScene | Globe) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """True where every moving point has a position."""
     moving = [scene.tracks[name] for name in scene.mechanism.moving_points]
     return np.asarray(np.isfinite(np.stack(moving)).all(axis=(0, 2)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.present.sheet import Sheet
+from centrode.present.sheet import MotionPlaces
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Link
@@ -21,7 +21,7 @@ FLATTEST = 0.3  # least ratio of the sides of a drawing
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(Sheet):
+class LinkageScene(MotionPlaces):
     """A planar motion on its sheet, in display units of length; points of the frame are rows without change.
 
     Attributes
@@ -45,7 +45,7 @@ class Scene(Sheet):
         if link == "frame":
             return self.factor * np.asarray(local, dtype=float)
         for name, own in self.mechanism.links[link].coordinates.items():
-            offset = turned(np.subtract(local, own), self.turns[link][sample])
+            offset = turn_vectors(np.subtract(local, own), self.turns[link][sample])
             place = self.tracks[name][sample] + self.factor * offset
             if np.isfinite(place).any():
                 return np.asarray(place)
@@ -57,12 +57,12 @@ class Scene(Sheet):
         if start is None:
             return None
         turn = np.zeros(()) if guide.on == "frame" else self.turns[guide.on][sample]
-        along = turned(np.asarray(guide.unit, dtype=float), turn)
+        along = turn_vectors(np.asarray(guide.unit, dtype=float), turn)
         least, most = self.travels[guide.id]
         return start + least * along, start + most * along
 
 
-def turned(vector: Array, angle: Array | float) -> Array:
+def turn_vectors(vector: Array, angle: Array | float) -> Array:
     """A vector turned by an angle, or by each of several."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.stack([cosine * vector[0] - sine * vector[1], sine * vector[0] + cosine * vector[1]], axis=-1)

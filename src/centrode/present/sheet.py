@@ -17,7 +17,7 @@ SIGN_INCHES = 0.07  # radius of a hinge's circle on paper
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sheet:
+class MotionPlaces:
     """Places over a motion, ready to draw.
 
     Attributes

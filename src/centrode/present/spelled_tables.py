@@ -24,12 +24,12 @@ def spell_with_comma(path: Path) -> None:
     A mark of byte order goes before it: without one spreadsheets take UTF-8 for a code page of theirs.
     """
     with path.open(encoding="utf-8", newline="") as file:
-        rows = [[_spelled(field) for field in row] for row in csv.reader(file)]
+        rows = [[_with_comma(field) for field in row] for row in csv.reader(file)]
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         csv.writer(file, delimiter=";", lineterminator="\n").writerows(rows)
 
 
-def _spelled(field: str) -> str:
+def _with_comma(field: str) -> str:
     return field.replace(".", ",") if NUMBER.fullmatch(field) else field
 
 

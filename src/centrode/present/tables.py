@@ -185,7 +185,7 @@ def sweep_csv(data: xr.Dataset) -> str:
     if count > ROWS:
         what = _("a table holds at most {most} mechanisms, here are {count}").format(most=ROWS, count=count)
         raise InputError("", what, _("write zarr"))
-    columns = [*_varied(data, front, count), *_numbers(data, len(front), count)]
+    columns = [*_varied_columns(data, front, count), *_numbers(data, len(front), count)]
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(name for name, _column in columns)
@@ -196,12 +196,12 @@ def sweep_csv(data: xr.Dataset) -> str:
 Column = tuple[str, npt.NDArray[np.generic]]
 
 
-def _varied(data: xr.Dataset, front: tuple[object, ...], count: int) -> Iterator[Column]:
+def _varied_columns(data: xr.Dataset, front: tuple[object, ...], count: int) -> Iterator[Column]:
     places = np.unravel_index(np.arange(count), data["samples_ok"].shape)
     for name, coordinate in data.coords.items():
         if len(coordinate.dims) == 1 and coordinate.dims[0] in front:
             along = front.index(coordinate.dims[0])
-            yield _headed(str(name), coordinate), coordinate.values[places[along]]
+            yield _head(str(name), coordinate), coordinate.values[places[along]]
 
 
 def _numbers(data: xr.Dataset, front: int, count: int) -> Iterator[Column]:
@@ -209,9 +209,9 @@ def _numbers(data: xr.Dataset, front: int, count: int) -> Iterator[Column]:
         rooms = [data[dimension].values.tolist() for dimension in variable.dims[front:]]
         flat = variable.values.reshape(count, -1)
         for k, labels in enumerate(itertools.product(*rooms)):
-            yield _headed("_".join((str(name).replace(".", "_"), *map(str, labels))), variable), flat[:, k]
+            yield _head("_".join((str(name).replace(".", "_"), *map(str, labels))), variable), flat[:, k]
 
 
-def _headed(name: str, variable: xr.DataArray) -> str:
+def _head(name: str, variable: xr.DataArray) -> str:
     unit = variable.attrs.get("units", "1")
     return name if unit == "1" else f"{name} [{unit}]"

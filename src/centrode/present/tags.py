@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from centrode.present import signs
-from centrode.present.scene import Array, Scene, corners
+from centrode.present.scene import Array, LinkageScene, corners
 from centrode.present.style import INK, MUTED
 from centrode.present.wheels import Disc, cylinders, round_track, straight_track, wheel_at
 
@@ -287,7 +287,7 @@ OUTLINE = 8
 """Every so many places of a cam's outline are corners of the polygon that names keep clear of."""
 
 
-def lines(scene: Scene, sample: int) -> Segments:
+def lines(scene: LinkageScene, sample: int) -> Segments:
     """Everything a name should not cover, as segments."""
     places = scene.at(sample)
     found: Segments = []
@@ -306,7 +306,7 @@ def lines(scene: Scene, sample: int) -> Segments:
     return found + wheel_lines(scene, sample) + cam_lines(scene, sample)
 
 
-def cam_lines(scene: Scene, sample: int) -> Segments:
+def cam_lines(scene: LinkageScene, sample: int) -> Segments:
     """Driving cams and their rollers as segments."""
     found: Segments = []
     for cam in scene.cams:
@@ -316,7 +316,7 @@ def cam_lines(scene: Scene, sample: int) -> Segments:
     return found
 
 
-def wheel_lines(scene: Scene, sample: int) -> Segments:
+def wheel_lines(scene: LinkageScene, sample: int) -> Segments:
     """Wheels, tracks and cylinders as segments."""
     found: Segments = []
     for wheel in scene.mechanism.rolling:
@@ -329,7 +329,7 @@ def wheel_lines(scene: Scene, sample: int) -> Segments:
     return found
 
 
-def guide_lines(scene: Scene, guide: Guide, sample: int, place: Array) -> Segments:
+def guide_lines(scene: LinkageScene, guide: Guide, sample: int, place: Array) -> Segments:
     """A guide with its slider or slot, as segments."""
     line = scene.guide_line(guide, sample)
     if line is None:
@@ -345,7 +345,7 @@ def guide_lines(scene: Scene, guide: Guide, sample: int, place: Array) -> Segmen
     return found + around(list(signs.slider_outline(place, turn + guide.direction_angle, scene.sign)))
 
 
-def ground_line(scene: Scene, guide: Guide, line: tuple[Array, Array]) -> tuple[Array, Array, Array]:
+def ground_line(scene: LinkageScene, guide: Guide, line: tuple[Array, Array]) -> tuple[Array, Array, Array]:
     """Ends of the hatched line that a slider of the frame rests on, and the side of the hatching."""
     along = np.asarray(guide.unit, dtype=float)
     away = down_from(along, 0.5 * (line[0] + line[1]), scene)
@@ -353,7 +353,7 @@ def ground_line(scene: Scene, guide: Guide, line: tuple[Array, Array]) -> tuple[
     return line[0] + shift - over, line[1] + shift + over, away
 
 
-def down_from(along: Array, middle: Array, scene: Scene) -> Array:
+def down_from(along: Array, middle: Array, scene: LinkageScene) -> Array:
     """The side of a guide where the hatching goes: below; beside a steep one, away from the mechanism."""
     normal = np.array([along[1], -along[0]])
     if abs(along[0]) > 0.2:
@@ -372,7 +372,7 @@ def around(places: Sequence[Array]) -> Segments:
     return along([*places, places[0]])
 
 
-def drive_arcs(scene: Scene, sample: int) -> list[Array]:
+def drive_arcs(scene: LinkageScene, sample: int) -> list[Array]:
     """The arcs of the drives' arrows: in the sense of a uniform drive or a cam, counter-clockwise for a law."""
     places = scene.at(sample)
     found = [signs.turning_arc(cam.hub, 0.0, cam.forward, scene.sign) for cam in scene.cams]

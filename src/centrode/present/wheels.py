@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.model.mechanism import FRAME
-from centrode.present.scene import Array, Samples, Scene, span, turned
+from centrode.present.scene import Array, LinkageScene, Samples, span, turn_vectors
 
 if TYPE_CHECKING:
     from centrode.analysis.instant_centres.bodies import Pair
@@ -35,7 +35,7 @@ class Disc:
         return np.asarray(self.centre + self.radius * np.stack([np.cos(turns), np.sin(turns)], axis=1))
 
 
-def wheel_at(scene: Scene, wheel: Rolling, sample: int) -> Disc | None:
+def wheel_at(scene: LinkageScene, wheel: Rolling, sample: int) -> Disc | None:
     """A wheel at a sample; nothing if it has no position."""
     centre, angle = scene.tracks[wheel.centre][sample], scene.turns[wheel.link][sample]
     if not np.isfinite(centre).all() or not np.isfinite(angle):
@@ -43,7 +43,7 @@ def wheel_at(scene: Scene, wheel: Rolling, sample: int) -> Disc | None:
     return Disc(centre, scene.factor * wheel.radius, float(angle))
 
 
-def round_track(scene: Scene, wheel: Rolling, sample: int) -> Disc | None:
+def round_track(scene: LinkageScene, wheel: Rolling, sample: int) -> Disc | None:
     """The circle a wheel rolls on; nothing for a line, or where its link has no position."""
     circle = wheel.along.radius
     if circle is None:
@@ -54,7 +54,7 @@ def round_track(scene: Scene, wheel: Rolling, sample: int) -> Disc | None:
     return None if place is None else Disc(place, scene.factor * circle)
 
 
-def straight_track(scene: Scene, wheel: Rolling, sample: Samples) -> tuple[Array, Array] | None:
+def straight_track(scene: LinkageScene, wheel: Rolling, sample: Samples) -> tuple[Array, Array] | None:
     """The part of a line that its wheel rolls over, as two ends in its direction; nothing for a circle."""
     through = wheel.along.through
     if through is None:
@@ -64,25 +64,25 @@ def straight_track(scene: Scene, wheel: Rolling, sample: Samples) -> tuple[Array
         return None
     way = span(slides(scene, wheel))
     over = OVER * scene.factor * wheel.radius
-    along = turned(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, sample))
+    along = turn_vectors(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, sample))
     return start + (way[0] - over) * along, start + (way[1] + over) * along
 
 
-def slides(scene: Scene, wheel: Rolling) -> Array:
+def slides(scene: LinkageScene, wheel: Rolling) -> Array:
     """Way of a wheel's centre along its line at every sample."""
     through = scene.carried(wheel.on, wheel.along.through or (0.0, 0.0), slice(None))
-    along = turned(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, slice(None)))
+    along = turn_vectors(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, slice(None)))
     centre = scene.tracks[wheel.centre]
     offset = centre - (np.nan * centre if through is None else through)
     return np.asarray(np.sum(offset * along, axis=-1))
 
 
-def heading(scene: Scene, wheel: Rolling, sample: Samples) -> Array | float:
+def heading(scene: LinkageScene, wheel: Rolling, sample: Samples) -> Array | float:
     """Angle of the link that carries a track."""
     return 0.0 if wheel.on == "frame" else scene.turns[wheel.on][sample]
 
 
-def cylinders(scene: Scene, sample: int) -> Iterator[tuple[Drive, Array, Array, Array]]:
+def cylinders(scene: LinkageScene, sample: int) -> Iterator[tuple[Drive, Array, Array, Array]]:
     """Each cylinder with its foot, the end of its barrel and the end of its rod."""
     for drive in scene.mechanism.drives:
         if drive.distance is None:
@@ -95,7 +95,7 @@ def cylinders(scene: Scene, sample: int) -> Iterator[tuple[Drive, Array, Array, 
             yield drive, foot, foot + BARREL * shortest * (end - foot) / length, end
 
 
-def reaches(scene: Scene) -> list[Array]:
+def reaches(scene: LinkageScene) -> list[Array]:
     """Corners of what wheels and tracks need of the drawing's box."""
     found: list[Array] = []
     for wheel in scene.mechanism.rolling:
@@ -115,7 +115,7 @@ COAXIAL = 1e-9
 """Shafts nearer than this share of the drawing are one: no pitch circles tell their ratio."""
 
 
-def pitch_circles(scene: Scene, sample: int) -> Iterator[tuple[str, Disc]]:
+def pitch_circles(scene: LinkageScene, sample: int) -> Iterator[tuple[str, Disc]]:
     """Each meshing wheel by its link, with its circle; none of gears whose shafts the carrier does not hold.
 
     The circles touch where they mesh: r1 omega1 = -+ r2 omega2 against the carrier, the distance of the shafts
@@ -135,7 +135,7 @@ def pitch_circles(scene: Scene, sample: int) -> Iterator[tuple[str, Disc]]:
             yield link, Disc(shaft, radius, turn)
 
 
-def _shaft(scene: Scene, gear: Gear, link: str, sample: int) -> Array | None:
+def _shaft(scene: LinkageScene, gear: Gear, link: str, sample: int) -> Array | None:
     """Where a wheel turns on the carrier: the point that both have."""
     held = scene.mechanism.points_of(gear.carrier)
     shared = [point for point in scene.mechanism.points_of(link) if point in held]
@@ -145,6 +145,6 @@ def _shaft(scene: Scene, gear: Gear, link: str, sample: int) -> Array | None:
 # Symbols of instant centres as mathematical text.
 
 
-def subscripted(pair: Pair, bodies: int) -> str:
+def subscript(pair: Pair, bodies: int) -> str:
     """The symbol of a centre as mathematical text."""
     return f"$P_{{{pair[0]}{',' if bodies > 10 else ''}{pair[1]}}}$"

@@ -11,13 +11,13 @@ from matplotlib.axes import Axes
 
 from centrode.analysis.instant_centres.bodies import sliders_of
 from centrode.present.drawing import MARGIN
-from centrode.present.scene import Array, Scene, turned
+from centrode.present.scene import Array, LinkageScene, turn_vectors
 
 BEYOND = 1.0
 """How far out of the mechanism's box other places are shown, as a part of its extent."""
 
 
-def widened(scene: Scene, places: Array, room: tuple[float, float]) -> Scene:
+def widen(scene: LinkageScene, places: Array, room: tuple[float, float]) -> LinkageScene:
     """The scene with a box that also holds the places not too far out, at its size in so many inches."""
     reach = BEYOND * scene.extent
     low, high = scene.low - reach, scene.high + reach
@@ -35,7 +35,7 @@ def within(axes: Axes, place: Array) -> bool:
     return bool(left <= place[0] <= right and bottom <= place[1] <= top)
 
 
-def carried_by(scene: Scene, body: str, local: Array, sample: int) -> Array:
+def carried_by(scene: LinkageScene, body: str, local: Array, sample: int) -> Array:
     """Places (n, 2) [m] in the axes of a body, where they are at a sample, in the units of the display."""
     shown = scene.factor * local
     if body == "frame":
@@ -48,7 +48,7 @@ def carried_by(scene: Scene, body: str, local: Array, sample: int) -> Array:
     else:
         anchor = scene.tracks[guide.point][sample]
         angle = 0.0 if guide.on == "frame" else scene.turns[guide.on][sample]
-    return np.asarray(anchor + turned(shown.T, angle))
+    return np.asarray(anchor + turn_vectors(shown.T, angle))
 
 
 def segments_of(curves: Sequence[Array]) -> list[tuple[Array, Array]]:

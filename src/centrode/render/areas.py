@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from centrode.present.curves import CUT_DASHES, angle_ticks, legend_width, write_legend, write_title
 from centrode.present.style import INK, MUTED, PALETTE, Decimals
 from centrode.render.spelling import FigureSpelling, PlainSpelling
-from centrode.sheets.plots import Area, AreaDiagram, AreaKind, Path
+from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,7 +80,7 @@ def _draw_area(axes: Axes, area: Area, lines: Sequence[np.ndarray]) -> None:
         axes.axvspan(x[0], x[-1], facecolor=colour, zorder=1.2)
 
 
-def _draw_path(axes: Axes, path: Path, factors: tuple[float, float]) -> Line2D:
+def _draw_path(axes: Axes, path: AreaPath, factors: tuple[float, float]) -> Line2D:
     main = path.kind is AreaKind.MAIN
     (line,) = axes.plot(
         factors[0] * path.x,

@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from centrode.present.curves import legend_width, write_legend, write_title
-from centrode.present.displayed_units import formula, labelled
+from centrode.present.displayed_units import formula, label_with_unit
 from centrode.present.drawing import draw_mechanism
 from centrode.present.linkage_scene import scene_of
-from centrode.present.scene import Scene, box
+from centrode.present.scene import LinkageScene, box
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, pens
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.charts import BarChart, Bars, CarriedDisc, Hodograph, HodographCurve, LinkageWithDiscs
@@ -117,18 +117,18 @@ def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
         key += [] if circle is None else [(circle, name)]
     write_legend(axes, key, inches=float(height))
     axes.grid(visible=False)
-    axes.set_xlabel(labelled(formula("x"), str(display.length)))
-    axes.set_ylabel(labelled(formula("y"), str(display.length)))
+    axes.set_xlabel(label_with_unit(formula("x"), str(display.length)))
+    axes.set_ylabel(label_with_unit(formula("y"), str(display.length)))
     _write_titles(figure, drawing, display)
     return figure
 
 
-def _reach(scene: Scene, one: CarriedDisc) -> float:
+def _reach(scene: LinkageScene, one: CarriedDisc) -> float:
     """Radius of the circle that is drawn: the disc's own, else a sign."""
     return 2.4 * scene.sign if one.radius is None else max(one.radius * scene.factor, 1.5 * scene.sign)
 
 
-def _wide_enough(scene: Scene, discs: Sequence[CarriedDisc], sample: int) -> Scene:
+def _wide_enough(scene: LinkageScene, discs: Sequence[CarriedDisc], sample: int) -> LinkageScene:
     """The scene with corners that hold the discs too."""
     corners = [np.array([scene.low, scene.high])]
     for one in discs:
@@ -139,7 +139,7 @@ def _wide_enough(scene: Scene, discs: Sequence[CarriedDisc], sample: int) -> Sce
     return replace(scene, low=low, high=high)
 
 
-def _draw_disc(axes: Axes, scene: Scene, sample: int, one: CarriedDisc, colour: str) -> Circle | None:
+def _draw_disc(axes: Axes, scene: LinkageScene, sample: int, one: CarriedDisc, colour: str) -> Circle | None:
     """An arm from the base, and a filled circle; great discs lie behind the links."""
     at, base = scene.carried(one.link, one.place, sample), scene.at(sample).get(one.base)
     if at is None or base is None:

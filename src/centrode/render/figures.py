@@ -13,8 +13,7 @@ from matplotlib.lines import Line2D
 
 from centrode.equations.instants import CHANGE_POINT
 from centrode.locale import _
-from centrode.present.curves import Abscissa as DrawnAbscissa
-from centrode.present.curves import Panel, sheet, write_legend, write_title
+from centrode.present.curves import DrawnAbscissa, Panel, sheet, write_legend, write_title
 from centrode.present.figure_files import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, darkened, house_style
 from centrode.render.areas import area_figure
@@ -36,9 +35,9 @@ from centrode.sheets.plots import (
     Abscissa,
     AreaDiagram,
     Curve,
+    CurveDiagram,
     CurvePanel,
     CurveRole,
-    Diagram,
     EventKind,
     Overlay,
     PanelGrid,
@@ -97,7 +96,7 @@ def figure_of(picture: Picture, display: Display) -> Figure:
         match picture:
             case Plot():
                 return _plot(picture, display)
-            case Diagram():
+            case CurveDiagram():
                 return _diagram(picture, display)
             case PanelGrid():
                 return grid_figure(picture, display)
@@ -217,7 +216,7 @@ def _pen(curve: Curve) -> Pen:
     return Pen(colours[place % len(colours)], dashes)
 
 
-def _diagram(diagram: Diagram, display: Display) -> Figure:
+def _diagram(diagram: CurveDiagram, display: Display) -> Figure:
     spelling = FigureSpelling(display)
     across, x_label, _unit = spelling.label(diagram.x)
     up, y_label, _unit = spelling.label(diagram.y)

@@ -12,8 +12,8 @@ from centrode.present import signs
 from centrode.present.diagram_drawing import flat
 from centrode.present.displayed_units import plain
 from centrode.present.drawing import draw_body
-from centrode.present.page import Array, Page, View
-from centrode.present.scene import Scene, corners
+from centrode.present.page import Array, Page, PageView
+from centrode.present.scene import LinkageScene, corners
 from centrode.present.style import GROUND, INK, MUTED, Pen, pens
 from centrode.present.wheels import wheel_at
 from centrode.render.force_signs import force_arrows, moment_arc
@@ -28,7 +28,9 @@ TINY = 1e-12
 """Moments smaller than this part of the greatest force times length are none."""
 
 
-def draw_group(page: Page, view: View, found: ForcePolygons, group: GroupForces, scene: Scene) -> None:
+def draw_group(
+    page: Page, view: PageView, found: ForcePolygons, group: GroupForces, scene: LinkageScene
+) -> None:
     """Links, sliders and hinges of a group, its outer forces and the reactions of its outer joints."""
     axes = view.axes(page)
     sign = 1.1 * view.scale
@@ -49,7 +51,7 @@ def draw_group(page: Page, view: View, found: ForcePolygons, group: GroupForces,
     draw_forces(page, view, found, group, scene.factor)
 
 
-def draw_marks(page: Page, view: View, found: ForcePolygons, group: GroupForces, factor: float) -> None:
+def draw_marks(page: Page, view: PageView, found: ForcePolygons, group: GroupForces, factor: float) -> None:
     """Special points of the construction, if they lie in the view, with the lines on which they lie."""
     for name, mark in group.marks:
         at = view.mm(flat([factor * mark])[0])
@@ -76,8 +78,8 @@ def on_line(first: complex, second: complex, place: complex) -> bool:
 def draw_bodies(
     axes: Axes,
     page: Page,
-    view: View,
-    scene: Scene,
+    view: PageView,
+    scene: LinkageScene,
     group: GroupForces,
     colours: Mapping[str, Pen],
     sign: float,
@@ -106,8 +108,8 @@ def draw_bodies(
 def draw_guide(
     axes: Axes,
     page: Page,
-    view: View,
-    scene: Scene,
+    view: PageView,
+    scene: LinkageScene,
     guide: Guide,
     group: GroupForces,
     found: ForcePolygons,
@@ -145,7 +147,7 @@ def draw_guide(
         page.avoid(zip(outline, np.roll(outline, -1, axis=0), strict=True))
 
 
-def draw_forces(page: Page, view: View, found: ForcePolygons, group: GroupForces, factor: float) -> None:
+def draw_forces(page: Page, view: PageView, found: ForcePolygons, group: GroupForces, factor: float) -> None:
     """Outer forces in black, reactions of outer joints in the colour of their link."""
     colours = pens(found.mechanism.link_names)
     actions = [*group.actions, *group.reactions]

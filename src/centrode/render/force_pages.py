@@ -14,7 +14,7 @@ from centrode.locale import _
 from centrode.present.diagram_drawing import arrow, flat
 from centrode.present.displayed_units import shown_as
 from centrode.present.linkage_scene import scene_of
-from centrode.present.page import Array, Page, View, new_page
+from centrode.present.page import Array, Page, PageView, new_page
 from centrode.present.pictures import caption
 from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.render.force_groups import draw_group
@@ -52,7 +52,7 @@ def group_page(sheet: GroupPage) -> Figure:
     scene = scene_of(found.mechanism, found.exact)
     places = flat([factor * place for place in shown_places(found, group)])
     length = group_scale(found, group)
-    view = View.about(np.array([LEFT, FOOT]), np.array([drawn, height]), places, length)
+    view = PageView.about(np.array([LEFT, FOOT]), np.array([drawn, height]), places, length)
     draw_group(page, view, found, group, scene)
     corner, size = np.array([LEFT + drawn + GUTTER, FOOT]), np.array([room, height])
     scale = draw_polygons(page, found, group, corner, size)
@@ -145,7 +145,7 @@ def draw_polygon(
 ) -> None:
     """The forces one behind the other, the sums of reactions found in parts, and the inner reactions."""
     ends = [0j, *(vector.end for vector in polygon.vectors)]
-    view = View.about(corner, size, flat(ends), scale)
+    view = PageView.about(corner, size, flat(ends), scale)
 
     def draw(start: complex, end: complex, name: str, colour: str, dashes: object, width: float) -> None:
         if abs(end - start) < SHORT * scale:

@@ -20,9 +20,9 @@ from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, f
 from centrode.present.displayed_units import plain, shown_as
 from centrode.present.drawing import draw_drive, draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
-from centrode.present.page import Array, Page, View, new_page
+from centrode.present.page import Array, Page, PageView, new_page
 from centrode.present.pictures import caption
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.present.tags import lines
@@ -73,7 +73,7 @@ def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     return page.figure
 
 
-def placed(found: Diagrams, factor: float, per_mm: float) -> tuple[Scene, View]:
+def placed(found: Diagrams, factor: float, per_mm: float) -> tuple[LinkageScene, PageView]:
     """The scene with its signs as large as on the page, and a view of all but the instant centres that do not fit.
 
     Slots are as long as their pins travel in the whole motion; the view is that of the instant.
@@ -94,7 +94,7 @@ def placed(found: Diagrams, factor: float, per_mm: float) -> tuple[Scene, View]:
         chosen = more
     inches = SIGN_INCHES * now.extent / (SIGN * scale)
     scene = replace(whole, low=now.low, high=now.high, inches=inches)
-    return scene, View.about(CORNER, SIZE, chosen, scale)
+    return scene, PageView.about(CORNER, SIZE, chosen, scale)
 
 
 def rates_of(found: Diagrams) -> dict[str, complex]:
@@ -102,7 +102,7 @@ def rates_of(found: Diagrams) -> dict[str, complex]:
     return {name: found.velocity.images[name] for name in found.mechanism.moving_points}
 
 
-def draw_mechanism_in(axes: Axes, scene: Scene) -> None:
+def draw_mechanism_in(axes: Axes, scene: LinkageScene) -> None:
     """The mechanism in its conventional signs, without names."""
     links = pens(scene.mechanism.link_names)
     draw_frame(axes, scene, 0)
@@ -112,7 +112,7 @@ def draw_mechanism_in(axes: Axes, scene: Scene) -> None:
     draw_drive(axes, scene, 0)
 
 
-def draw_velocities(page: Page, view: View, found: Diagrams, factor: float, per_mm: float) -> None:
+def draw_velocities(page: Page, view: PageView, found: Diagrams, factor: float, per_mm: float) -> None:
     """Velocities of the moving points as arrows, a millimetre standing for `per_mm` [m/s]."""
     for name, rate in rates_of(found).items():
         start = view.mm(flat([factor * found.places[name]])[0])
@@ -123,7 +123,9 @@ def draw_velocities(page: Page, view: View, found: Diagrams, factor: float, per_
         page.name(end, symbol("v", name), clear=0.8, size=7.5)
 
 
-def draw_centres(page: Page, view: View, found: Diagrams, factor: float, colours: Mapping[str, Pen]) -> None:
+def draw_centres(
+    page: Page, view: PageView, found: Diagrams, factor: float, colours: Mapping[str, Pen]
+) -> None:
     """Instant centres with the perpendiculars that meet there, of those that lie on the page."""
     names: list[tuple[Array, list[str]]] = []
     for link, centre in found.centres.items():
@@ -147,7 +149,9 @@ def draw_centres(page: Page, view: View, found: Diagrams, factor: float, colours
         page.name(at, text, clear=1.4, size=7.5)
 
 
-def draw_senses(page: Page, view: View, scene: Scene, found: Diagrams, colours: Mapping[str, Pen]) -> None:
+def draw_senses(
+    page: Page, view: PageView, scene: LinkageScene, found: Diagrams, colours: Mapping[str, Pen]
+) -> None:
     """An arc with a head in the middle of every link that turns."""
     places = scene.at(0)
     for link, turn in found.velocity.turns.items():

@@ -12,7 +12,7 @@ from centrode.locale import _
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset
 from centrode.present.displayed_units import shown_as
-from centrode.present.page import Page, View, new_page
+from centrode.present.page import Page, PageView, new_page
 from centrode.present.pictures import caption
 from centrode.present.scene import corners
 from centrode.present.style import INK, pens
@@ -45,7 +45,7 @@ def lever_page(sheet: LeverPage) -> Figure:
     corner, size = np.array([LEFT, FOOT]), np.array([WIDE * wide, high - TOP - FOOT - GUTTER])
     ends = flat([0j, *lever.images.values(), *(one.image for one in lever.forces)])
     scale = lever_scale(found, lever)
-    view = View.about(corner, size, factor * ends, scale)
+    view = PageView.about(corner, size, factor * ends, scale)
     draw_outlines(page, view, found, lever, factor)
     name_images(page, view, lever, factor)
     draw_forces(page, view, found, lever, factor)
@@ -74,7 +74,7 @@ def lever_scale(found: ForcePolygons, lever: Lever) -> float:
     return round_scale(float(np.max(factor * np.ptp(ends, axis=0) / room)), 1.0)
 
 
-def draw_outlines(page: Page, view: View, found: ForcePolygons, lever: Lever, factor: float) -> None:
+def draw_outlines(page: Page, view: PageView, found: ForcePolygons, lever: Lever, factor: float) -> None:
     """Images of the links, and thin lines from the pole."""
     colours = pens(found.mechanism.link_names)
     for name, link in found.mechanism.links.items():
@@ -88,7 +88,7 @@ def draw_outlines(page: Page, view: View, found: ForcePolygons, lever: Lever, fa
         page.avoid(pairwise(path))
 
 
-def name_images(page: Page, view: View, lever: Lever, factor: float) -> None:
+def name_images(page: Page, view: PageView, lever: Lever, factor: float) -> None:
     """The pole and the images of the points; those that coincide share a name."""
     named = [(view.mm(np.zeros(2)), ["p_v"])]
     for name, image in lever.images.items():
@@ -104,7 +104,7 @@ def name_images(page: Page, view: View, lever: Lever, factor: float) -> None:
         page.name(at, typeset(text), clear=1.6, size=9.0)
 
 
-def draw_forces(page: Page, view: View, found: ForcePolygons, lever: Lever, factor: float) -> None:
+def draw_forces(page: Page, view: PageView, found: ForcePolygons, lever: Lever, factor: float) -> None:
     """Forces at their images, couples in the middle of the images of their links; at the pole none turns the lever."""
     acting = [one for one in lever.forces if one.force != 0 and one.image != 0]
     force_arrows(page, [(o.name, o.force, view.mm(flat([factor * o.image])[0]), INK) for o in acting])

@@ -16,9 +16,9 @@ from centrode.present.diagram_drawing import typeset
 from centrode.present.displayed_units import plain, shown_as
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
-from centrode.present.page import Page, View, new_page
+from centrode.present.page import Page, PageView, new_page
 from centrode.present.pictures import instant_text
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.spelled_figures import AS_WRITTEN
 from centrode.present.style import INK, MUTED, pens
@@ -49,7 +49,7 @@ def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
     scene = scene_of(mechanism, joined)
     _factor, unit = shown_as("m", display)
     scale = round_scale(float(np.max((scene.high - scene.low) / SIZE)), 0.86)
-    view = View.about(CORNER, SIZE, np.array([scene.low, scene.high]), scale)
+    view = PageView.about(CORNER, SIZE, np.array([scene.low, scene.high]), scale)
     scene = replace(scene, inches=SIGN_INCHES * scene.extent / (SIGN * scale))
     count = sheet.positions.sizes["sample"]
     draw_positions(page, view, scene, count)
@@ -66,7 +66,7 @@ def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
     return page.figure
 
 
-def draw_positions(page: Page, view: View, scene: Scene, count: int) -> None:
+def draw_positions(page: Page, view: PageView, scene: LinkageScene, count: int) -> None:
     """All positions, the first over the others."""
     axes = view.axes(page)
     colours = pens(scene.mechanism.link_names)
@@ -79,14 +79,14 @@ def draw_positions(page: Page, view: View, scene: Scene, count: int) -> None:
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
 
 
-def draw_paths(page: Page, view: View, scene: Scene, count: int) -> None:
+def draw_paths(page: Page, view: PageView, scene: LinkageScene, count: int) -> None:
     """Paths of the moving points, thin."""
     for name in scene.mechanism.moving_points:
         path = np.array([view.mm(place) for place in scene.tracks[name][count:]])
         page.overlay.plot(path[:, 0], path[:, 1], color=MUTED, linewidth=0.7, zorder=2.5)
 
 
-def number_path(page: Page, view: View, scene: Scene, name: str, count: int) -> None:
+def number_path(page: Page, view: PageView, scene: LinkageScene, name: str, count: int) -> None:
     """Numbers of the positions beside a point's places, with a dot at each."""
     for sample in range(count):
         place = scene.tracks[name][sample]

@@ -19,7 +19,7 @@ from centrode.present.drawing import draw_mechanism
 from centrode.present.linkage_scene import scene_of
 from centrode.present.pictures import caption, initial_sample, label_lengths
 from centrode.present.scene import Array
-from centrode.present.scene import Scene as Sheet
+from centrode.present.scene import LinkageScene as Sheet
 from centrode.present.sphere.globe import (
     STEPS,
     Globe,
@@ -32,7 +32,7 @@ from centrode.present.sphere.globe import (
 )
 from centrode.present.style import INK, MUTED, pens
 from centrode.present.tags import Tag, lines, write_tags
-from centrode.present.window import carried_by, segments_of, widened, within
+from centrode.present.window import carried_by, segments_of, widen, within
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.scenes import ChordKind, CurveKind, LineKind, Mark, MarkKind
 
@@ -160,7 +160,7 @@ class _Drawing:
         ]
         places += [self._placed(mark).place[None] for mark in self.scene.marks]
         room = (self.box[2] * WIDTH - 0.3, self.box[3] * HEIGHT - 0.3)
-        return widened(self.paper, np.concatenate([*places, np.empty((0, 2))]), room)
+        return widen(self.paper, np.concatenate([*places, np.empty((0, 2))]), room)
 
     def _chosen_sample(self) -> int:
         """The sample nearest to the initial one at which the curves touch within the window, else anywhere."""
@@ -257,7 +257,7 @@ class _Drawing:
             if texts is None:
                 entries.append((one.flat, texts := []))
             texts.append(self.spelling.text(one.mark.name))
-        return [Tag(place, _wrapped(texts)) for place, texts in entries]
+        return [Tag(place, _wrap(texts)) for place, texts in entries]
 
     # what stands beside it
 
@@ -349,7 +349,7 @@ def _ends(places: Sequence[Array], direction: Array | None, far: float) -> Seque
     return inside[int(np.argmin(shares))], inside[int(np.argmax(shares))]
 
 
-def _wrapped(texts: Sequence[str]) -> str:
+def _wrap(texts: Sequence[str]) -> str:
     """Texts side by side, three in a line."""
     return "\n".join(", ".join(texts[k : k + 3]) for k in range(0, len(texts), 3))
 

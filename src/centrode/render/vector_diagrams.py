@@ -21,7 +21,7 @@ from centrode.present.diagram_drawing import (
     write_head,
 )
 from centrode.present.displayed_units import shown_as
-from centrode.present.page import Array, Page, View, new_page
+from centrode.present.page import Array, Page, PageView, new_page
 from centrode.present.pictures import caption
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.quantities import typeset_unit
@@ -54,7 +54,7 @@ def vector_diagram_figure(sheet: VectorDiagramPage, display: Display) -> Figure:
     scale = factor * diagram.scale
     ends = [0j, *diagram.images.values(), *diagram.hidden.values()]
     ends += [end for edge in diagram.edges for end in (edge.start, edge.end)]
-    view = View.about(CORNER, SIZE, flat([factor * end for end in ends]), scale)
+    view = PageView.about(CORNER, SIZE, flat([factor * end for end in ends]), scale)
     colours = pens(found.mechanism.link_names)
     drawn = draw_edges(page, view, diagram, factor, colours)
     draw_images(page, view, diagram, factor, found.mechanism)
@@ -73,7 +73,7 @@ def vector_diagram_figure(sheet: VectorDiagramPage, display: Display) -> Figure:
 
 
 def draw_edges(
-    page: Page, view: View, diagram: Diagram, factor: float, colours: Mapping[str, Pen]
+    page: Page, view: PageView, diagram: Diagram, factor: float, colours: Mapping[str, Pen]
 ) -> list[Edge]:
     """Parts of vector equations and images of links; those too short or drawn already are left out."""
     drawn: list[Edge] = []
@@ -96,7 +96,7 @@ def draw_edges(
     return drawn
 
 
-def draw_images(page: Page, view: View, diagram: Diagram, factor: float, mechanism: Mechanism) -> None:
+def draw_images(page: Page, view: PageView, diagram: Diagram, factor: float, mechanism: Mechanism) -> None:
     """The pole, and an arrow from it to the image of every point; images that coincide share a name.
 
     The pole is p_v or p_a, so that it is not taken for the image of a point P.
@@ -120,7 +120,7 @@ def draw_images(page: Page, view: View, diagram: Diagram, factor: float, mechani
 
 
 def name_edges(
-    page: Page, view: View, edges: Sequence[Edge], order: int, factor: float, colours: Mapping[str, Pen]
+    page: Page, view: PageView, edges: Sequence[Edge], order: int, factor: float, colours: Mapping[str, Pen]
 ) -> None:
     """Names of relative vectors and of the parts of accelerations, at their middles."""
     letter = "v" if order == 1 else "a"

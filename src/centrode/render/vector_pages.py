@@ -14,9 +14,9 @@ from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, w
 from centrode.present.displayed_units import plain, shown_as
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
-from centrode.present.page import Array, Page, View, new_page
+from centrode.present.page import Array, Page, PageView, new_page
 from centrode.present.pictures import caption
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.style import GROUND, INK, pens
 from centrode.present.tags import lines
@@ -47,7 +47,7 @@ def vector_page(sheet: VectorPage) -> Figure:
     # vectors without a body's colour follow the scale of the others
     greatest = max(float(np.nan_to_num(np.hypot(*one.components))) for one in sheet.vectors if one.link)
     page, per_mm = new_page(), round_scale(greatest, LONGEST)
-    scene, view = _placed(scene, sample)
+    scene, view = _place(scene, sample)
     axes, links = view.axes(page), pens(mechanism.link_names)
     draw_frame(axes, scene, sample)
     draw_cams(axes, scene, sample)
@@ -74,7 +74,7 @@ def vector_page(sheet: VectorPage) -> Figure:
     return page.figure
 
 
-def _placed(scene: Scene, sample: int) -> tuple[Scene, View]:
+def _place(scene: LinkageScene, sample: int) -> tuple[LinkageScene, PageView]:
     """The scene with signs as large as on the page, and a view of the sample with room for arrows around it."""
     spots = [np.array(list(scene.at(sample).values()))]
     for guide in scene.mechanism.guides:
@@ -84,7 +84,7 @@ def _placed(scene: Scene, sample: int) -> tuple[Scene, View]:
     extent = float(np.max(np.ptp(around, axis=0))) or 1.0
     scale = round_scale(extent, BODY)
     inches = SIGN_INCHES * scene.extent / (SIGN * scale)
-    return replace(scene, inches=inches), View.about(CORNER, SIZE, around, scale)
+    return replace(scene, inches=inches), PageView.about(CORNER, SIZE, around, scale)
 
 
 def _draw(page: Page, start: Array, vector: VectorOnBody, per_mm: float, name: str, colour: str) -> None:

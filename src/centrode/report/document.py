@@ -10,9 +10,9 @@ from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
-from centrode.render.document.blocks import Chapter, Report
+from centrode.render.document.blocks import ChapterBlocks, Report
 from centrode.report.chapters import CHAPTERS, Kind
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
 
 Said: TypeAlias = Callable[[str, int, int], None]
@@ -52,7 +52,7 @@ def report(
         The mechanism does not assemble, or the options name what is not there.
     """
     with nullcontext() if language is None else speaking(language):
-        study = ReportStudy(description, settled(description, options or ReportOptions(), CHAPTERS))
+        study = ReportStudy(description, settle_options(description, options or ReportOptions(), CHAPTERS))
         study.assemble()
         wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
         chapters = tuple(_chapters(wanted, study, said))
@@ -61,7 +61,7 @@ def report(
         return Report(title, subtitle, chosen_language(), chapters)
 
 
-def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[Chapter]:
+def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:
     for done, (key, kind) in enumerate(wanted.items()):
         if said is not None:
             said(_(kind.title), done, len(wanted))
@@ -70,12 +70,12 @@ def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None)
             yield chapter
 
 
-def _chapter(key: str, kind: Kind, study: ReportStudy) -> Chapter | None:
+def _chapter(key: str, kind: Kind, study: ReportStudy) -> ChapterBlocks | None:
     """A chapter; with the reason in its place where it cannot be made, or has nothing to tell but was asked for."""
     try:
         chapter = kind.make(study)
     except CentrodeError as failure:
-        return Chapter(key, _(kind.title), missing=str(failure))
+        return ChapterBlocks(key, _(kind.title), missing=str(failure))
     if chapter is None and study.wishes.chapters is not None:
-        return Chapter(key, _(kind.title), missing=_("the description has nothing for this chapter"))
+        return ChapterBlocks(key, _(kind.title), missing=_("the description has nothing for this chapter"))
     return chapter

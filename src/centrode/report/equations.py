@@ -9,9 +9,17 @@ from centrode.equations.spelling import SymbolFormula, spell_formula
 from centrode.equations.symbols import Letter, Parts, SumTerm, Wave
 from centrode.locale import _
 from centrode.present.equations import page
-from centrode.present.equations.typst import LONG, TypstSpelling, in_degrees, unbracketed
-from centrode.render.document.blocks import Block, Formula, Paragraph, Section, System, Table, shown
-from centrode.render.document.numbers import Numbers, respelled
+from centrode.present.equations.typst import LONG, TypstSpelling, in_degrees, strip_brackets
+from centrode.render.document.blocks import (
+    Block,
+    FormulaBlock,
+    ParagraphBlock,
+    SectionBlocks,
+    SystemBlock,
+    TableBlock,
+    shown,
+)
+from centrode.render.document.numbers import Numbers, respell
 from centrode.render.document.rows import degrees
 
 MOST_TERMS, MOST_NUMBERS = 6, 26
@@ -29,7 +37,7 @@ class NumberSpelling(TypstSpelling):
         self.numbers = numbers
 
     def letter(self, letter: Letter) -> str:
-        return _guarded(self.numbers.math(self.values[letter]))
+        return _in_brackets(self.numbers.math(self.values[letter]))
 
     def power(self, base: str, power: int) -> str:
         if power != 1 and "dot.op" in base and not base.startswith("("):
@@ -46,7 +54,7 @@ class NumberSpelling(TypstSpelling):
             sign = ("- " if count < 0 else "+ ") if text else ("-" if count < 0 else "")
             size = "" if abs(count) == 1 else f"{abs(count)} dot.op "
             bare = not text and count > 0 and abs(count) == 1
-            text += (" " if text else "") + sign + size + (value if bare else _guarded(value))
+            text += (" " if text else "") + sign + size + (value if bare else _in_brackets(value))
         return text
 
     def join(self, factors: Sequence[str]) -> str:
@@ -55,8 +63,8 @@ class NumberSpelling(TypstSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         top, bottom = self.join(above) or "1", self.join(below)
         if len(top) > LONG:
-            return f"frac(1, {unbracketed(bottom)}) dot.op {top}"
-        return f"frac({unbracketed(top) if len(above) == 1 else top}, {unbracketed(bottom)})"
+            return f"frac(1, {strip_brackets(bottom)}) dot.op {top}"
+        return f"frac({strip_brackets(top) if len(above) == 1 else top}, {strip_brackets(bottom)})"
 
     def times(self, front: str, other: str) -> str:
         return self.join([front, other])
@@ -68,7 +76,7 @@ class NumberSpelling(TypstSpelling):
         return in_degrees(text) if degrees else text
 
 
-def _guarded(text: str) -> str:
+def _in_brackets(text: str) -> str:
     """A negative number in brackets of its own."""
     return f"({text})" if text.startswith("-") else text
 
@@ -96,7 +104,7 @@ def _count(term: SumTerm) -> int:
     return len(term.letters) + sum(len(one.parts) for one, _power in term.waves)
 
 
-def cleaned(values: Mapping[Letter, float], rates: Iterable[Letter]) -> dict[Letter, float]:
+def clean_rates(values: Mapping[Letter, float], rates: Iterable[Letter]) -> dict[Letter, float]:
     """Values as they are shown: rates that are nothing but the rounding of others are zero."""
     found = dict(values)
     sizes = [abs(values[letter]) for letter in rates if math.isfinite(values[letter])]
@@ -110,9 +118,9 @@ def cleaned(values: Mapping[Letter, float], rates: Iterable[Letter]) -> dict[Let
 # prints.
 
 
-def section_of(section: page.Section) -> Section:
+def section_of(section: page.PageSection) -> SectionBlocks:
     """A section of the equations' page as one of a report."""
-    return Section(section.heading, blocks_of(section.entries))
+    return SectionBlocks(section.heading, blocks_of(section.entries))
 
 
 def blocks_of(entries: Iterable[page.Entry]) -> tuple[Block, ...]:
@@ -124,16 +132,16 @@ def blocks_of(entries: Iterable[page.Entry]) -> tuple[Block, ...]:
             lines.append(entry.parts)
             continue
         if lines:
-            found.append(Formula(tuple(lines)))
+            found.append(FormulaBlock(tuple(lines)))
             lines = []
         found.append(_block(entry))
-    return (*found, Formula(tuple(lines))) if lines else tuple(found)
+    return (*found, FormulaBlock(tuple(lines))) if lines else tuple(found)
 
 
-def _block(entry: page.System | page.Symbols | page.Note) -> Block:
-    if isinstance(entry, page.System):
-        return System(entry.matrix, entry.unknowns, entry.right)
+def _block(entry: page.PageSystem | page.Symbols | page.Note) -> Block:
+    if isinstance(entry, page.PageSystem):
+        return SystemBlock(entry.matrix, entry.unknowns, entry.right)
     if isinstance(entry, page.Note):
-        return Paragraph(entry.text)
-    rows = tuple((f"${name}$", respelled(degrees(value)), shown(words)) for name, value, words in entry.rows)
-    return Table((_("symbol"), _("value"), _("meaning")), rows, "", (False, True, False))
+        return ParagraphBlock(entry.text)
+    rows = tuple((f"${name}$", respell(degrees(value)), shown(words)) for name, value, words in entry.rows)
+    return TableBlock((_("symbol"), _("value"), _("meaning")), rows, "", (False, True, False))

@@ -18,7 +18,7 @@ from centrode.render.document.blocks import Report
 # What documents need is an extra: only where they are asked for.
 _html, _pdf = (
     functools.partial(lazy_loader.load, f"centrode.report.{name}", suppress_warning=True)
-    for name in ("html.page", "pdf.document")
+    for name in ("html.page", "pdf_document")
 )
 
 FORMATS: Mapping[str, Callable[[Report], bytes]] = {

@@ -12,7 +12,7 @@ _NAME = re.compile(r"[\w.]$")
 _WAVES = ("sin", "cos", "tan", "arcsin", "arccos", "arctan", "exp", "ln")
 
 
-def checked(formula: str) -> str:
+def check_formula(formula: str) -> str:
     """The formula; ValueError, which is a fault of whoever made it, for what only code or text could need."""
     if _CODE.search(_ESCAPED.sub("x", _STRING.sub("x", formula))):
         raise ValueError(f"not a formula: {formula!r}")

@@ -12,22 +12,22 @@ from typing import Any
 import typst
 
 from centrode.locale import _
-from centrode.present.equations.typst import quoted
+from centrode.present.equations.typst import quote
 from centrode.render.document.blocks import (
     Block,
-    Chapter,
-    Check,
-    Formula,
-    Items,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ItemsBlock,
     Moving,
-    Paragraph,
+    ParagraphBlock,
     Picture,
     Report,
-    Section,
-    System,
-    Table,
+    SectionBlocks,
+    SystemBlock,
+    TableBlock,
 )
-from centrode.report.mathematics import checked, pieces_of
+from centrode.report.mathematics import check_formula, pieces_of
 from centrode.report.texts import parts_of
 
 # A report as the source of a typst document; everything a user wrote stands in it as a string.
@@ -63,24 +63,24 @@ class Source:
         contents = _("Contents")
         yield '#import "style.typ": *'
         yield (
-            f"#show: document.with(title: {quoted(report.title)}, subtitle: {quoted(report.subtitle)},"
-            f" language: {quoted(report.language)}, contents: {quoted(contents)},"
+            f"#show: document.with(title: {quote(report.title)}, subtitle: {quote(report.subtitle)},"
+            f" language: {quote(report.language)}, contents: {quote(contents)},"
             f" long: {'true' if _lines_of_contents(report) > FIRST_PAGE else 'false'})"
         )
         for chapter in report.chapters:
             yield from self._chapter(chapter)
 
-    def _chapter(self, chapter: Chapter) -> Iterator[str]:
-        yield f"#heading(level: 1, {quoted(chapter.title)})"
+    def _chapter(self, chapter: ChapterBlocks) -> Iterator[str]:
+        yield f"#heading(level: 1, {quote(chapter.title)})"
         if chapter.missing:
             words = _("This chapter could not be made: {reason}").format(reason=chapter.missing)
-            yield f"#missing({quoted(words)})"
+            yield f"#missing({quote(words)})"
         for section in chapter.sections:
             yield from self._section(section)
 
-    def _section(self, section: Section) -> Iterator[str]:
+    def _section(self, section: SectionBlocks) -> Iterator[str]:
         if section.title:
-            yield f"#heading(level: 2, {quoted(section.title)})"
+            yield f"#heading(level: 2, {quote(section.title)})"
         for number, block in enumerate(section.blocks):
             shown = self._shown(block)
             yield f"#block(sticky: true, {shown[1:]})" if _announces(section.blocks[number:]) else shown
@@ -90,26 +90,26 @@ class Source:
         raise TypeError(f"no block of a report: {type(block).__name__}")
 
     @_shown.register
-    def _paragraph(self, block: Paragraph) -> str:
+    def _paragraph(self, block: ParagraphBlock) -> str:
         return f"#par({content(block.text)})"
 
     @_shown.register
-    def _items(self, block: Items) -> str:
+    def _items(self, block: ItemsBlock) -> str:
         kind = "enum" if block.numbered else "list"
         return f"#{kind}({', '.join(map(content, block.texts))})"
 
     @_shown.register
-    def _formula(self, block: Formula) -> str:
+    def _formula(self, block: FormulaBlock) -> str:
         return f"#relations({_relations(block.lines)})"
 
     @_shown.register
-    def _system(self, block: System) -> str:
+    def _system(self, block: SystemBlock) -> str:
         matrix = _array([_array([_math(entry) for entry in row]) for row in block.matrix])
         unknowns, right = (_array([_math(one) for one in column]) for column in (block.unknowns, block.right))
         return f"#system({matrix}, {unknowns}, {right}, {_relations(_one_by_one(block))})"
 
     @_shown.register
-    def _table(self, block: Table) -> str:
+    def _table(self, block: TableBlock) -> str:
         numbers = block.numbers or (False,) * len(block.head)
         columns = [
             _column(head, [row[i] for row in block.rows], numbers[i]) for i, head in enumerate(block.head)
@@ -121,14 +121,14 @@ class Source:
     def _picture(self, block: Picture) -> str:
         name = f"pictures/{len(self.files) + 1}.svg"
         self.files[name] = block.svg
-        return f"#picture({quoted(name)}, {_width(block):.3f}in, {_caption(block.caption)})"
+        return f"#picture({quote(name)}, {_width(block):.3f}in, {_caption(block.caption)})"
 
     @_shown.register
     def _moving(self, block: Moving) -> str:
         return self._picture(replace(block.still, caption=block.caption or block.still.caption))
 
     @_shown.register
-    def _check(self, block: Check) -> str:
+    def _check(self, block: CheckBlock) -> str:
         return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
 
 
@@ -144,28 +144,26 @@ def _announces(blocks: Sequence[Block]) -> bool:
     Lines that end with a colon announce a line too.
     """
     block, *others = blocks
-    if not isinstance(block, Paragraph) or not others or len(block.text) > ANNOUNCEMENT:
+    if not isinstance(block, ParagraphBlock) or not others or len(block.text) > ANNOUNCEMENT:
         return False
-    return not isinstance(others[0], Paragraph) or (block.text.endswith(":") and _announces(others))
+    return not isinstance(others[0], ParagraphBlock) or (block.text.endswith(":") and _announces(others))
 
 
 def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
-    parts = [_math(part.text) if part.mathematics else f"#{quoted(part.text)};" for part in parts_of(marked)]
+    parts = [_math(part.text) if part.mathematics else f"#{quote(part.text)};" for part in parts_of(marked)]
     return f"[{''.join(parts)}]"
 
 
 def _math(formula: str) -> str:
     """Mathematics; a blank at both ends would set it apart from its sentence."""
-    return f"${checked(formula).strip()}$"
+    return f"${check_formula(formula).strip()}$"
 
 
 def _cell(text: str) -> str:
     """A cell of a table: text without mathematics is a string, which typst reads much faster."""
     parts = parts_of(text)
-    return (
-        content(text) if any(part.mathematics for part in parts) else quoted("".join(p.text for p in parts))
-    )
+    return content(text) if any(part.mathematics for part in parts) else quote("".join(p.text for p in parts))
 
 
 def _caption(text: str) -> str:
@@ -183,13 +181,13 @@ def _relations(lines: Sequence[Sequence[str]]) -> str:
 def _pieces(formula: str) -> str:
     """The pieces of a formula, each with the finer ones that it can be cut into: ((coarse, (fine, ...)), ...)."""
     found = []
-    for piece in pieces_of(checked(formula)):
+    for piece in pieces_of(check_formula(formula)):
         fine = pieces_of(piece, depth=1)
         found.append(f"(${piece}$, {_array([f'${one}$' for one in fine])})")
     return _array(found)
 
 
-def _one_by_one(system: System) -> list[tuple[str, ...]]:
+def _one_by_one(system: SystemBlock) -> list[tuple[str, ...]]:
     """The equations of a system that no page is wide enough for."""
     lines: list[tuple[str, ...]] = []
     for row, right in zip(system.matrix, system.right, strict=True):
@@ -217,7 +215,7 @@ def _column(head: str, cells: Sequence[str], number: bool) -> str:
         words += sorted(found, key=lambda word: (-len(word), word))[:WIDEST]
     fields = {
         "head": content(head),
-        "words": _array(words or [quoted("")]),
+        "words": _array(words or [quote("")]),
         "longest": _array([_cell(cell) for cell in longest]),
         "number": "true" if number else "false",
     }
@@ -231,7 +229,7 @@ def _words(text: str) -> list[str]:
         if part.mathematics:
             found.append(_math(part.text))
         else:
-            found += [quoted(word) for word in re.split(r"\s+", part.text) if word]
+            found += [quote(word) for word in re.split(r"\s+", part.text) if word]
     return found
 
 

@@ -55,7 +55,7 @@ def circle(radius: float, spoke: bool = False) -> Array:
     return np.concatenate([rim, np.zeros((1, 2))]) if spoke else rim
 
 
-def hatched(start: Array, end: Array, away: Array, size: float) -> Array:
+def hatch(start: Array, end: Array, away: Array, size: float) -> Array:
     """A line (n, 2) with strokes on the side that the unit vector `away` points to."""
     along = (end - start) / max(float(np.hypot(*(end - start))), np.finfo(float).tiny)
     count = max(2, round(float(np.hypot(*(end - start))) / (0.9 * size)))
@@ -158,7 +158,7 @@ def _stem(layer: FollowerLayer, tips: Array) -> Iterator[Outline]:
     for side in (-1.0, 1.0):
         x = tips[0, 0] + 1.2 * side * layer.size
         ends = np.array([x, low]), np.array([x, low + WALLS * layer.far])
-        yield Outline(hatched(*ends, np.array([side, 0.0]), layer.size), AT_REST, GROUND)
+        yield Outline(hatch(*ends, np.array([side, 0.0]), layer.size), AT_REST, GROUND)
 
 
 def _still(layer: FollowerLayer, view: View) -> Figure:
@@ -265,7 +265,7 @@ def _ground(wheel: WheelMover, poses: list[WheelPose]) -> Iterator[Outline]:
     low = apart * math.floor((hubs.min() - 2 * far) / apart)
     high = apart * math.ceil((hubs.max() + 2 * far) / apart)
     passing = np.column_stack([-hubs, np.zeros((len(hubs), 2))])
-    line = hatched(np.array([low, 0.0]), np.array([high, 0.0]), np.array([0.0, -1.0]), apart / 0.9)
+    line = hatch(np.array([low, 0.0]), np.array([high, 0.0]), np.array([0.0, -1.0]), apart / 0.9)
     yield Outline(line, passing, GROUND)
     ends = np.array([-wheel.half, wheel.half])
     own = wheel.travel(ends) + wheel.touch(ends)

@@ -16,14 +16,14 @@ from centrode.present import signs
 from centrode.present.drawing import MARGIN, draw_mechanism, nearest
 from centrode.present.linkage_scene import scene_of
 from centrode.present.pictures import complete, initial_sample
-from centrode.present.scene import Scene, corners, span
+from centrode.present.scene import LinkageScene, corners, span
 from centrode.present.sphere.globe import Globe, draw_globe, globe_of
 from centrode.present.style import GROUND, INK, house_style, pens
 from centrode.present.wheels import BARREL, OVER, slides
-from centrode.render.document.blocks import Moving, Outline, Ring, shown
+from centrode.render.document.blocks import Moving, Outline, RingBlock, shown
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import NARROW, Numbers
-from centrode.report.player_cams import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatched
+from centrode.report.player_cams import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
 
 if TYPE_CHECKING:
     import xarray
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 # What moves beside the lines of links: slots, blocks on rods, cylinders, wheels, tracks, circles of guides.
 
 
-def shapes_of(scene: Scene, samples: Samples) -> tuple[Outline, ...]:
+def shapes_of(scene: LinkageScene, samples: Samples) -> tuple[Outline, ...]:
     """The outlines of a planar mechanism [m], those below first."""
     found = [*_grounds(scene), *_wheels(scene, samples), *_slots(scene, samples), *_cylinders(scene, samples)]
     found += [one for cam in scene.cams for one in cam_shapes(cam, samples, scene.sign)]
     return tuple(_in_metres(one, scene.factor) for one in found)
 
 
-def rings_of(globe: Globe, samples: Samples) -> tuple[Ring, ...]:
+def rings_of(globe: Globe, samples: Samples) -> tuple[RingBlock, ...]:
     """The circles of a spherical mechanism's guides."""
     colours = pens(globe.mechanism.link_names)
     found = []
@@ -53,7 +53,7 @@ def rings_of(globe: Globe, samples: Samples) -> tuple[Ring, ...]:
         poles = [globe.carried(guide.on, local, int(sample)) for sample in at]
         colour = GROUND if guide.on == "frame" else colours[guide.on].colour
         kept = np.array([np.full(3, np.nan) if one is None else one for one in poles])
-        found.append(Ring(kept, float(guide.arc), colour))
+        found.append(RingBlock(kept, float(guide.arc), colour))
     return tuple(found)
 
 
@@ -62,7 +62,9 @@ def _in_metres(one: Outline, factor: float) -> Outline:
     return Outline(one.corners / factor, poses, one.colour, one.filled, one.behind, one.white)
 
 
-def _poses(scene: Scene, link: str, samples: Samples, local: Sequence[float] = (0.0, 0.0)) -> Array | None:
+def _poses(
+    scene: LinkageScene, link: str, samples: Samples, local: Sequence[float] = (0.0, 0.0)
+) -> Array | None:
     """Where axes in a link's own axes are (samples, 3); nothing if the link has no position."""
     if link == "frame":
         return np.array([[*scene.factor * np.asarray(local, dtype=float), 0.0]])
@@ -72,7 +74,7 @@ def _poses(scene: Scene, link: str, samples: Samples, local: Sequence[float] = (
     return np.column_stack([place, scene.turns[link]])[samples]
 
 
-def _grounds(scene: Scene) -> Iterator[Outline]:
+def _grounds(scene: LinkageScene) -> Iterator[Outline]:
     """Lines and circles of the frame that wheels roll on."""
     for wheel in scene.mechanism.rolling:
         if wheel.on != "frame":
@@ -82,10 +84,10 @@ def _grounds(scene: Scene) -> Iterator[Outline]:
         else:
             start, end = _track(scene, wheel)
             x, y = wheel.along.unit
-            yield Outline(hatched(start, end, np.array([y, -x]), scene.sign), AT_REST, GROUND)
+            yield Outline(hatch(start, end, np.array([y, -x]), scene.sign), AT_REST, GROUND)
 
 
-def _track(scene: Scene, wheel: Rolling) -> tuple[Array, Array]:
+def _track(scene: LinkageScene, wheel: Rolling) -> tuple[Array, Array]:
     """The part of a line that its wheel rolls over, in the axes of the link that carries it."""
     start = scene.factor * np.asarray(wheel.along.through, dtype=float)
     along = np.asarray(wheel.along.unit, dtype=float)
@@ -93,7 +95,7 @@ def _track(scene: Scene, wheel: Rolling) -> tuple[Array, Array]:
     return start + (way[0] - over) * along, start + (way[1] + over) * along
 
 
-def _round_ground(scene: Scene, wheel: Rolling) -> Array:
+def _round_ground(scene: LinkageScene, wheel: Rolling) -> Array:
     """A circle of the frame, hatched on the side away from its wheel."""
     radius = scene.factor * float(wheel.along.radius or 0.0)
     centre = _centre(scene, wheel)
@@ -107,12 +109,12 @@ def _round_ground(scene: Scene, wheel: Rolling) -> Array:
     return np.asarray(scene.factor * np.asarray(centre) + np.concatenate([circle(radius), LIFT, lines]))
 
 
-def _centre(scene: Scene, wheel: Rolling) -> Sequence[float]:
+def _centre(scene: LinkageScene, wheel: Rolling) -> Sequence[float]:
     centre = wheel.along.centre
     return scene.mechanism.points_of(wheel.on)[centre] if isinstance(centre, str) else centre or (0.0, 0.0)
 
 
-def _wheels(scene: Scene, samples: Samples) -> Iterator[Outline]:
+def _wheels(scene: LinkageScene, samples: Samples) -> Iterator[Outline]:
     """Rolling wheels with a spoke, and the tracks that moving links carry."""
     colours = pens(scene.mechanism.link_names)
     for wheel in scene.mechanism.rolling:
@@ -131,7 +133,7 @@ def _wheels(scene: Scene, samples: Samples) -> Iterator[Outline]:
         yield Outline(rim, poses, colours[wheel.link].colour, filled=True)
 
 
-def _slots(scene: Scene, samples: Samples) -> Iterator[Outline]:
+def _slots(scene: LinkageScene, samples: Samples) -> Iterator[Outline]:
     """Slots and rods of moving links, what joins them to their links, and the blocks on rods."""
     colours = pens(scene.mechanism.link_names)
     for guide in scene.mechanism.guides:
@@ -155,7 +157,7 @@ def _slots(scene: Scene, samples: Samples) -> Iterator[Outline]:
         yield Outline(block, places, colours[guide.link].colour, white=True, behind=False)
 
 
-def _slot_line(scene: Scene, guide: Guide) -> tuple[Array, Array]:
+def _slot_line(scene: LinkageScene, guide: Guide) -> tuple[Array, Array]:
     """The part of a guide that its point travels, in the axes of its link."""
     start = scene.factor * np.asarray(scene.mechanism.through(guide), dtype=float)
     along = np.asarray(guide.unit, dtype=float)
@@ -163,7 +165,7 @@ def _slot_line(scene: Scene, guide: Guide) -> tuple[Array, Array]:
     return start + least * along, start + most * along
 
 
-def _cylinders(scene: Scene, samples: Samples) -> Iterator[Outline]:
+def _cylinders(scene: LinkageScene, samples: Samples) -> Iterator[Outline]:
     """Barrels over the rods of cylinders, which are drawn from point to point."""
     for drive in scene.mechanism.drives:
         if drive.distance is None:
@@ -199,7 +201,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
         No sample has every point in place.
     """
     scene = globe_of(mechanism, motion) if mechanism.space == "sphere" else scene_of(mechanism, motion)
-    chosen = played(scene, motion)
+    chosen = samples_in_one_piece(scene, motion)
     on_sphere = isinstance(scene, Globe)
     factor = 1.0 if isinstance(scene, Globe) else scene.factor
     fixed = tuple(mechanism.frame.points)
@@ -228,7 +230,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
     )
 
 
-def played(scene: Scene | Globe, motion: xarray.Dataset) -> NDArray[np.intp]:
+def samples_in_one_piece(scene: LinkageScene | Globe, motion: xarray.Dataset) -> NDArray[np.intp]:
     """The samples about the initial position where the mechanism is in one piece and gets to."""
     status = motion["status"].to_numpy()
     good = complete(scene) & ((status == Status.OK) | (status == Status.SINGULAR))
@@ -289,7 +291,7 @@ def _dots(mechanism: Mechanism) -> list[str]:
     return found
 
 
-def _still(scene: Scene | Globe, motion: xarray.Dataset) -> Figure:
+def _still(scene: LinkageScene | Globe, motion: xarray.Dataset) -> Figure:
     """The initial position over the paths of the points."""
     with house_style():
         wide, high = INCHES * ((scene.high - scene.low) / scene.extent + 2 * MARGIN)

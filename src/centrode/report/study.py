@@ -23,7 +23,7 @@ from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWis
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
 from centrode.study.cams.results import CamResults, cam_results
-from centrode.study.check import Check, check
+from centrode.study.check import MechanismCheck, check
 from centrode.study.run import StudyResults, study
 
 # What a report is to hold: the wishes of the description's [report], and those of the caller, which go before
@@ -60,7 +60,7 @@ class Wishes:
     digits: int
 
 
-def settled(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
+def settle_options(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
     """The wishes of a caller, where there are none those of the description.
 
     Raises InputError for a chapter that is not in `known`, for a point that the mechanism has not, for digits out of
@@ -188,7 +188,7 @@ class ReportStudy:
         return self.description
 
     @property
-    def check(self) -> Check:
+    def check(self) -> MechanismCheck:
         """Structure, mobility, plan, initial position."""
         return self.once("check", lambda: check(self.mechanism))
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 from centrode.errors import CentrodeError, InputError, MotionError, NotComputedYet
 from centrode.locale import _
-from centrode.render.document.blocks import Chapter, Paragraph, Section, shown
+from centrode.render.document.blocks import ChapterBlocks, ParagraphBlock, SectionBlocks, shown
 from centrode.render.document.chapters import document_chapter
 from centrode.report.study import moments_of
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from centrode.topics.topic import ChapterOfTopic, Topic
 
 
-def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> Chapter | None:
+def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> ChapterBlocks | None:
     """A chapter of a topic; None where the description has nothing for it.
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
@@ -57,8 +57,8 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     return study.once(("sheet", topic.name), compute)
 
 
-def left_out(name: str, title: str, reason: CentrodeError) -> Chapter:
+def left_out(name: str, title: str, reason: CentrodeError) -> ChapterBlocks:
     """A chapter that nobody has chosen and that cannot be computed: it says why."""
     where = f"{reason.where}: " if reason.where else ""
     text = _("This is left out. {reason}").format(reason=shown(f"{where}{reason.what}"))
-    return Chapter(name, title, (Section("", (Paragraph(text),)),))
+    return ChapterBlocks(name, title, (SectionBlocks("", (ParagraphBlock(text),)),))

@@ -180,7 +180,7 @@ class Trace:
 
 
 @dataclass(frozen=True)
-class Diagram:
+class CurveDiagram:
     """One quantity over another.
 
     Attributes
@@ -323,7 +323,7 @@ class Area:
 
 
 @dataclass(frozen=True)
-class Path:
+class AreaPath:
     """A curve through the areas of a diagram.
 
     Attributes
@@ -360,7 +360,7 @@ class AreaDiagram:
     across: Array
     up: Array
     areas: tuple[Area, ...]
-    paths: tuple[Path, ...]
+    paths: tuple[AreaPath, ...]
     places: tuple[tuple[Text, float, float], ...]
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
-from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, SpanPlot, VectorPage
+from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Picture: TypeAlias = (
     Plot
-    | Diagram
+    | CurveDiagram
     | PanelGrid
     | VectorPage
     | Hodograph

@@ -302,11 +302,11 @@ def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
                 for effort, strength in zip(load.efforts, strengths, strict=True)
                 for pull in effort.pulls(state)
             ]
-        found += _joined(load.label, pulls, len(places), length_unit(mechanism))
+        found += _join_pulls(load.label, pulls, len(places), length_unit(mechanism))
     return found
 
 
-def _joined(label: str, pulls: Sequence[Wrench], samples: int, unit: float) -> list[LoadForce]:
+def _join_pulls(label: str, pulls: Sequence[Wrench], samples: int, unit: float) -> list[LoadForce]:
     """Pulls of a load as forces; components on one body are one force."""
     bodies = dict.fromkeys(pull.body for pull in pulls)
     found = []

@@ -11,7 +11,7 @@ from centrode.structure.rank import Count, count
 
 
 @dataclass(frozen=True)
-class Check:
+class MechanismCheck:
     """Structure of a mechanism that assembles and can be driven.
 
     Attributes
@@ -33,17 +33,17 @@ class Check:
     initial_residual: float
 
 
-def check(mechanism: Mechanism) -> Check:
+def check(mechanism: Mechanism) -> MechanismCheck:
     """Structure, mobility and plan of a mechanism; raises as `motion` does before it computes."""
     prepared = ready(mechanism)
     return check_of(prepared)
 
 
-def check_of(prepared: Ready) -> Check:
+def check_of(prepared: Ready) -> MechanismCheck:
     """The same for a mechanism made ready before."""
     structure = prepared.structure
     mechanism = prepared.mechanism
-    return Check(
+    return MechanismCheck(
         mechanism.title,
         prepared.mobility,
         tuple(drive.id for drive in mechanism.drives),

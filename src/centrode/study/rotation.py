@@ -56,13 +56,13 @@ def rotation_of(prepared: Ready) -> Rotation:
         found.turns_fully,
         first,
         found.one.unit,
-        _joined(limit.group for limit in met),
-        _joined(_spoken(cause_text(limit.cause), display) for limit in met),
-        _joined(str(limit.condition) for limit in met),
+        _join(limit.group for limit in met),
+        _join(_spoken(cause_text(limit.cause), display) for limit in met),
+        _join(str(limit.condition) for limit in met),
     )
 
 
-def _joined(texts: Iterable[str]) -> str:
+def _join(texts: Iterable[str]) -> str:
     return "; ".join(dict.fromkeys(texts))
 
 

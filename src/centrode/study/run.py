@@ -25,7 +25,7 @@ from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar
-from centrode.study.check import Check, check_of
+from centrode.study.check import MechanismCheck, check_of
 from centrode.study.limits import NOT_REACHED, limits_sentence, not_reached_sentence, repair_of_range
 from centrode.study.texts import Words, extremes
 from centrode.views import flywheel
@@ -51,7 +51,7 @@ class StudyResults:
     """
 
     mechanism: Mechanism
-    check: Check
+    check: MechanismCheck
     motion: xr.Dataset
     instants: xr.Dataset | None
     coefficients: xr.Dataset | None
@@ -177,7 +177,7 @@ def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:
     return mechanism.motion_parameter.instant.read(text, where)
 
 
-def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
+def _scalars(checked: MechanismCheck, solved: Solved) -> dict[str, Scalar]:
     unit = solved.ready.parameter.variable.unit
     parameter = solved.span.parameter
     found = {

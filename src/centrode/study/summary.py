@@ -10,7 +10,7 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.quantities import status_word
 from centrode.structure.assur import AssurGroup
-from centrode.study.check import Check
+from centrode.study.check import MechanismCheck
 
 if TYPE_CHECKING:
     from centrode.study.run import StudyResults  # brings xarray, which a check does without
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Rows: TypeAlias = list[tuple[str, str]]
 
 
-def check_rows(checked: Check) -> Rows:
+def check_rows(checked: MechanismCheck) -> Rows:
     """Mobility, redundant constraints, loops, groups and initial position."""
     count = checked.count
     by_formula = _("{rank} by rank; by Chebyshev's formula 3·{n} - 2·{p5} - {p4} = {formula}").format(

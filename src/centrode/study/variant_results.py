@@ -97,17 +97,17 @@ def variants(
     rows = read_variants(topology, table)
     found = []
     for number, variant in enumerate(rows, start=1):
-        found.append(computed(topology, variant))
+        found.append(compute_variant(topology, variant))
         if progress is not None:
             progress(number, len(rows))
     return tuple(found)
 
 
-def computed(topology: Mechanism, variant: Variant) -> VariantResults:
+def compute_variant(topology: Mechanism, variant: Variant) -> VariantResults:
     """One variant; what it says in words is English, as files are."""
     with speaking("en"):
         try:
-            mechanism, results, rotation = studied(topology, variant)
+            mechanism, results, rotation = study_variant(topology, variant)
         except InputError as refusal:
             return VariantResults(VariantRow(variant.name, None, None, "", "", str(refusal), REFUSED))
         try:
@@ -117,7 +117,7 @@ def computed(topology: Mechanism, variant: Variant) -> VariantResults:
         return VariantResults(_row(variant.name, rotation, results), mechanism, results, integration, note)
 
 
-def studied(topology: Mechanism, variant: Variant) -> tuple[Mechanism, StudyResults, Rotation]:
+def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, StudyResults, Rotation]:
     """A variant's mechanism, its study and rotatability; raises InputError where it is none that moves."""
     mechanism = variant.of(topology)
     prepared = ready(mechanism)
@@ -188,7 +188,7 @@ def spoken_variants(topology: Mechanism, table: Table, rows: Sequence[VariantRow
 def _spoken(topology: Mechanism, variant: Variant, row: VariantRow) -> VariantRow:
     if row.status == REFUSED:
         try:
-            studied(topology, variant)
+            study_variant(topology, variant)
         except InputError as refusal:
             return replace(row, cause=str(refusal))
     elif row.group:

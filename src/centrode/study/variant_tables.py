@@ -36,7 +36,7 @@ _KINDS = {"l": "length", "phi": "angle", "φ": "angle", "omega": "speed", "ω": 
 
 
 @dataclass(frozen=True)
-class Column:
+class VariantColumn:
     """One column of numbers.
 
     Attributes
@@ -53,13 +53,13 @@ class Column:
     factor: float | None
 
 
-def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[Column | None]:
+def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColumn | None]:
     """The columns of a table, None for the one with the names.
 
     Raises InputError: no column of names, a header that names nothing, two that name the same, a unit that does
     not fit.
     """
-    found: list[Column | None] = []
+    found: list[VariantColumn | None] = []
     named: dict[str, str] = {}
     for header in headers:
         column = None if header.strip().casefold() == NAME else _column(mechanism, header)
@@ -81,7 +81,7 @@ def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[Column | No
     return found
 
 
-def _column(mechanism: Mechanism, header: str) -> Column:
+def _column(mechanism: Mechanism, header: str) -> VariantColumn:
     bracket = _BRACKET.fullmatch(header)
     name, unit = (bracket.group(1).strip(), bracket.group(2)) if bracket else (header.strip(), None)
     short = _SHORT.fullmatch(name)
@@ -101,7 +101,7 @@ def _column(mechanism: Mechanism, header: str) -> Column:
     except InputError as error:
         where = _("column {header}").format(header=value_text(header))
         raise InputError(where, error.what, error.repair) from None
-    return Column(header.strip(), paths, kind, factor)
+    return VariantColumn(header.strip(), paths, kind, factor)
 
 
 def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...]:
@@ -257,7 +257,7 @@ def _mappings(table: Sequence[Mapping[str, object]], where: str) -> tuple[list[s
     return headers, rows
 
 
-def _variant(columns: Sequence[Column | None], row: list[object], where: str) -> Variant:
+def _variant(columns: Sequence[VariantColumn | None], row: list[object], where: str) -> Variant:
     name = ""
     values: dict[str, float] = {}
     for column, cell in zip(columns, row, strict=True):
@@ -285,7 +285,7 @@ def _name(cell: object, where: str) -> str:
         raise InputError(where, problem.what, problem.repair) from None
 
 
-def _number(column: Column, cell: object, where: str) -> float:
+def _number(column: VariantColumn, cell: object, where: str) -> float:
     """Value in SI of a cell: a number in the header's unit, or where it has none a text with a unit."""
     given = cell.strip() if isinstance(cell, str) else cell
     if given == "" or given is None:

@@ -39,7 +39,7 @@ from centrode.study.texts import value_text
 # Names and lists of names as sentences have them.
 
 
-def called(name: str) -> str:
+def quote_word(name: str) -> str:
     """A link's name, in quotes where it is a word: crank OA, but crank "crank"."""
     if two_points(name) is not None or len(name) < 3:
         return name
@@ -47,7 +47,7 @@ def called(name: str) -> str:
     return _('"{name}"').format(name=name)
 
 
-def listed(names: Iterable[str]) -> str:
+def enumerate_names(names: Iterable[str]) -> str:
     """Names with commas and an "and" before the last."""
     every = list(names)
     if len(every) < 2:
@@ -58,7 +58,7 @@ def listed(names: Iterable[str]) -> str:
 
 def links_listed(names: Iterable[str]) -> str:
     """Names of links as a list."""
-    return listed(map(called, names))
+    return enumerate_names(map(quote_word, names))
 
 
 # What each part of a mechanism does in its motion: which links turn fully, which swing and how far.
@@ -190,7 +190,7 @@ ROLLING = {
 def moving_parts(mechanism: Mechanism) -> list[str]:
     """Names of the moving links, sliders and cylinders included, as they are counted."""
     found = [
-        *map(called, mechanism.link_names),
+        *map(quote_word, mechanism.link_names),
         *(slider_of(guide) for guide in mechanism.guides if is_bare(guide)),
     ]
     for drive in mechanism.drives:
@@ -249,16 +249,16 @@ def _on_hinges(mechanism: Mechanism) -> Iterator[str]:
 def _on_plates(mechanism: Mechanism) -> Iterator[str]:
     for name, link in mechanism.links.items():
         if len(link.coordinates) > 2:
-            points = listed(list(link.coordinates))
+            points = enumerate_names(list(link.coordinates))
             yield _("Link {link} is one rigid piece with the points {points}.").format(
-                link=called(name), points=points
+                link=quote_word(name), points=points
             )
 
 
 def _on_guide(mechanism: Mechanism, guide: Guide) -> str:
     links = [name for name in links_at(mechanism, guide.point) if name != guide.on]
-    own = None if guide.link is None else called(guide.link)
-    place = {"links": links_listed(links), "point": guide.point, "link": own, "on": called(guide.on)}
+    own = None if guide.link is None else quote_word(guide.link)
+    place = {"links": links_listed(links), "point": guide.point, "link": own, "on": quote_word(guide.on)}
     if guide.on == FRAME:
         way, place["angle"] = _way(mechanism, guide)
         sentences = SLIDING_LINKS if own is not None else SLIDERS if links else LONE_SLIDERS
@@ -287,9 +287,9 @@ def _way(mechanism: Mechanism, guide: Guide) -> tuple[str, str]:
 def _on_gear(gear: Gear) -> str:
     one, other = gear.links
     place = {
-        "one": called(one),
-        "other": called(other),
-        "carrier": called(gear.carrier),
+        "one": quote_word(one),
+        "other": quote_word(other),
+        "carrier": quote_word(gear.carrier),
         "ratio": f"{abs(gear.ratio):.4g}",
     }
     if FRAME in gear.links:
@@ -325,7 +325,7 @@ def _on_gear(gear: Gear) -> str:
 
 def _on_rolling(wheel: Rolling) -> str:
     track = "line" if wheel.along.direction is not None else "inside" if wheel.along.inside else "outside"
-    return _(ROLLING[track, wheel.on == FRAME]).format(wheel=called(wheel.link), on=called(wheel.on))
+    return _(ROLLING[track, wheel.on == FRAME]).format(wheel=quote_word(wheel.link), on=quote_word(wheel.on))
 
 
 # Sentences on links that a slider or a wheel turns about their pivots.
@@ -370,12 +370,12 @@ def extent(roles: Roles, link: str) -> tuple[str, str]:
 def on_lever(roles: Roles, group: Aim) -> str:
     """The sentence on a link that turns to a point, a slider or a wheel."""
     key, angle = extent(roles, group.link)
-    place = {"link": called(group.link), "pivot": group.pivot, "angle": angle}
+    place = {"link": quote_word(group.link), "pivot": group.pivot, "angle": angle}
     if group.contact is not None:
-        return _(RESTING[key]).format(wheel=called(group.contact.link), **place)
+        return _(RESTING[key]).format(wheel=quote_word(group.contact.link), **place)
     block = group.block or roles.mechanism.guide(group.guide).link
     if block is not None:
-        return _(BLOCKS[key]).format(block=called(block), **place)
+        return _(BLOCKS[key]).format(block=quote_word(block), **place)
     return _(LEVERS[key]).format(point=group.target, **place)
 
 
@@ -419,7 +419,9 @@ def sentence_on_drive(drive: Drive, roles: Roles) -> str:
     if drive.guide is not None:
         guide = mechanism.guide(drive.guide)
         kind = "slider" if guide.link is None else "guided"
-        return _(DRIVEN[kind, constant]).format(point=guide.point, link=called(guide.link or ""), speed=speed)
+        return _(DRIVEN[kind, constant]).format(
+            point=guide.point, link=quote_word(guide.link or ""), speed=speed
+        )
     link = drive.link or ""
     pivot = roles.pivot(link)
     if drive.relative_to != FRAME:
@@ -429,7 +431,7 @@ def sentence_on_drive(drive: Drive, roles: Roles) -> str:
     else:
         kind = "crank" if roles.turns_fully(link) and not roles.is_wheel(link) else "link"
     return _(DRIVEN[kind, constant]).format(
-        link=called(link), pivot=pivot, base=called(drive.relative_to), speed=speed
+        link=quote_word(link), pivot=pivot, base=quote_word(drive.relative_to), speed=speed
     )
 
 
@@ -437,10 +439,10 @@ def _sentence_on_cam(drive: Drive, mechanism: Mechanism) -> str:
     """What a cam drives, and how fast it turns."""
     speed = _speed(mechanism, drive.turning or 0.0, "rad/s")
     if drive.guide is None:
-        return _(BY_CAM["link"]).format(link=called(drive.link or ""), speed=speed)
+        return _(BY_CAM["link"]).format(link=quote_word(drive.link or ""), speed=speed)
     guide = mechanism.guide(drive.guide)
     kind = "slider" if guide.link is None else "guided"
-    return _(BY_CAM[kind]).format(point=guide.point, link=called(guide.link or ""), speed=speed)
+    return _(BY_CAM[kind]).format(point=guide.point, link=quote_word(guide.link or ""), speed=speed)
 
 
 def _speed(mechanism: Mechanism, speed: float, unit: str) -> str:
@@ -497,11 +499,11 @@ def _on_group(structure: Structure, roles: Roles, group: Group, told: set[str]) 
     elif isinstance(group, TwoPointLink):
         yield _(
             "Link {link}, hinged in {first} and {second}, only follows: without it everything else moves the same."
-        ).format(link=called(group.link), first=group.first, second=group.second)
+        ).format(link=quote_word(group.link), first=group.first, second=group.second)
 
 
 def _on_turned_link(roles: Roles, group: TurnedLink) -> Iterator[str]:
-    turning, place = group.turning, {"link": called(group.link), "point": group.pivot}
+    turning, place = group.turning, {"link": quote_word(group.link), "point": group.pivot}
     if isinstance(turning, Turning):
         # the link of a guide is told with what moves it along the guide
         if turning.guide is not None and roles.mechanism.guide(turning.guide).point != group.pivot:
@@ -537,7 +539,7 @@ def _on_meeting(structure: Structure, roles: Roles, group: Meet) -> Iterator[str
     elif rods and rails:
         yield _on_slider(roles, rods[0], rails[0])
     elif rods:
-        yield _("Link {link} follows.").format(link=called(rods[0].link))
+        yield _("Link {link} follows.").format(link=quote_word(rods[0].link))
     elif not is_input(group):
         yield _("The slider in {point} is led by both its guides.").format(point=group.points[0])
 
@@ -545,7 +547,7 @@ def _on_meeting(structure: Structure, roles: Roles, group: Meet) -> Iterator[str
 def _moved_by_cylinder(roles: Roles, cylinder: str, link: str) -> str:
     pivot = roles.pivot(link)
     key, angle = extent(roles, link)
-    place = {"cylinder": cylinder, "link": called(link), "pivot": pivot, "angle": angle}
+    place = {"cylinder": cylinder, "link": quote_word(link), "pivot": pivot, "angle": angle}
     if pivot is None:
         return _("Cylinder {cylinder} moves link {link}.").format(**place)
     if key == "swings":
@@ -559,9 +561,11 @@ def _on_carriage(roles: Roles, group: Meet) -> Iterator[str]:
     if group.rods:
         rods = [rod.link for rod in group.rods]
         if len(rods) == 2:
-            yield _("Links {links} carry link {link}.").format(links=links_listed(rods), link=called(link))
+            yield _("Links {links} carry link {link}.").format(
+                links=links_listed(rods), link=quote_word(link)
+            )
         else:
-            yield _("Link {rod} carries link {link}.").format(rod=called(rods[0]), link=called(link))
+            yield _("Link {rod} carries link {link}.").format(rod=quote_word(rods[0]), link=quote_word(link))
         return
     guides = [guide for guide in roles.mechanism.guides if guide.link == link and guide.on == FRAME]
     if guides and guides[0].id in roles.strokes:
@@ -570,11 +574,11 @@ def _on_carriage(roles: Roles, group: Meet) -> Iterator[str]:
             if roles.comes_back(guides[0].id)
             else _("Link {link} moves along its guide, by {stroke} in all.")
         )
-        yield text.format(link=called(link), stroke=roles.length_text(roles.strokes[guides[0].id]))
+        yield text.format(link=quote_word(link), stroke=roles.length_text(roles.strokes[guides[0].id]))
     elif guides:
-        yield _("Link {link} moves along its guide.").format(link=called(link))
+        yield _("Link {link} moves along its guide.").format(link=quote_word(link))
     else:
-        yield _("Link {link} follows without turning.").format(link=called(link))
+        yield _("Link {link} follows without turning.").format(link=quote_word(link))
 
 
 def _on_two_links(mechanism: Mechanism, roles: Roles, one: Rod, other: Rod) -> str:
@@ -585,11 +589,14 @@ def _on_two_links(mechanism: Mechanism, roles: Roles, one: Rod, other: Rod) -> s
         coupler = other if follower is one else one
         key, angle = extent(roles, follower.link)
         return _(FOLLOWERS[key]).format(
-            coupler=called(coupler.link), follower=called(follower.link), pivot=follower.centre, angle=angle
+            coupler=quote_word(coupler.link),
+            follower=quote_word(follower.link),
+            pivot=follower.centre,
+            angle=angle,
         )
     place = {
-        "one": called(one.link),
-        "other": called(other.link),
+        "one": quote_word(one.link),
+        "other": quote_word(other.link),
         "point": one.point,
         "first": _carriers(mechanism, one),
         "first_point": one.centre,
@@ -614,7 +621,7 @@ def _carriers(mechanism: Mechanism, rod: Rod) -> str:
 
 def _on_slider(roles: Roles, rod: Rod, rail: Rail) -> str:
     guide = roles.mechanism.guide(rail.guide)
-    place = {"coupler": called(rod.link), "point": guide.point, "on": called(rail.on)}
+    place = {"coupler": quote_word(rod.link), "point": guide.point, "on": quote_word(rail.on)}
     if rail.on != FRAME:
         return _("Link {coupler} moves the slider in {point} along link {on}.").format(**place)
     if guide.id not in roles.strokes:

@@ -33,7 +33,7 @@ import xarray as xr
 from centrode.errors import DamageWarning, InputError
 from centrode.files.drafts import clear_drafts, clear_folder, draft_folder, refusals, remove_file, write_whole
 from centrode.files.inputs import keep_inputs_below
-from centrode.files.locks import locked
+from centrode.files.locks import hold_lock
 from centrode.locale import _, ngettext
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask
@@ -558,7 +558,7 @@ def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -
         _refuse_other_folders(path)
         keep_inputs_below(path)
         (path / PROGRESS).mkdir(parents=True, exist_ok=True)
-    with locked(path / PROGRESS / LOCK, str(path)):
+    with hold_lock(path / PROGRESS / LOCK, str(path)):
         with refusals(path):
             study = _study(frame, task)
             found = _stored_study(path)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from centrode.locale import mark
 from centrode.topics.topic import (
     ChapterOfTopic,
-    Choice,
+    ChoiceOption,
     Command,
-    Flag,
-    Given,
+    FlagOption,
     InDocuments,
     InstantsOption,
     Lazily,
-    MotionRange,
+    RangeOptions,
     Topic,
+    ValueOption,
 )
 
 READ_SCALES = Lazily("centrode.cli.option_values", "read_scales")
@@ -33,16 +33,16 @@ INTEGRATE = Topic(
     command=Command(
         help=mark("Integrate the differential equations of a mechanism."),
         options=(
-            Given(
+            ValueOption(
                 "method",
                 "rk4|adaptive",
                 mark(
                     "Fixed steps of Runge-Kutta's method of fourth order, or adaptive ones of eighth order."
                 ),
             ),
-            Given("steps", mark("N"), mark("Number of steps, and of rows less one."), int),
-            Given("tolerance", mark("X"), mark("Tolerance of each adaptive step."), float),
-            Given(
+            ValueOption("steps", mark("N"), mark("Number of steps, and of rows less one."), int),
+            ValueOption("tolerance", mark("X"), mark("Tolerance of each adaptive step."), float),
+            ValueOption(
                 "to",
                 mark("B"),
                 mark("Last value of the drive, or last time."),
@@ -69,8 +69,8 @@ LIMITS = Topic(
     command=Command(
         help=mark("Find the limits of one drive while the others are held."),
         options=(
-            Given("drive", mark("NAME"), mark("The drive that moves; needed where there are several.")),
-            Given(
+            ValueOption("drive", mark("NAME"), mark("The drive that moves; needed where there are several.")),
+            ValueOption(
                 "hold",
                 mark("NAME=VALUE"),
                 mark('Value of another drive ("EC=30 deg"); its initial one if left out.'),
@@ -78,7 +78,9 @@ LIMITS = Topic(
                 parameter="held",
                 read=READ_PAIRS,
             ),
-            Given("about", mark("VALUE"), mark("Value from which it moves; its initial one if left out.")),
+            ValueOption(
+                "about", mark("VALUE"), mark("Value from which it moves; its initial one if left out.")
+            ),
         ),
         kinds=("json", "csv"),
         samples=False,
@@ -94,14 +96,14 @@ REGION = Topic(
     command=Command(
         help=mark("Compute the reachable region of two drives and draw it."),
         options=(
-            Given(
+            ValueOption(
                 "drive",
                 mark("NAME"),
                 mark("One of the two drives; say it twice where there are more than two."),
                 several=True,
                 parameter="drives",
             ),
-            Given(
+            ValueOption(
                 "range",
                 mark("NAME=FIRST:LAST"),
                 mark('Range of a drive ("EC=0 deg:90 deg"); one turn, or between its limits, if left out.'),
@@ -109,7 +111,7 @@ REGION = Topic(
                 parameter="ranges",
                 read=READ_RANGES,
             ),
-            Given(
+            ValueOption(
                 "hold",
                 mark("NAME=VALUE"),
                 mark("Value of a further drive; its initial one if left out."),
@@ -117,7 +119,7 @@ REGION = Topic(
                 parameter="held",
                 read=READ_PAIRS,
             ),
-            Given("samples", mark("N"), mark("Grid lines of each drive."), int),
+            ValueOption("samples", mark("N"), mark("Grid lines of each drive."), int),
         ),
         folder="region",
         samples=False,
@@ -142,7 +144,7 @@ REDUCTION = Topic(
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     command=Command(
         help=mark("Reduce masses and loads to the drive, part by part."),
-        options=(MotionRange(),),
+        options=(RangeOptions(),),
         ending=Lazily("centrode.study.limits", "check_reached"),
     ),
     document=InDocuments(chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),)),
@@ -158,12 +160,12 @@ FLYWHEEL = Topic(
         help=mark("Find the flywheel of a machine, and its real motion."),
         needs=Lazily("centrode.dynamics.steady_motion.flywheel", "need_fluctuation"),
         options=(
-            Choice(
+            ChoiceOption(
                 "mean",
                 ("middle", "time"),
                 mark("Mean speed: half of greatest and least (the rule), or turns over time."),
             ),
-            Choice(
+            ChoiceOption(
                 "method",
                 ("exact", "first-order"),
                 mark("Real velocities by the energy equation (the rule), or by the first-order formula."),
@@ -188,18 +190,18 @@ SIMULATION = Topic(
     command=Command(
         help=mark("Let a machine run: loads, friction and a motor move it."),
         options=(
-            Given("duration", mark("T"), mark('How long it runs: "20 s".')),
-            Given("turns", mark("N"), mark("End after so many turns of the drive."), float),
-            Given("driving", mark("FORMULA"), mark('Moment of the drive in t, q and v: "20 - 2*v".')),
-            Given("speed", mark("V"), mark('Speed of the drive at the start: "65 rpm".')),
-            Choice(
+            ValueOption("duration", mark("T"), mark('How long it runs: "20 s".')),
+            ValueOption("turns", mark("N"), mark("End after so many turns of the drive."), float),
+            ValueOption("driving", mark("FORMULA"), mark('Moment of the drive in t, q and v: "20 - 2*v".')),
+            ValueOption("speed", mark("V"), mark('Speed of the drive at the start: "65 rpm".')),
+            ChoiceOption(
                 "scheme",
                 ("adaptive", "stiff", "runge-kutta-4"),
                 mark("How to integrate: adaptive (the rule), for stiff laws, or fixed steps."),
                 has_default=False,
             ),
-            Given("steps", mark("N"), mark("Number of fixed steps."), int),
-            Flag("motion", mark("Write the motion of all points and links too.")),
+            ValueOption("steps", mark("N"), mark("Number of fixed steps."), int),
+            FlagOption("motion", mark("Write the motion of all points and links too.")),
         ),
         extent=Lazily("centrode.dynamics.simulation.results", "simulation_extent"),
         progress=mark("integrating, %"),
@@ -222,9 +224,11 @@ REACTIONS = Topic(
             InstantsOption(
                 mark('Only at this value of the drive ("120 deg"), or time ("1 s"); as often as needed.')
             ),
-            Flag("steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")),
-            Flag("frictionless", mark("Leave out friction that is given by coefficients.")),
-            MotionRange(),
+            FlagOption(
+                "steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")
+            ),
+            FlagOption("frictionless", mark("Leave out friction that is given by coefficients.")),
+            RangeOptions(),
         ),
         ending=Lazily("centrode.study.run", "refuse_unreached"),
         summary=False,
@@ -247,45 +251,45 @@ BALANCE = Topic(
     command=Command(
         help=mark("Find counterweights that balance a mechanism."),
         options=(
-            Given(
+            ValueOption(
                 "on",
                 mark("LINK"),
                 mark('Link for a counterweight, or "LINK@POINT" with the point its radius is measured from.'),
                 several=True,
             ),
-            Flag("full", mark("Make the shaking force zero (the rule).")),
-            Flag("least_maximum", mark("Make the greatest effects as small as they can be.")),
-            Given(
+            FlagOption("full", mark("Make the shaking force zero (the rule).")),
+            FlagOption("least_maximum", mark("Make the greatest effects as small as they can be.")),
+            ValueOption(
                 "fraction",
                 mark("F"),
                 mark('Slider-crank: balance what turns, and this much of what moves to and fro ("1/2").'),
             ),
-            Flag("moment", mark("With --full: balance the shaking moment too, by discs.")),
-            Given(
+            FlagOption("moment", mark("With --full: balance the shaking moment too, by discs.")),
+            ValueOption(
                 "weights",
                 mark("F,M,T"),
                 mark("With --least-maximum: weights of force, moment and drive (1,0,0 if left out)."),
             ),
-            Given(
+            ValueOption(
                 "radius",
                 mark("[LINK=]LENGTH"),
                 mark('Distance of the counterweight from its point ("50 mm").'),
                 several=True,
             ),
-            Given(
+            ValueOption(
                 "most",
                 mark("[LINK=]MASS"),
                 mark('Greatest mass of a counterweight ("3 kg").'),
                 several=True,
             ),
-            Given("thickness", mark("LENGTH"), mark("Counterweights are discs of this thickness.")),
-            Given("density", mark("DENSITY"), mark("Density of discs (steel if left out).")),
-            Given(
+            ValueOption("thickness", mark("LENGTH"), mark("Counterweights are discs of this thickness.")),
+            ValueOption("density", mark("DENSITY"), mark("Density of discs (steel if left out).")),
+            ValueOption(
                 "about",
                 mark("PLACE"),
                 mark('What moments are taken about: a point of the frame, or "0.2,0.1" in metres.'),
             ),
-            Flag("steady", mark("At the real speed of the machine, not at its mean speed.")),
+            FlagOption("steady", mark("At the real speed of the machine, not at its mean speed.")),
         ),
         arguments=Lazily("centrode.cli.option_values", "balance_arguments"),
         dark=True,
@@ -312,7 +316,7 @@ CENTRES = Topic(
         help=mark("Find the instant centres of velocity of every pair of links."),
         needs=Lazily("centrode.analysis.instant_centres.results", "need_pairs"),
         options=(
-            Given(
+            ValueOption(
                 "at",
                 mark("VALUE"),
                 mark(
@@ -322,7 +326,7 @@ CENTRES = Topic(
                 parameter="instants",
                 read=READ_INSTANTS,
             ),
-            Given(
+            ValueOption(
                 "pair",
                 mark("LINK,LINK"),
                 mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
@@ -360,9 +364,11 @@ CENTRODES = Topic(
     command=Command(
         help=mark("Compute the centrodes of a link and draw them."),
         options=(
-            Given("link", mark("LINK"), mark("The link that carries the moving centrode."), required=True),
-            Given("against", mark("LINK"), mark("The link that it rolls on; the frame if left out.")),
-            Given(
+            ValueOption(
+                "link", mark("LINK"), mark("The link that carries the moving centrode."), required=True
+            ),
+            ValueOption("against", mark("LINK"), mark("The link that it rolls on; the frame if left out.")),
+            ValueOption(
                 "at",
                 mark("VALUE"),
                 mark("Also the curvature of the paths of the link's points there; as often as needed."),
@@ -370,7 +376,7 @@ CENTRODES = Topic(
                 parameter="instants",
                 read=READ_INSTANTS,
             ),
-            MotionRange(),
+            RangeOptions(),
         ),
         ending=Lazily("centrode.analysis.instant_centres.results", "centrode_shortfall"),
         folder="centrodes",
@@ -410,15 +416,15 @@ ROTATABILITY = Topic(
         help=mark("Tell whether a mechanism turns fully, and repair it."),
         needs=Lazily("centrode.analysis.redesign.results", "need_repair"),
         options=(
-            Flag("repair", mark("Seek the smallest change after which it turns fully.")),
-            Given(
+            FlagOption("repair", mark("Seek the smallest change after which it turns fully.")),
+            ValueOption(
                 "vary",
                 mark("PATH[=LOW:HIGH]"),
                 mark('A number that may change ("links.CB.angle=200 deg:300 deg"); as often as needed.'),
                 several=True,
                 read=READ_VARIED,
             ),
-            Given(
+            ValueOption(
                 "least_transmission_angle",
                 mark("ANGLE"),
                 mark("What every dyad keeps over the turn; 1 deg if left out."),
@@ -457,7 +463,7 @@ FORCE_POLYGONS = Topic(
             InstantsOption(
                 mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'), required=True
             ),
-            Given(
+            ValueOption(
                 "paper", mark("SIZE"), mark("Sheet that scales are chosen for: A5, A4 (if left out) or A3.")
             ),
         ),
@@ -481,8 +487,8 @@ PLAN = Topic(
     command=Command(
         help=mark("Draw the mechanism in numbered positions of its cycle."),
         options=(
-            Given("positions", mark("N"), mark("Number of positions, else 12."), int),
-            Given(
+            ValueOption("positions", mark("N"), mark("Number of positions, else 12."), int),
+            ValueOption(
                 "link",
                 mark("NAME"),
                 mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
@@ -507,7 +513,7 @@ DIAGRAMS = Topic(
         help=mark("Check velocities and accelerations by drawing them."),
         needs=Lazily("centrode.analysis.graphic.results", "need_few_instants"),
         options=(
-            Given(
+            ValueOption(
                 "at",
                 mark("VALUE"),
                 mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'),
@@ -516,17 +522,17 @@ DIAGRAMS = Topic(
                 parameter="instants",
                 read=READ_INSTANTS,
             ),
-            Given(
+            ValueOption(
                 "angle_step",
                 mark("ANGLE"),
                 mark('Read directions to this ("1 deg"); exactly if left out.'),
             ),
-            Given(
+            ValueOption(
                 "length_step",
                 mark("LENGTH"),
                 mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
             ),
-            Given(
+            ValueOption(
                 "scale",
                 mark("NAME=VALUE"),
                 mark('What a millimetre stands for in SI: length, velocity or acceleration ("length=0.02").'),

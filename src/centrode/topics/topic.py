@@ -29,7 +29,7 @@ class Lazily:
 
 
 @dataclass(frozen=True)
-class Choice:
+class ChoiceOption:
     """An option that takes one of a few words.
 
     Attributes
@@ -47,7 +47,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Given:
+class ValueOption:
     """An option that takes a text or a number.
 
     Attributes
@@ -73,7 +73,7 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Flag:
+class FlagOption:
     """An option that is given or not."""
 
     name: str
@@ -81,7 +81,7 @@ class Flag:
 
 
 @dataclass(frozen=True)
-class MotionRange:
+class RangeOptions:
     """The range of the motion: `--from`, `--to` and `--range`, as `start` and `stop` in SI of the computation."""
 
 
@@ -101,7 +101,7 @@ class InstantsOption:
     required: bool = False
 
 
-Option: TypeAlias = Choice | Given | Flag | MotionRange | InstantsOption
+Option: TypeAlias = ChoiceOption | ValueOption | FlagOption | RangeOptions | InstantsOption
 
 
 @dataclass(frozen=True)

@@ -146,14 +146,14 @@ def _aim(balance: Balance) -> Text:
         both = Sentence("shaking force and shaking moment zero")
         return both if balance.discs else Sentence("shaking force zero")
     if balance.weights is not None:
-        return _weighted(balance.weights)
+        return _weights(balance.weights)
     return Sentence(
         "what turns with the crank's pin, and {share} of what moves to and fro",
         share=Number(100.0 * (balance.fraction or 0.0), "%", ".4g"),
     )
 
 
-def _weighted(weights: tuple[float, ...]) -> Text:
+def _weights(weights: tuple[float, ...]) -> Text:
     names = (Sentence("shaking force"), Sentence("shaking moment"), Sentence("moment of the drive"))
     parts = [(name, weight) for name, weight in zip(names, weights, strict=True) if weight]
     if len(parts) == 1:

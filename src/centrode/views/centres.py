@@ -77,7 +77,7 @@ def sheet(results: CentreResults) -> Sheet:
         chapters={"centres": _chapter(results)}
         if results.mechanism.space == "plane"
         else _axes_chapter(results),
-        printed=tuple(_printed(results)),
+        printed=tuple(_printed_parts(results)),
     )
 
 
@@ -97,9 +97,9 @@ def _without_rounding(place: np.ndarray) -> np.ndarray:
 # Tables
 
 
-def _printed(results: CentreResults) -> Iterator[Section]:
+def _printed_parts(results: CentreResults) -> Iterator[Section]:
     """The bodies by number, and the centres of each instant; of named pairs also what they were found from."""
-    bodies = tuple(_numbered(results))
+    bodies = tuple(_bodies_by_number(results))
     yield Section(NOTHING, (Listing(Sentence("bodies"), bodies),))
     for sample, construction in enumerate(results.constructions):
         blocks: list[Block] = [_table(results, results.centres.isel(sample=sample), construction)]
@@ -109,7 +109,7 @@ def _printed(results: CentreResults) -> Iterator[Section]:
         yield Section(instant_place(results.mechanism, results.motion, sample), tuple(blocks))
 
 
-def _numbered(results: CentreResults) -> Iterator[Text]:
+def _bodies_by_number(results: CentreResults) -> Iterator[Text]:
     for number, name in enumerate(body_names(results.mechanism)):
         yield Joined((Number(number), body_text(results.mechanism, name)), " ")
 
@@ -244,7 +244,7 @@ def _file(results: CentreResults) -> Table:
         beside = [
             Column(f"centre_direction_{axis}", directions[:, number]) for number, axis in enumerate("xy")
         ]
-    how, mismatch = zip(*_constructed(results, labels), strict=True)
+    how, mismatch = zip(*_constructions(results, labels), strict=True)
     return Table(
         (
             *instant_columns(results.motion, np.repeat(np.arange(samples), count)),
@@ -264,7 +264,7 @@ def _file(results: CentreResults) -> Table:
     )
 
 
-def _constructed(results: CentreResults, labels: Sequence[Sequence[str]]) -> Iterator[tuple[str, float]]:
+def _constructions(results: CentreResults, labels: Sequence[Sequence[str]]) -> Iterator[tuple[str, float]]:
     """How each centre was constructed, and the relative velocity left there over the greatest of the motion."""
     names = body_names(results.mechanism)
     for construction in results.constructions:
@@ -377,7 +377,7 @@ def _note(step: KennedyStep, bodies: int, mark: Mark | None) -> SceneNote:
 
 def _chapter(results: CentreResults) -> Chapter:
     """For each instant the table of centres with their constructions, and the drawing."""
-    first = Paragraph(Sentence("Bodies: {names}.", names=Joined(tuple(_numbered(results)))))
+    first = Paragraph(Sentence("Bodies: {names}.", names=Joined(tuple(_bodies_by_number(results)))))
     instants = (
         Section(instant_title(results.mechanism, results.motion, sample), tuple(_instant(results, sample)))
         for sample in range(len(results.constructions))

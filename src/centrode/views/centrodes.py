@@ -42,7 +42,7 @@ def sheet(results: CentrodeResults) -> Sheet:
     bends = results.curvature
     count = 0 if bends is None else bends.sizes["sample"]
     return Sheet(
-        facts=tuple(_rolled(results)),
+        facts=tuple(_rolling_facts(results)),
         tables={"centrodes": _file(results)},
         datasets={"centrodes": results.centrodes} | ({} if bends is None else {"curvature": bends}),
         pictures=dict(_pictures(results)),
@@ -50,7 +50,7 @@ def sheet(results: CentrodeResults) -> Sheet:
     )
 
 
-def _rolled(results: CentrodeResults) -> Iterator[Fact]:
+def _rolling_facts(results: CentrodeResults) -> Iterator[Fact]:
     """Bodies, pieces, arcs rolled and what they differ by."""
     mechanism, found = results.mechanism, results.centrodes
     pieces = found["centrode_piece"].to_numpy()

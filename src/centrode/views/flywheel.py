@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.dynamics.steady_motion.flywheel import SOURCE_DISC, SOURCE_RIM, Wheel
-from centrode.sheets.plots import AxisLabel, Diagram, Plot, Trace, TraceKind
+from centrode.sheets.plots import AxisLabel, CurveDiagram, Plot, Trace, TraceKind
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -324,7 +324,7 @@ def _pictures(results: MachineResults) -> Iterator[tuple[str, Picture]]:
         yield "wittenbauer", _wittenbauer(steady, title)
 
 
-def _wittenbauer(steady: xr.Dataset, mechanism: Title) -> Diagram:
+def _wittenbauer(steady: xr.Dataset, mechanism: Title) -> CurveDiagram:
     """Work over the inertia of the links, with the tangents of the least and the greatest speed."""
     inertia = steady["inertia_of_links"].to_numpy()
     work = (steady["energy_change"] + steady["energy_of_links"]).to_numpy()
@@ -354,7 +354,7 @@ def _wittenbauer(steady: xr.Dataset, mechanism: Title) -> Diagram:
         symbol=Symbol("J"),
         inertia=Number(length / turn, "kg m^2"),
     )
-    return Diagram(
+    return CurveDiagram(
         Sentence("Wittenbauer's diagram: work over the inertia of the links"),
         mechanism,
         AxisLabel(symbol=Symbol("J", "II"), unit="kg m^2"),
@@ -392,7 +392,7 @@ def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapt
     sections = (
         Section(NOTHING, (*_groups(flywheel), Formula(tuple(_work_relations(results))))),
         Section(Sentence("Over the cycle"), (course,)),
-        Section(Sentence("Inertia and flywheel"), tuple(_needed(results))),
+        Section(Sentence("Inertia and flywheel"), tuple(_needed_inertia(results))),
         Section(Sentence("Summary"), (FactTable(facts),)),
         illustrations(pictures, captions),
     )
@@ -455,7 +455,7 @@ def _over_cycle(steady: xr.Dataset, columns: tuple[tuple[str, str], ...], captio
     )
 
 
-def _needed(results: MachineResults) -> Iterator[Block]:
+def _needed_inertia(results: MachineResults) -> Iterator[Block]:
     """From the range of energies to the wheel; without a fluctuation only what the shafts give."""
     flywheel = results.flywheel
     needed, first_order, fluctuation = flywheel.inertia, flywheel.inertia_first_order, flywheel.fluctuation

@@ -191,7 +191,7 @@ def _segments(results: FollowerMotionResults) -> Table:
     )
     return Table(
         (
-            Column("segment", _numbered(len(segments)), head=Sentence("segment")),
+            Column("segment", _numbers(len(segments)), head=Sentence("segment")),
             Column("angle", angles, "rad", Symbol("φ")),
             Column("lift", lifts, motion.unit, Symbol("ψ" if motion.swings else "s")),
             Column("curve", tuple(curve_name(one.curve) for one in segments), head=Sentence("curve")),
@@ -201,7 +201,7 @@ def _segments(results: FollowerMotionResults) -> Table:
     )
 
 
-def _numbered(count: int) -> tuple[Number, ...]:
+def _numbers(count: int) -> tuple[Number, ...]:
     return tuple(Number(number + 1) for number in range(count))
 
 

@@ -12,7 +12,7 @@ ROUNDING = 1e-13
 """Terms below this share of the greatest are zero."""
 
 
-def indexed(letter: str, name: str, behind: str = "") -> Expression:
+def index_symbol(letter: str, name: str, behind: str = "") -> Expression:
     """A letter with a name below it; `behind` follows, as a power does."""
     return Expression(f"{letter}_({{name}}){behind}", name=Name(name))
 
@@ -33,7 +33,7 @@ def sum_of(values: Sequence[float]) -> Expression:
     return Expression(" ".join(parts), **holes)
 
 
-def joined(parts: Sequence[Expression], between: str) -> Expression:
+def join_expressions(parts: Sequence[Expression], between: str) -> Expression:
     """Expressions with a sign between them."""
     holes = {f"part{place}": part for place, part in enumerate(parts)}
     return Expression(between.join(f"{{{name}}}" for name in holes), **holes)

@@ -68,7 +68,7 @@ def contacts_text(labels: str) -> Text:
     return Joined(tuple(map(contact_text, labels.split("; "))), "; ")
 
 
-def named(names: Iterable[str]) -> Text:
+def enumerate_names(names: Iterable[str]) -> Text:
     """Names with commas between them."""
     return Joined(tuple(map(Name, names)))
 

@@ -51,7 +51,7 @@ from centrode.views.reaction_names import (
     body_text,
     contact_text,
     contacts_text,
-    named,
+    enumerate_names,
     reaction_text,
     side_text,
 )
@@ -121,7 +121,7 @@ def sheet(results: ReactionResults) -> Sheet:
         datasets=datasets,
         pictures={} if results.loads is None else dict(pictures(results)),
         chapters={} if results.loads is None else {"reactions": _chapter(results, results.loads)},
-        printed=(_joints(results.mechanism, joints, spoken=True), *_printed(results)),
+        printed=(_joints(results.mechanism, joints, spoken=True), *_printed_parts(results)),
     )
 
 
@@ -158,9 +158,9 @@ def _facts(results: ReactionResults) -> Iterator[Fact]:
     """What acts and how fast, statuses, what is not determined, friction."""
     mechanism, reactions = results.mechanism, results.reactions
     links, massless = reactions["link"].to_numpy().tolist(), massless_links(mechanism)
-    yield Fact(Sentence("drives"), named(reactions["drive"].to_numpy().tolist()))
-    yield Fact(Sentence("links with mass"), named(links) if links else Sentence("none"))
-    yield Fact(Sentence("massless links"), named(massless) if massless else Sentence("none"))
+    yield Fact(Sentence("drives"), enumerate_names(reactions["drive"].to_numpy().tolist()))
+    yield Fact(Sentence("links with mass"), enumerate_names(links) if links else Sentence("none"))
+    yield Fact(Sentence("massless links"), enumerate_names(massless) if massless else Sentence("none"))
     if "drive_rate" in reactions:
         yield Fact(Sentence("speed of the drive"), _speed(mechanism, reactions))
     status = reactions["reaction_status"].to_numpy()
@@ -175,7 +175,7 @@ def _facts(results: ReactionResults) -> Iterator[Fact]:
         absent = np.isnan(reactions["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
         gears = reactions["gear"].to_numpy()[absent].tolist()
         if gears and np.isfinite(reactions["gear_moment"].to_numpy()).any():
-            text = Sentence("{gears}: nothing tells the radii", gears=named(gears))
+            text = Sentence("{gears}: nothing tells the radii", gears=enumerate_names(gears))
             yield Fact(Sentence("no tooth force"), text)
     if "friction" in reactions.dims:
         yield from _friction(reactions)
@@ -301,7 +301,7 @@ def _joint_text(joint: TabledJoint) -> Text:
             return Sentence("cylinder {drive}", drive=name)
 
 
-def _printed(results: ReactionResults) -> Iterator[Table]:
+def _printed_parts(results: ReactionResults) -> Iterator[Table]:
     """Extremes and what friction takes, or the reactions at single places, each under its place."""
     if not results.at:
         yield _extremes(results.mechanism, results.reactions)

@@ -43,7 +43,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views.abscissa import motion_abscissa
 from centrode.views.columns import force_columns, rows_shown, status_column
-from centrode.views.formulas import indexed, joined, sum_of
+from centrode.views.formulas import index_symbol, join_expressions, sum_of
 from centrode.views.instants import instant_title
 from centrode.views.load_names import load_text
 
@@ -414,7 +414,11 @@ def _shares(links: Sequence[LinkMotion]) -> Iterator[tuple[Leaf, ...]]:
         ):
             # what translates has no term of its turning; a mass has its term even where its centre rests
             if factor and (coefficient or letter == "m"):
-                letters.append(joined((indexed(letter, one.link), indexed(speed, one.link, "'^2")), " "))
+                letters.append(
+                    join_expressions(
+                        (index_symbol(letter, one.link), index_symbol(speed, one.link, "'^2")), " "
+                    )
+                )
                 terms.append(
                     Expression(
                         "{factor} dot.op {coefficient}^(2)",
@@ -423,8 +427,8 @@ def _shares(links: Sequence[LinkMotion]) -> Iterator[tuple[Leaf, ...]]:
                     )
                 )
         if letters:
-            left = indexed("J", one.link, "^*")
-            yield left, joined(letters, " + "), joined(terms, " + "), Number(one.reduced)
+            left = index_symbol("J", one.link, "^*")
+            yield left, join_expressions(letters, " + "), join_expressions(terms, " + "), Number(one.reduced)
 
 
 def _totals(here: xr.Dataset) -> Iterator[tuple[Leaf, ...]]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.errors import Status
-from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AxisLabel, Path
+from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath, AxisLabel
 from centrode.sheets.sheet import Column, Fact, Sheet, Table
 from centrode.sheets.texts import Joined, Name, Number, Sentence, Title
 from centrode.views.abscissas import drive_label
@@ -126,12 +126,12 @@ def _levels(status: NDArray[np.int8], margin: Array, kind: Status) -> Array:
     return np.where(status == kind, np.maximum(size, 1e-12), -size - 1e-300)
 
 
-def _paths(results: RegionResults) -> Iterator[Path]:
+def _paths(results: RegionResults) -> Iterator[AreaPath]:
     """The path of the drives in time, and its part where the mechanism does not get."""
     motion = results.motion
     if motion is None:
         return
-    values = [_wrapped(results, number, motion) for number in range(len(DIMENSIONS))]
+    values = [_wrap(results, number, motion) for number in range(len(DIMENSIONS))]
     ok = motion["status"].to_numpy() == Status.OK
     jumps = np.flatnonzero(np.any([np.abs(np.diff(one)) > 0.5 * TURN for one in values], axis=0))
     for regular, name, drawn in (
@@ -140,10 +140,10 @@ def _paths(results: RegionResults) -> Iterator[Path]:
     ):
         if regular.any():
             x, y = (np.insert(np.where(regular, one, np.nan), jumps + 1, np.nan) for one in values)
-            yield Path(name, x, y, drawn)
+            yield AreaPath(name, x, y, drawn)
 
 
-def _wrapped(results: RegionResults, number: int, motion: xarray.Dataset) -> Array:
+def _wrap(results: RegionResults, number: int, motion: xarray.Dataset) -> Array:
     """Values of a drive over the motion; whole turns are taken out where the region is a turn wide."""
     name = str(results.region["drive"].to_numpy()[number])
     first, last = results.region[DIMENSIONS[number]].to_numpy()[[0, -1]]

@@ -127,8 +127,8 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("drives"), Joined(tuple(Name(str(name)) for name in run["drive"].to_numpy())))
     yield Fact(Sentence("driven by"), _driven_by(run))
     yield Fact(Sentence("scheme"), _scheme(run))
-    yield Fact(Sentence("ended"), _ended(run))
-    yield Fact(Sentence("turned") if turns else Sentence("moved"), _turned(run))
+    yield Fact(Sentence("ended"), _ending(run))
+    yield Fact(Sentence("turned") if turns else Sentence("moved"), _turns(run))
     yield Fact(
         Sentence("speed of the drive"),
         Sentence(
@@ -156,7 +156,7 @@ def _scheme(run: xr.Dataset) -> Text:
     return Joined((scheme, Counted("{n} acceleration computed", "{n} accelerations computed", count)))
 
 
-def _ended(run: xr.Dataset) -> Text:
+def _ending(run: xr.Dataset) -> Text:
     time = Number(float(run["time"].to_numpy()[-1]), "s")
     return {
         "duration": Sentence("after {time}", time=time),
@@ -168,7 +168,7 @@ def _ended(run: xr.Dataset) -> Text:
     }[run.attrs["ended"]]
 
 
-def _turned(run: xr.Dataset) -> Text:
+def _turns(run: xr.Dataset) -> Text:
     turned, unit = float(run["turned"].to_numpy()[-1]), str(run["turned"].attrs["units"])
     value = _value(turned, unit)
     return (

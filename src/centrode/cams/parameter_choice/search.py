@@ -26,7 +26,7 @@ from centrode.cams.parameter_choice.problem import (
 from centrode.cams.path_series import law_of, path_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam import CONSTANT, POINT, Cam, varied
+from centrode.model.cam import CONSTANT, POINT, Cam, vary_cam
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.reading import FrozenMap
 
@@ -499,7 +499,7 @@ def bounds_of(cam: Cam) -> dict[str, float]:
 
 def chosen_cam(cam: Cam, choice: ParameterChoice) -> Cam:
     """The description with the chosen parameters."""
-    return varied(cam, choice.chosen.parameters)
+    return vary_cam(cam, choice.chosen.parameters)
 
 
 def _trial(cam: Cam, names: tuple[str, ...], values: Array) -> PathTrial:
@@ -551,7 +551,7 @@ def _check_ends(cam: Cam, ranges: Mapping[str, tuple[float, float]]) -> None:
     roller = {name: value for name, value in highs.items() if name == "roller.radius"}
     for values in (lows, highs, {**lows, **roller}):
         try:
-            end = varied(cam, values)
+            end = vary_cam(cam, values)
             law_of(end)
         except InputError as error:
             what = _("an end of a range is no design: {what}").format(what=error.what)
@@ -665,7 +665,7 @@ def _neighbours(cam: Cam) -> list[Cam]:
         for place in np.clip(share + distance * directions, 0.0, 1.0):
             values = dict(zip(names, (low + place * width).tolist(), strict=True))
             try:
-                found.append(varied(cam, values))
+                found.append(vary_cam(cam, values))
             except InputError:
                 continue
     return found

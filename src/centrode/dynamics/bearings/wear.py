@@ -98,8 +98,8 @@ def bearings(
     wear = _wear(path, places, sectors, arc)
     values = {
         "bearing_load": (("sample", "bearing", "axis"), loads),
-        "load_on_journal": (("sample", "bearing", "axis"), _turned(-loads, -turns[0])),
-        "load_on_bush": (("sample", "bearing", "axis"), _turned(loads, -turns[1])),
+        "load_on_journal": (("sample", "bearing", "axis"), _turn(-loads, -turns[0])),
+        "load_on_bush": (("sample", "bearing", "axis"), _turn(loads, -turns[1])),
         "relative_turning": (("sample", "bearing"), turns[0] - turns[1]),
         "load_path": (("bearing",), path.sum(axis=(0, 1))),
         "wear": (("bearing", "surface", "sector"), wear),
@@ -164,7 +164,7 @@ def _bearings(mechanism: Mechanism, reactions: xr.Dataset) -> Iterator[Bearing]:
             yield Bearing(point, first, other)
 
 
-def _turned(vectors: Array, angle: Array) -> Array:
+def _turn(vectors: Array, angle: Array) -> Array:
     cosine, sine = np.cos(angle), np.sin(angle)
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)

@@ -35,7 +35,7 @@ from centrode.present.animations.video_files import (
     size_of,
     write_stage,
 )
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import Globe
 from centrode.study.animation_frames import Course, Film, course_from, course_of, film_from, film_of
 from centrode.study.texts import place_words
@@ -80,7 +80,7 @@ class Shown:
     against: str = FRAME
 
 
-Maker: TypeAlias = Callable[["Film", Scene | Globe, Shown], Layer]
+Maker: TypeAlias = Callable[["Film", LinkageScene | Globe, Shown], Layer]
 
 MAKERS: Mapping[str, Maker] = {
     "paths": lambda film, scene, shown: PathsLayer(
@@ -125,7 +125,7 @@ def check_shown(mechanism: Mechanism, shown: Shown) -> None:
             raise InputError(name, what, _("show them, or take it out"))
 
 
-def layers_of(film: Film, scene: Scene | Globe, shown: Shown) -> list[Layer]:
+def layers_of(film: Film, scene: LinkageScene | Globe, shown: Shown) -> list[Layer]:
     """The links, and what is shown beside them."""
     check_shown(film.mechanism, shown)
     made = [make(film, scene, shown) for name, make in MAKERS.items() if name in shown.what]

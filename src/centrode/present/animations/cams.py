@@ -29,7 +29,7 @@ from centrode.present.cams.driving_cam import PLACES, DrivingCam
 from centrode.present.cams.driving_cam_drawing import draw_profile, draw_touching
 from centrode.present.cams.walking_wheel import draw_wheel, reach, wheel_keys
 from centrode.present.displayed_units import shown_as
-from centrode.present.scene import turned
+from centrode.present.scene import turn_vectors
 from centrode.present.style import GROUND, INK, MUTED, PALETTE
 from centrode.study.animation_frames import Loop, frame_ways
 
@@ -139,7 +139,7 @@ class TurningCamLayer(Layer):
 
     def at(self, places: Array, frame: int) -> Array:
         """Where places (n, 2) in the cam's axes are in a frame."""
-        return turned(places.T, float(self.angles[frame]))
+        return turn_vectors(places.T, float(self.angles[frame]))
 
     def ground(self, axes: Axes) -> None:
         """The guide of the stem."""
@@ -303,12 +303,12 @@ def animate_cam(
     """A step of the walking wheel, or a turn of the cam; an open cam runs there and back."""
     timing = pace.timing(path.suffix.lower(), _period(cam, pace))
     pixels = size_of(size, path.suffix.lower(), timing.frames)
-    stage, loop = _staged(cam, timing.frames, pixels, dark)
+    stage, loop = _stage_of(cam, timing.frames, pixels, dark)
     write_stage(stage, path, timing, said)
     return Animation(path, timing.frames, timing.per_second, pixels, loop)
 
 
-def _staged(cam: AnyCam, frames: int, size: tuple[int, int], dark: bool) -> tuple[Stage, Loop]:
+def _stage_of(cam: AnyCam, frames: int, size: tuple[int, int], dark: bool) -> tuple[Stage, Loop]:
     """The stage of a cam, and how it runs on."""
     title, display = _(cam.title), cam.display
     if isinstance(cam, PlateCam):

@@ -18,10 +18,10 @@ from centrode.locale import _
 from centrode.model.labels import body_name
 from centrode.model.reading import FRAME
 from centrode.present.animations.layers import FAR, WHOLE, Array, MotionLayer
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import Globe, draw_line, laid
 from centrode.present.style import pens
-from centrode.present.wheels import subscripted
+from centrode.present.wheels import subscript
 from centrode.present.window import carried_by, within
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class CentrodesLayer(MotionLayer):
     def __init__(
         self,
         film: Film,
-        scene: Scene | Globe,
+        scene: LinkageScene | Globe,
         link: str,
         against: str = FRAME,
         found: xarray.Dataset | None = None,
@@ -141,7 +141,7 @@ class CentresLayer(MotionLayer):
     """Instant centres of pairs of bodies, those that lie in the picture."""
 
     def __init__(
-        self, film: Film, scene: Scene | Globe, pairs: Sequence[tuple[str, str]] | None = None
+        self, film: Film, scene: LinkageScene | Globe, pairs: Sequence[tuple[str, str]] | None = None
     ) -> None:
         super().__init__(film, scene)
         mechanism = film.mechanism
@@ -194,7 +194,7 @@ class CentresLayer(MotionLayer):
     def symbol(self, pair: Sequence[str]) -> str:
         """How the centre of a pair is called, by the bodies' numbers."""
         first, second = sorted((self.bodies.index(name) for name in pair), reverse=True)
-        return subscripted((first, second), len(self.bodies))
+        return subscript((first, second), len(self.bodies))
 
     def entries(self) -> Sequence[tuple[Artist, str]]:
         """The bodies by number."""

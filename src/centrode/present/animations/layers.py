@@ -17,7 +17,7 @@ from centrode.errors import Status
 from centrode.locale import decimal_mark
 from centrode.present.displayed_units import shown_as
 from centrode.present.linkage_scene import scene_of
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.sphere.globe import Globe, globe_of
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
@@ -123,7 +123,7 @@ class MotionLayer(Layer):
     Attributes
     ----------
     film : Film
-    scene : Scene or Globe
+    scene : LinkageScene or Globe
         The frames' positions are its first samples, those of the course follow.
     count : int
         Positions of the frames.
@@ -131,7 +131,7 @@ class MotionLayer(Layer):
         Corners of what the links need over the whole motion.
     """
 
-    def __init__(self, film: Film, scene: Scene | Globe) -> None:
+    def __init__(self, film: Film, scene: LinkageScene | Globe) -> None:
         self.film = film
         self.scene = scene
         self.count = len(film.places)
@@ -150,7 +150,7 @@ class MotionLayer(Layer):
         return self.scene.flat(places) if isinstance(self.scene, Globe) else places
 
 
-def scene_of_film(film: Film) -> Scene | Globe:
+def scene_of_film(film: Film) -> LinkageScene | Globe:
     """The scene that all layers of a film share."""
     if film.mechanism.space == "sphere":
         return globe_of(film.mechanism, film.together)

@@ -13,7 +13,7 @@ from centrode.present.animations.layers import Array, MotionLayer, View
 from centrode.present.cams.driving_cam_drawing import draw_axes_of_cams, draw_turned_cams
 from centrode.present.displayed_units import plain
 from centrode.present.drawing import NAME_POINTS, draw_drive, draw_frame, draw_hinges, draw_links, used_points
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import (
     Globe,
     arcs_on_paper,
@@ -89,7 +89,7 @@ class LinksLayer(MotionLayer):
                 x, y, plain(name), fontsize=NAME_POINTS, color=INK, ha="center", va="center", zorder=8
             )  # fmt: skip
 
-    def _draw_fixed_hinges(self, axes: Axes, scene: Scene, sample: int) -> None:
+    def _draw_fixed_hinges(self, axes: Axes, scene: LinkageScene, sample: int) -> None:
         used, places = used_points(scene), scene.at(sample)
         for name in scene.mechanism.frame.points:
             if name in used and name in places:
@@ -111,7 +111,7 @@ WIDTH = 1.2
 class PathsLayer(MotionLayer):
     """Paths of points, all grey: colours belong to the links, and a path is known by the point on it."""
 
-    def __init__(self, film: Film, scene: Scene | Globe, points: Sequence[str], growing: bool) -> None:
+    def __init__(self, film: Film, scene: LinkageScene | Globe, points: Sequence[str], growing: bool) -> None:
         super().__init__(film, scene)
         self.points = points
         self.growing = growing

@@ -15,7 +15,7 @@ from centrode.locale import _, decimal_mark, ngettext
 from centrode.present.animations.layers import NOTHING, Array, Layer, MotionLayer, ScaleArrow
 from centrode.present.animations.stage import ARROW_HEAD, arrow_outlines
 from centrode.present.displayed_units import shown_as
-from centrode.present.scene import Scene
+from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import Globe
 from centrode.present.style import INK, pens
 from centrode.quantities import typeset_unit
@@ -61,7 +61,7 @@ class Vectors:
 class VectorLayer(MotionLayer):
     """Vectors whose lengths are everywhere the same number of drawing units to a unit of their values."""
 
-    def __init__(self, film: Film, scene: Scene | Globe, vectors: Vectors, level: float = 7.0) -> None:
+    def __init__(self, film: Film, scene: LinkageScene | Globe, vectors: Vectors, level: float = 7.0) -> None:
         super().__init__(film, scene)
         self.vectors = vectors
         self.level = level
@@ -153,7 +153,9 @@ VELOCITY, ACCELERATION = "#00795A", "#A3287F"
 COLOURS = {"velocity": VELOCITY, "acceleration": ACCELERATION}
 
 
-def point_vectors(film: Film, scene: Scene | Globe, variable: str, points: Sequence[str]) -> VectorLayer:
+def point_vectors(
+    film: Film, scene: LinkageScene | Globe, variable: str, points: Sequence[str]
+) -> VectorLayer:
     """The layer of a vector that the motion has for each point: "velocity" or "acceleration"."""
     found = film.motion[variable]
     factor, unit = shown_as(str(found.attrs.get("units", "")), film.mechanism.display)
@@ -170,7 +172,7 @@ def point_vectors(film: Film, scene: Scene | Globe, variable: str, points: Seque
 LOAD = "#7A4B00"
 
 
-def joint_layer(film: Film, scene: Scene | Globe) -> VectorLayer:
+def joint_layer(film: Film, scene: LinkageScene | Globe) -> VectorLayer:
     """Forces of the pins on the links, each in the colour of its link, and of guides on what slides in them."""
     found = joint_forces(film.mechanism, film.places)
     colours = {name: pen.colour for name, pen in pens(film.mechanism.link_names).items()}
@@ -189,10 +191,10 @@ def joint_layer(film: Film, scene: Scene | Globe) -> VectorLayer:
     return VectorLayer(film, scene, Vectors(_("forces on the links"), "N", places, values, drawn, INK), 7.4)
 
 
-def load_layer(film: Film, scene: Scene | Globe) -> VectorLayer:
+def load_layer(film: Film, scene: LinkageScene | Globe) -> VectorLayer:
     """Forces of loads and weights where they act."""
     forces = load_forces(film.mechanism, film.places)
-    factor = scene.factor if isinstance(scene, Scene) else 1.0
+    factor = scene.factor if isinstance(scene, LinkageScene) else 1.0
     shape = (len(film.places), 0, 3 if isinstance(scene, Globe) else 2)
     places = np.stack([factor * one.place for one in forces], axis=1) if forces else np.empty(shape)
     values = np.stack([one.force for one in forces], axis=1) if forces else np.empty(shape)

@@ -15,7 +15,7 @@ from centrode.cams.parameter_choice.problem import MEASURES
 from centrode.locale import _
 from centrode.model.cam import CONSTANT, POINT
 from centrode.present.curves import legend_width, write_legend, write_title
-from centrode.present.displayed_units import formula, labelled, shown_as
+from centrode.present.displayed_units import formula, label_with_unit, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, house_style
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _title(front: TradeOff) -> str:
 def _label(name: str, display: Display) -> str:
     title = _(MEASURES[name].title)
     worst = _("least {measure}") if MEASURES[name].least else _("greatest {measure}")
-    return labelled(worst.format(measure=title), measure_shown(name, display)[1])
+    return label_with_unit(worst.format(measure=title), measure_shown(name, display)[1])
 
 
 def _draw_front(axes: Axes, found: CamChoice, front: TradeOff) -> None:
@@ -148,5 +148,5 @@ def _draw_parameter(axes: Axes, found: CamChoice, front: TradeOff, name: str) ->
         measure_shown(front.against, found.cam.display)[0] * found.choice.chosen.measures[front.against].value
     )
     axes.plot([at], [chosen], "D", color=CHOSEN, markersize=5)
-    axes.set_ylabel(labelled(formula(letter, index), unit))
+    axes.set_ylabel(label_with_unit(formula(letter, index), unit))
     axes.yaxis.set_major_formatter(Decimals())

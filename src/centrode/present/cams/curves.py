@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 from centrode.locale import _
 from centrode.present.curves import (
-    Abscissa,
+    DrawnAbscissa,
     Panel,
     angle_ticks,
     legend_width,
@@ -23,7 +23,7 @@ from centrode.present.curves import (
     write_legend,
     write_title,
 )
-from centrode.present.displayed_units import formula, labelled, shown_as
+from centrode.present.displayed_units import formula, label_with_unit, shown_as
 from centrode.present.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
 from centrode.quantities import QUANTITIES
 
@@ -57,7 +57,7 @@ def plate_curves_figure(cam: PlateCam, dataset: xarray.Dataset) -> Figure:
         phi = factor * dataset["cam_angle"].to_numpy()
         for axes, (name, bounds) in zip(grid, rows, strict=True):
             _panel(axes, cam, dataset, name, [one for one in bounds if one is not None], phi)
-        grid[-1].set_xlabel(labelled(_("angle of the cam") + " " + formula("φ"), unit))
+        grid[-1].set_xlabel(label_with_unit(_("angle of the cam") + " " + formula("φ"), unit))
         grid[-1].set_xlim(float(phi[0]), float(phi[-1]))
         angle_ticks(grid[-1].xaxis, float(phi[0]), float(phi[-1]), unit, 12)
         write_title(figure, _("Pressure angle and curvature of the cam"), _(cam.title))
@@ -71,7 +71,7 @@ def _panel(
     factor, unit = shown_as(quantity.unit, cam.display)
     values = factor * dataset[name].to_numpy()
     if name == "profile_bend":
-        values = _bounded(values, SHOWN * factor * float(dataset.attrs["base_radius"]))
+        values = _cut_at(values, SHOWN * factor * float(dataset.attrs["base_radius"]))
     axes.plot(phi, values, color=PALETTE[0])
     for bound in bounds:
         axes.axhline(factor * bound, color=PALETTE[1], linewidth=0.9, linestyle=BOUND)
@@ -86,12 +86,12 @@ def _panel(
     for end in ends:
         axes.axvline(float(end), color=MUTED, linewidth=0.6, zorder=1.6)
     axes.set_title(quantity.title, fontsize=9.5)
-    axes.set_ylabel(labelled(formula(quantity.symbol), unit))
+    axes.set_ylabel(label_with_unit(formula(quantity.symbol), unit))
     axes.yaxis.set_major_formatter(Decimals())
     axes.margins(y=0.1)
 
 
-def _bounded(values: Array, most: float) -> Array:
+def _cut_at(values: Array, most: float) -> Array:
     """Values up to a size; beyond it a gap, as between opposite signs of a radius that passes infinity."""
     return np.where(np.abs(values) <= most, values, math.nan)
 
@@ -121,7 +121,7 @@ def contact_figure(cam: AnyCam, contact: xarray.Dataset) -> Figure:
         phi = factor * contact["carrier_angle"].to_numpy()
         _draw_stress(upper, contact, phi, factor, unit)
         _draw_strip(lower, contact, phi)
-        lower.set_xlabel(labelled(_("angle of the carrier") + " " + formula("φ"), unit))
+        lower.set_xlabel(label_with_unit(_("angle of the carrier") + " " + formula("φ"), unit))
         angle_ticks(lower.xaxis, float(phi[0]), float(phi[-1]), unit, 12)
         lower.set_xlim(phi[0], phi[-1])
         write_title(figure, _("Contact of roller and cam"), _(cam.title))
@@ -150,7 +150,7 @@ def _draw_stress(axes: Axes, contact: xarray.Dataset, phi: Array, factor: float,
         (dot,) = axes.plot([at], [greatest], "o", color=INK, markersize=5, clip_on=False, zorder=5)
         key.append((dot, told))
     axes.set_ylim(bottom=0)
-    axes.set_ylabel(labelled(formula("σ") + ", " + formula("τ"), "MPa"))
+    axes.set_ylabel(label_with_unit(formula("σ") + ", " + formula("τ"), "MPa"))
     axes.yaxis.set_major_formatter(Decimals())
     write_legend(axes, key, inches=HIGH)
 
@@ -166,7 +166,7 @@ def _draw_strip(axes: Axes, contact: xarray.Dataset, phi: Array) -> None:
         (line,) = axes.plot(phi, 1e3 * contact[name].to_numpy(), color=PALETTE[4 + number])
         key.append((line, told))
     axes.set_ylim(bottom=0)
-    axes.set_ylabel(labelled(formula("a") + ", " + formula("z"), "mm"))
+    axes.set_ylabel(label_with_unit(formula("a") + ", " + formula("z"), "mm"))
     axes.yaxis.set_major_formatter(Decimals())
     write_legend(axes, key, inches=LOW)
 
@@ -189,20 +189,20 @@ def cam_forces_figure(cam: AnyCam, forces: xarray.Dataset) -> Figure:
             factor, unit = SCALES.get(quantity.unit, (1.0, quantity.unit))
             title = _(quantity.title)
             curves = {title: factor * forces[name].to_numpy()}
-            text = labelled(formula(quantity.symbol), unit)
+            text = label_with_unit(formula(quantity.symbol), unit)
             rows.append([Panel(text, unit, curves, pens(curves))])
         return sheet(_("Forces on cam and follower"), _(cam.title), rows, _over_turn(cam, forces))
 
 
-def _over_turn(cam: AnyCam, forces: xarray.Dataset) -> Abscissa:
+def _over_turn(cam: AnyCam, forces: xarray.Dataset) -> DrawnAbscissa:
     """The cam's angle, in the unit of the display."""
     factor, unit = shown_as("rad", cam.display)
     phi = forces["cam_angle"].to_numpy() * factor
     order = np.argsort(phi, kind="stable")
     none = np.zeros(0, dtype=np.intp)
     quantity = QUANTITIES["cam_angle"]
-    label = labelled(f"{_(quantity.title)} {formula(quantity.symbol)}", unit)
-    return Abscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
+    label = label_with_unit(f"{_(quantity.title)} {formula(quantity.symbol)}", unit)
+    return DrawnAbscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
 
 
 CURVES = ("path_radius", "cam_pressure_angle", "law_curvature")
@@ -219,15 +219,15 @@ ROUNDING = 1e-17
 """Differences [m] below this are not drawn."""
 
 
-def over_carrier(cam: AnyCam, dataset: xarray.Dataset) -> Abscissa:
+def over_carrier(cam: AnyCam, dataset: xarray.Dataset) -> DrawnAbscissa:
     """The carrier's angle, in the unit of the display."""
     factor, unit = shown_as("rad", cam.display)
     phi = dataset["carrier_angle"].to_numpy() * factor
     order = np.argsort(phi, kind="stable")
     none = np.zeros(0, dtype=np.intp)
     quantity = QUANTITIES["carrier_angle"]
-    label = labelled(f"{quantity.title} {formula(quantity.symbol)}", unit)
-    return Abscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
+    label = label_with_unit(f"{quantity.title} {formula(quantity.symbol)}", unit)
+    return DrawnAbscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
 
 
 def cam_curves_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
@@ -239,7 +239,7 @@ def cam_curves_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
             factor, unit = shown_as(quantity.unit, cam.display)
             values = factor * dataset[variable].to_numpy()
             curves = {quantity.title: values}
-            text = labelled(formula(quantity.symbol), unit)
+            text = label_with_unit(formula(quantity.symbol), unit)
             rows.append([Panel(text, unit, curves, pens(curves), legend=False)])
         figure = sheet(_("Path of the roller's centre"), _(cam.title), rows, over_carrier(cam, dataset))
         _mark_stall(figure.axes, cam, dataset)
@@ -280,7 +280,7 @@ def cam_path_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
         axes.margins(0.14)
         for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
             axis.set_major_formatter(Decimals())
-            axis.set_label_text(labelled(formula(name), unit))
+            axis.set_label_text(label_with_unit(formula(name), unit))
         write_legend(axes, handles)
         write_title(figure, _("Path of the roller's centre, and its normals"), _(cam.title))
         return figure
@@ -340,7 +340,7 @@ def cam_routes_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
         axes.set_xlim(float(abscissa.values[0]), float(abscissa.values[-1]))
         angle_ticks(axes.xaxis, float(abscissa.values[0]), float(abscissa.values[-1]), abscissa.unit, 9)
         axes.set_xlabel(abscissa.label)
-        axes.set_ylabel(labelled(formula("|Δρ|").replace("ρ", r"\rho "), unit))
+        axes.set_ylabel(label_with_unit(formula("|Δρ|").replace("ρ", r"\rho "), unit))
         _mark_circle(axes, cam, dataset)
         write_legend(axes, handles)
         title = _("Differences of the radius, series cut after {last}").format(

@@ -23,22 +23,22 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Drive, Mechanism
-    from centrode.present.scene import Scene
+    from centrode.present.scene import LinkageScene
 
 
-def draw_cams(axes: Axes, scene: Scene, sample: int) -> None:
+def draw_cams(axes: Axes, scene: LinkageScene, sample: int) -> None:
     """The driving cams of a scene as they stand at a sample, on their axes."""
     draw_axes_of_cams(axes, scene)
     draw_turned_cams(axes, scene, sample)
 
 
-def draw_axes_of_cams(axes: Axes, scene: Scene) -> None:
+def draw_axes_of_cams(axes: Axes, scene: LinkageScene) -> None:
     """The hinges on the frame that the driving cams turn about."""
     for cam in scene.cams:
         signs.fixed_hinge(axes, cam.hub, scene.sign)
 
 
-def draw_turned_cams(axes: Axes, scene: Scene, sample: int) -> None:
+def draw_turned_cams(axes: Axes, scene: LinkageScene, sample: int) -> None:
     """The driving cams with roller, arm or face of their followers, without their axes."""
     for cam in scene.cams:
         if np.isfinite(cam.angles[sample]):

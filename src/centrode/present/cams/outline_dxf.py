@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from centrode.present.cams.outlines import STROKES, grouped
+from centrode.present.cams.outlines import STROKES, group_by_layer
 from centrode.present.dxf_files import dxf_document
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def write_outlines_dxf(outlines: Sequence[CamOutline], path: Path, title: str = 
     """
     with dxf_document(path) as (_library, document):
         space = document.modelspace()
-        for layer, pieces in grouped(outlines).items():
+        for layer, pieces in group_by_layer(outlines).items():
             stroke = STROKES[layer]
             document.layers.add(layer, color=stroke.number)
             document.layers.add(f"points-{layer}", color=stroke.number)

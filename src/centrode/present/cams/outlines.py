@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Stroke:
+class OutlineStroke:
     """Colour, width [mm] and dashes [mm] of a layer; its number among AutoCAD's colours."""
 
     colour: str
@@ -41,19 +41,19 @@ class Stroke:
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#8A8A8A"
 """Colours of figures (style), said here anew: files for machines are written without a library for figures."""
 
-STROKES: Mapping[str, Stroke] = {
-    "path": Stroke(GREY, 0.25, (4.0, 1.0, 0.6, 1.0), 8),
-    "cutter": Stroke(VERMILION, 0.25, (3.0, 1.2), 1),
-    "profile": Stroke(BLUE, 0.5, (), 5),
-    "profile-working": Stroke(BLUE, 0.5, (), 5),
-    "profile-return": Stroke(VERMILION, 0.5, (3.0, 1.2), 1),
-    "groove-working": Stroke(BLUE, 0.35, (), 4),
-    "groove-return": Stroke(VERMILION, 0.35, (3.0, 1.2), 30),
-    "shoe": Stroke(GREEN, 0.5, (), 3),
+STROKES: Mapping[str, OutlineStroke] = {
+    "path": OutlineStroke(GREY, 0.25, (4.0, 1.0, 0.6, 1.0), 8),
+    "cutter": OutlineStroke(VERMILION, 0.25, (3.0, 1.2), 1),
+    "profile": OutlineStroke(BLUE, 0.5, (), 5),
+    "profile-working": OutlineStroke(BLUE, 0.5, (), 5),
+    "profile-return": OutlineStroke(VERMILION, 0.5, (3.0, 1.2), 1),
+    "groove-working": OutlineStroke(BLUE, 0.35, (), 4),
+    "groove-return": OutlineStroke(VERMILION, 0.35, (3.0, 1.2), 30),
+    "shoe": OutlineStroke(GREEN, 0.5, (), 3),
 }
 
 
-def grouped(outlines: Sequence[CamOutline]) -> dict[str, list[CamOutline]]:
+def group_by_layer(outlines: Sequence[CamOutline]) -> dict[str, list[CamOutline]]:
     """Outlines by their layers, in the order of `STROKES`."""
     return {layer: found for layer in STROKES if (found := [one for one in outlines if one.layer == layer])}
 
@@ -72,7 +72,7 @@ def write_outlines_svg(outlines: Sequence[CamOutline], path: Path, title: str = 
     A piece goes through its points with its own slopes as cubic Bezier curves: between points an angle h apart it
     departs by some h^4 / 384 of the size. The same outlines give the same bytes.
     """
-    groups = grouped(outlines)
+    groups = group_by_layer(outlines)
     places = np.concatenate([1e3 * one.places for one in outlines] + [np.zeros((1, 2))])
     low, high = places.min(axis=0) - MARGIN - CENTRE, places.max(axis=0) + MARGIN + CENTRE
     width, height = high - low

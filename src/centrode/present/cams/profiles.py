@@ -19,10 +19,10 @@ from centrode.cams.profiles import cam_outlines
 from centrode.cams.roller_path import frames
 from centrode.locale import _, mark
 from centrode.present import signs
-from centrode.present.cams.outlines import GREY, STROKES, grouped
+from centrode.present.cams.outlines import GREY, STROKES, group_by_layer
 from centrode.present.cams.walking_wheel import walking_figure
 from centrode.present.curves import write_legend, write_title
-from centrode.present.displayed_units import labelled, shown_as
+from centrode.present.displayed_units import label_with_unit, shown_as
 from centrode.present.signs import cross, turning_arrow
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, house_style
 
@@ -80,7 +80,7 @@ def profile_figure(
         )
         cross(axes, np.zeros(2), 0.012 * extent, INK)
         keys.append((Line2D([], [], color=INK, marker="x", linestyle="none"), _("centre of the cam")))
-        finish(axes, labelled("x", unit), labelled("y", unit))
+        finish(axes, label_with_unit("x", unit), label_with_unit("y", unit))
         write_legend(axes, keys, inches=5.0)
         write_title(figure, _("Profile of the cam"), title)
     return figure
@@ -89,7 +89,7 @@ def profile_figure(
 def draw_outlines(axes: Axes, outlines: Sequence[CamOutline], factor: float) -> list[tuple[Line2D, str]]:
     """Draw pieces of outlines in the strokes of their layers; returns entries of a legend."""
     keys = []
-    for layer, pieces in grouped(outlines).items():
+    for layer, pieces in group_by_layer(outlines).items():
         for one in pieces:
             (line,) = axes.plot(*(factor * one.places.T), **STROKES[layer].drawn, zorder=3)
         keys.append((line, _(LAYERS.get(layer, layer))))
@@ -281,7 +281,7 @@ def follower_cam_figure(
         cross(axes, np.zeros(2), size, INK)
         keys.append((Line2D([], [], color=INK, marker="x", linestyle="none"), _("centre of the cam")))
         _arrow(axes, body, factor)
-        finish(axes, labelled("x", unit), labelled("y", unit))
+        finish(axes, label_with_unit("x", unit), label_with_unit("y", unit))
         write_legend(axes, keys, inches=5.2)
         write_title(figure, _("Profile of the cam, and its follower at 0°"), title)
     return figure

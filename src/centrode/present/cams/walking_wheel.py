@@ -16,7 +16,7 @@ from matplotlib.patches import Circle, Polygon
 from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.present.curves import write_title
-from centrode.present.displayed_units import labelled, shown_as
+from centrode.present.displayed_units import label_with_unit, shown_as
 from centrode.present.signs import ground, slider
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, house_style
 
@@ -60,8 +60,8 @@ def walking_figure(
             draw_wheel(axes, wheel, pose, factor)
             window(axes, wheel, pose, factor)
             axes.set_title(f"{math.degrees(angle):.4g}°".replace("-", "−"))
-            axes.set_xlabel(labelled("x", unit))
-        grid[0].set_ylabel(labelled("y", unit))
+            axes.set_xlabel(label_with_unit("x", unit))
+        grid[0].set_ylabel(label_with_unit("y", unit))
         keys = wheel_keys()
         figure.legend(
             [key for key, _name in keys], [name for _key, name in keys], loc="outside lower center", ncols=4

@@ -74,7 +74,7 @@ class Ring:
 
 
 @dataclass(frozen=True)
-class Words:
+class BoardWords:
     """A line of text, its middle at a place or, where `left`, its left end; height of capital letters [mm]."""
 
     layer: str
@@ -105,7 +105,7 @@ class Drawing:
 
     strokes: list[Stroke] = field(default_factory=list)
     rings: list[Ring] = field(default_factory=list)
-    words: list[Words] = field(default_factory=list)
+    words: list[BoardWords] = field(default_factory=list)
     covers: list[Cover] = field(default_factory=list)
 
     def box(self) -> tuple[Array, Array]:
@@ -220,7 +220,7 @@ class Board:
     def text(self, x: float, y: float, text: str, *, fontsize: float, **how: Any) -> None:
         """Words; the size of the letters is in points on paper, drawings want the height of their capitals."""
         height = CAPITAL * fontsize * self.letters
-        self.drawing.words.append(Words(self.layer, text, (self.scale * x, self.scale * y), height))
+        self.drawing.words.append(BoardWords(self.layer, text, (self.scale * x, self.scale * y), height))
 
     letters: float = 1.0
     """Millimetres in a point of the letters' size."""
@@ -265,18 +265,20 @@ def visible(drawing: Drawing) -> tuple[list[Stroke], list[Ring]]:
         covers = [cover for cover in drawing.covers if cover.level > ring.level]
         turns = np.linspace(0.0, 2.0 * np.pi, CORNERS + 1)
         around = np.array(ring.centre) + ring.radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-        parts = _uncovered(around, covers)
+        parts = _visible_parts(around, covers)
         if len(parts) == 1 and len(parts[0]) == len(around):
             rings.append(ring)
         else:
             strokes += [Stroke(ring.layer, part, ring.level) for part in parts]
     for stroke in drawing.strokes:
         covers = [cover for cover in drawing.covers if cover.level > stroke.level]
-        strokes += [Stroke(stroke.layer, part, stroke.level) for part in _uncovered(stroke.places, covers)]
+        strokes += [
+            Stroke(stroke.layer, part, stroke.level) for part in _visible_parts(stroke.places, covers)
+        ]
     return strokes, rings
 
 
-def _uncovered(places: Array, covers: list[Cover]) -> list[Array]:
+def _visible_parts(places: Array, covers: list[Cover]) -> list[Array]:
     """The parts of a line through places that no cover hides."""
     parts: list[list[Array]] = []
     open_end = False

@@ -10,7 +10,7 @@ import numpy as np
 from centrode.errors import NotComputedYet
 from centrode.locale import _
 from centrode.present.cams.driving_cam_drawing import draw_axes_of_cams, draw_turned_cams
-from centrode.present.drafting.board import CAPITAL, Board, Drawing, Stroke, Words, on_paper
+from centrode.present.drafting.board import CAPITAL, Board, BoardWords, Drawing, Stroke, on_paper
 from centrode.present.drawing import (
     draw_drive,
     draw_frame,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Mechanism
-    from centrode.present.scene import Scene
+    from centrode.present.scene import LinkageScene
 
 METRE = 1000.0
 """Millimetres."""
@@ -90,7 +90,7 @@ def mechanism_drawing(
         with board.on("names"):
             draw_names(board, scene, sample)
     drawing: Drawing = board.drawing
-    drawing.strokes = [one for one in drawing.strokes if one.layer != "cams" or not _doubled(one, drawing)]
+    drawing.strokes = [one for one in drawing.strokes if one.layer != "cams" or not _has_double(one, drawing)]
     whole = motion if course is None else course
     for name in paths:
         drawing.strokes.append(Stroke("paths", METRE * whole["position"].sel(point=name).to_numpy()))
@@ -100,7 +100,7 @@ def mechanism_drawing(
     return drawing
 
 
-def _doubled(line: Stroke, drawing: Drawing) -> bool:
+def _has_double(line: Stroke, drawing: Drawing) -> bool:
     """Whether a link has the same straight line: the arm that carries the roller."""
     if len(line.places) != 2:
         return False
@@ -113,7 +113,7 @@ def _doubled(line: Stroke, drawing: Drawing) -> bool:
     return False
 
 
-def _centrode(scene: Scene, pair: xarray.Dataset, sample: int, scale: float) -> list[Stroke]:
+def _centrode(scene: LinkageScene, pair: xarray.Dataset, sample: int, scale: float) -> list[Stroke]:
     """Both curves where they are at the instant, each piece a stroke; what runs off to infinity is cut."""
     reach = FARTHEST * scene.extent
     found = []
@@ -127,7 +127,7 @@ def _centrode(scene: Scene, pair: xarray.Dataset, sample: int, scale: float) -> 
     return found
 
 
-def _title(drawing: Drawing, scene: Scene, motion: xarray.Dataset, sample: int, height: float) -> None:
+def _title(drawing: Drawing, scene: LinkageScene, motion: xarray.Dataset, sample: int, height: float) -> None:
     """The title below the drawing: what it is, where the drive is, scale and unit."""
     low, _high = drawing.box()
     lines = [
@@ -137,4 +137,4 @@ def _title(drawing: Drawing, scene: Scene, motion: xarray.Dataset, sample: int, 
     ]
     for number, text in enumerate(line for line in lines if line):
         place = float(low[0]), float(low[1]) - LINE * height * (number + 1.5)
-        drawing.words.append(Words("title", text, place, height, left=True))
+        drawing.words.append(BoardWords("title", text, place, height, left=True))

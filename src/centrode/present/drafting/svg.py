@@ -17,10 +17,10 @@ from centrode.present.drafting.board import (
     LEAST,
     PAPER,
     Array,
+    BoardWords,
     Drawing,
     Ring,
     Stroke,
-    Words,
     visible,
 )
 
@@ -105,7 +105,7 @@ def _circles(group: ET.Element, rings: Sequence[Ring], sheet: _Sheet) -> list[ET
     return found
 
 
-def _texts(group: ET.Element, words: Sequence[Words], sheet: _Sheet) -> list[ET.Element]:
+def _texts(group: ET.Element, words: Sequence[BoardWords], sheet: _Sheet) -> list[ET.Element]:
     found = []
     for one in words:
         below = 0.0 if one.left else 0.5 * one.height

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from centrode.equations.spelling import FormulaSpelling, parts_of
 from centrode.equations.symbols import Letter, Wave
 from centrode.locale import _
-from centrode.present.equations.page import Entry, Note, Relation, Symbols, System, sections
+from centrode.present.equations.page import Entry, Note, PageSystem, Relation, Symbols, sections
 from centrode.present.equations.text import split_at_signs
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class LatexSpelling(FormulaSpelling):
         if not below:
             return symbol
         plain = below.isascii() and below.replace("'", "").isalnum()
-        index = below if plain else rf"\text{{{escaped(below)}}}"
+        index = below if plain else rf"\text{{{escape(below)}}}"
         return f"{symbol}_{{{index}}}"
 
     def power(self, base: str, power: int) -> str:
@@ -100,7 +100,7 @@ class LatexSpelling(FormulaSpelling):
         return text[1:-1]
 
 
-def escaped(text: str) -> str:
+def escape(text: str) -> str:
     """Text that LaTeX shows as it is."""
     return SPECIAL.sub(lambda m: f"\\{m[1]}" if m[1] else rf"\char{ord(m[2])}{{}}", text)
 
@@ -110,9 +110,9 @@ def equations_latex(equations: Equations, points: Sequence[str] | None = None) -
     chosen = equations.sliding if points is None else points
     parts = [HEAD]
     if equations.mechanism.title:
-        parts.append(rf"\section*{{{escaped(_(equations.mechanism.title))}}}" + "\n")
+        parts.append(rf"\section*{{{escape(_(equations.mechanism.title))}}}" + "\n")
     for section in sections(equations, LatexSpelling(), chosen):
-        parts.append(rf"\subsection*{{{escaped(section.heading)}}}" + "\n")
+        parts.append(rf"\subsection*{{{escape(section.heading)}}}" + "\n")
         parts += [_tex(block) for block in _blocks(section.entries)]
     return "".join(parts) + "\\end{document}\n"
 
@@ -127,7 +127,7 @@ def equations_markdown(equations: Equations, points: Sequence[str] | None = None
     return "\n".join(parts)
 
 
-Block: TypeAlias = list[Relation] | System | Symbols | Note
+Block: TypeAlias = list[Relation] | PageSystem | Symbols | Note
 
 
 def _blocks(entries: Sequence[Entry]) -> list[Block]:
@@ -147,11 +147,11 @@ def _blocks(entries: Sequence[Entry]) -> list[Block]:
 
 def _tex(block: Block) -> str:
     if isinstance(block, list):
-        return "\\begin{align*}\n" + _aligned(block) + "\n\\end{align*}\n"
-    if isinstance(block, System):
+        return "\\begin{align*}\n" + _align(block) + "\n\\end{align*}\n"
+    if isinstance(block, PageSystem):
         return "\\[\n" + _system(block) + "\n\\]\n"
     if isinstance(block, Symbols):
-        rows = [rf"${name}$ & {escaped(value)} & {escaped(words)} \\" for name, value, words in block.rows]
+        rows = [rf"${name}$ & {escape(value)} & {escape(words)} \\" for name, value, words in block.rows]
         return "\\begin{tabular}{lll}\n" + "\n".join(rows) + "\n\\end{tabular}\n"
     return _sentence(block.text) + "\n\n"
 
@@ -159,13 +159,13 @@ def _tex(block: Block) -> str:
 def _sentence(text: str) -> str:
     """A sentence for LaTeX; every other part of it, between dollar signs, is mathematics."""
     parts = text.split("$")
-    return "$".join(part if i % 2 else escaped(part) for i, part in enumerate(parts))
+    return "$".join(part if i % 2 else escape(part) for i, part in enumerate(parts))
 
 
 def _markdown(block: Block) -> str:
     if isinstance(block, list):
-        return "$$\n\\begin{aligned}\n" + _aligned(block) + "\n\\end{aligned}\n$$\n"
-    if isinstance(block, System):
+        return "$$\n\\begin{aligned}\n" + _align(block) + "\n\\end{aligned}\n$$\n"
+    if isinstance(block, PageSystem):
         return "$$\n" + _system(block) + "\n$$\n"
     if isinstance(block, Symbols):
         heads = " | ".join((_("symbol"), _("value"), _("meaning")))
@@ -174,7 +174,7 @@ def _markdown(block: Block) -> str:
     return block.text + "\n"
 
 
-def _aligned(relations: Sequence[Relation]) -> str:
+def _align(relations: Sequence[Relation]) -> str:
     lines = []
     for relation in relations:
         first, *others = relation.parts
@@ -198,7 +198,7 @@ def _broken(text: str) -> str:
     return " \\\\\n&\\quad ".join(piece.strip() for piece in pieces)
 
 
-def _system(system: System) -> str:
+def _system(system: PageSystem) -> str:
     rows = " \\\\\n".join(" & ".join(row) for row in system.matrix)
     matrix = f"\\begin{{pmatrix}}\n{rows}\n\\end{{pmatrix}}"
     return f"{matrix}\n{_column(system.unknowns)}\n=\n{_column(system.right)}"

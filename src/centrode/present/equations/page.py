@@ -166,7 +166,7 @@ class Relation:
 
 
 @dataclass(frozen=True)
-class System:
+class PageSystem:
     """matrix unknowns = right, spelled."""
 
     matrix: tuple[tuple[str, ...], ...]
@@ -193,52 +193,56 @@ LONGEST = 24
 NOTHING = 1e-13
 """Angles [rad], and lengths as a part of the greatest, below which an initial value is rounding and shown as zero."""
 
-Entry: TypeAlias = Relation | System | Symbols | Note
+Entry: TypeAlias = Relation | PageSystem | Symbols | Note
 
 
 @dataclass(frozen=True)
-class Section:
+class PageSection:
     """A heading and what stands below it."""
 
     heading: str
     entries: tuple[Entry, ...]
 
 
-def sections(equations: Equations, spelling: FormulaSpelling, points: Sequence[str]) -> list[Section]:
+def sections(equations: Equations, spelling: FormulaSpelling, points: Sequence[str]) -> list[PageSection]:
     """The whole page in the order of the work; `points` are those whose velocities are asked for."""
-    found = [Section(_("Symbols"), (_symbols(equations, spelling, points),))]
+    found = [PageSection(_("Symbols"), (_symbols(equations, spelling, points),))]
     conditions = [one for group in equations.groups for one in group.conditions]
     if conditions:
-        found.append(Section(_("Constraints"), tuple(_constraint(one, spelling) for one in conditions)))
-        rates = [_differentiated(one, equations, spelling) for one in conditions]
-        found.append(Section(_("Differentiated by time"), tuple(rates)))
+        found.append(PageSection(_("Constraints"), tuple(_constraint(one, spelling) for one in conditions)))
+        rates = [_rate_relation(one, equations, spelling) for one in conditions]
+        found.append(PageSection(_("Differentiated by time"), tuple(rates)))
     given = [line for one in equations.given.drives for line in _given(one, spelling)]
-    found.append(Section(_("Given by the drives (SI)"), tuple(given)))
+    found.append(PageSection(_("Given by the drives (SI)"), tuple(given)))
     if equations.together is not None:
-        found.append(Section(_("Velocities: Cramer's rule"), tuple(_solved(equations.together, spelling))))
+        found.append(
+            PageSection(
+                _("Velocities: Cramer's rule"), tuple(_solution_entries(equations.together, spelling))
+            )
+        )
     else:
         found += [
-            Section(
+            PageSection(
                 _("Velocities of group {group}").format(group=group.label),
-                tuple(_solved(group.velocities, spelling)),
+                tuple(_solution_entries(group.velocities, spelling)),
             )
             for group in equations.groups
         ]
     if conditions:
         told = equations.together is None
         normal = [line for group in equations.groups for line in _normal(group, spelling, told)]
-        found.append(Section(_("Cauchy normal form"), tuple(normal)))
+        found.append(PageSection(_("Cauchy normal form"), tuple(normal)))
         seconds = [line for group in equations.groups for line in _seconds(group, spelling)]
-        found.append(Section(_("Accelerations"), tuple(seconds)))
+        found.append(PageSection(_("Accelerations"), tuple(seconds)))
     through = equations.board.axes_through
     if points and through is not None:
         words = _("x runs through {first}, {second} lies in the half-plane of x and y")
         first, second = map(spelling.text, through)
-        found.append(Section(_("Axes"), (Note(words.format(first=first, second=second)),)))
+        found.append(PageSection(_("Axes"), (Note(words.format(first=first, second=second)),)))
     for point in points:
         lines = velocity_lines(equations.velocity(point), spelling)
         entries: list[Entry] = [Relation(line) for line in lines]
-        found.append(Section(_("Velocity of point {point}").format(point=point), tuple(entries)))
+        found.append(PageSection(_("Velocity of point {point}").format(point=point), tuple(entries)))
     return found
 
 
@@ -271,7 +275,7 @@ def _is_offset(one: Condition) -> bool:
     return one.name.startswith("n_") and bool(one.right)
 
 
-def _differentiated(one: Condition, equations: Equations, spelling: FormulaSpelling) -> Relation:
+def _rate_relation(one: Condition, equations: Equations, spelling: FormulaSpelling) -> Relation:
     total = one.rate(equations.board.moves)
     return Relation((spelled_sum(total, spelling), spelling.number(0)))
 
@@ -296,7 +300,7 @@ def _given(one: Drivenness, spelling: FormulaSpelling) -> list[Entry]:
     return [Relation((value, way)), Relation((rate, spelling.decimal(one.speed)))]
 
 
-def _solved(solution: GroupSolution, spelling: FormulaSpelling) -> list[Entry]:
+def _solution_entries(solution: GroupSolution, spelling: FormulaSpelling) -> list[Entry]:
     system = solution.system
     unknowns = tuple(spelling.letter(letter) for letter in system.unknowns)
     matrix = tuple(tuple(_entry(entry, spelling) for entry in row) for row in system.matrix)
@@ -304,7 +308,7 @@ def _solved(solution: GroupSolution, spelling: FormulaSpelling) -> list[Entry]:
     if len(unknowns) == 1:
         left = formula_of(system.matrix[0][0] * Sum.letter(system.unknowns[0]))
         return [Relation((spell_formula(left, spelling), right[0]))]
-    lines: list[Entry] = [System(matrix, unknowns, right)]
+    lines: list[Entry] = [PageSystem(matrix, unknowns, right)]
     if system.determinant is None or system.numerators is None:
         return [
             *lines,

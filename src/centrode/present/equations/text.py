@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from centrode.equations.spelling import FormulaSpelling
 from centrode.locale import _
-from centrode.present.equations.page import Entry, Relation, Symbols, System, sections
+from centrode.present.equations.page import Entry, PageSystem, Relation, Symbols, sections
 
 if TYPE_CHECKING:
     from centrode.equations.derivation import Equations
@@ -41,7 +41,7 @@ def equations_rows(equations: Equations, points: Sequence[str] | None = None) ->
 def _lines(entry: Entry) -> list[str]:
     if isinstance(entry, Relation):
         return _relation(entry)
-    if isinstance(entry, System):
+    if isinstance(entry, PageSystem):
         return _system(entry)
     if isinstance(entry, Symbols):
         return _table(entry.rows)
@@ -91,7 +91,7 @@ def split_at_signs(line: str) -> list[str]:
     return words
 
 
-def _system(system: System) -> list[str]:
+def _system(system: PageSystem) -> list[str]:
     widths = [max(_columns(row[i]) for row in system.matrix) for i in range(len(system.unknowns))]
     names = max(map(_columns, system.unknowns))
     right = max(map(_columns, system.right))
@@ -100,13 +100,13 @@ def _system(system: System) -> list[str]:
         return [*_rows(system), ""]
     lines = []
     for i, row in enumerate(system.matrix):
-        entries = "   ".join(_padded(entry, width) for entry, width in zip(row, widths, strict=True))
-        unknown, value = _padded(system.unknowns[i], names), _padded(system.right[i], right)
+        entries = "   ".join(_pad(entry, width) for entry, width in zip(row, widths, strict=True))
+        unknown, value = _pad(system.unknowns[i], names), _pad(system.right[i], right)
         lines.append(f"| {entries} |   | {unknown} |   {'=' if i == middle else ' '}   | {value} |")
     return [*lines, ""]
 
 
-def _rows(system: System) -> list[str]:
+def _rows(system: PageSystem) -> list[str]:
     """The equations one by one, of a matrix that no line holds: entries that are sums in brackets."""
     lines = []
     for row, right in zip(system.matrix, system.right, strict=True):
@@ -137,10 +137,10 @@ def _is_product(entry: str) -> bool:
 def _table(rows: Sequence[tuple[str, str, str]]) -> list[str]:
     names = max((_columns(name) for name, _value, _words in rows), default=0)
     values = max((_columns(value) for _name, value, _words in rows), default=0)
-    return [f"{_padded(name, names)} = {_padded(value, values)}   {words}" for name, value, words in rows]
+    return [f"{_pad(name, names)} = {_pad(value, values)}   {words}" for name, value, words in rows]
 
 
-def _padded(text: str, width: int) -> str:
+def _pad(text: str, width: int) -> str:
     return text + " " * (width - _columns(text))
 
 

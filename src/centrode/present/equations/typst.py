@@ -67,8 +67,8 @@ class TypstSpelling(FormulaSpelling):
         top = self.join(above) or "1"
         if len(top) > LONG:
             return f"frac(1, {self.join(below)}) {top}"
-        whole = unbracketed(top) if len(above) == 1 else top
-        return f"frac({whole}, {unbracketed(self.join(below))})"
+        whole = strip_brackets(top) if len(above) == 1 else top
+        return f"frac({whole}, {strip_brackets(self.join(below))})"
 
     def ratio(self, above: Sequence[str], below: Sequence[str]) -> str:
         return self.fraction(above, below)
@@ -82,7 +82,7 @@ def shown(text: str) -> str:
     return text.replace("\\", "\\\\").replace("$", r"\$")
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """Text that typst shows as it is, wherever a string may stand."""
     safe = "".join(letter if letter.isprintable() else " " for letter in text)
     for letter, code in (("\\", "\\\\"), ('"', '\\"'), ("$", r"\u{24}")):  # mathematics ends at a dollar sign
@@ -96,7 +96,7 @@ def word(text: str) -> str:
         return text
     if text.isascii() and text.isdecimal():
         return text
-    return f"italic({quoted(text)})" if _LATIN.fullmatch(text) else quoted(text)
+    return f"italic({quote(text)})" if _LATIN.fullmatch(text) else quote(text)
 
 
 def decimal(text: str) -> str:
@@ -106,7 +106,7 @@ def decimal(text: str) -> str:
     digits = digits.removeprefix("-")
     mark = decimal_mark()
     if mark != "." and "." in digits:
-        digits = quoted(digits.replace(".", mark))  # typst would set a bare comma as punctuation
+        digits = quote(digits.replace(".", mark))  # typst would set a bare comma as punctuation
     return f"{minus}{digits} dot.op 10^({int(power)})" if sign else f"{minus}{digits}"
 
 
@@ -115,7 +115,7 @@ def in_degrees(number: str) -> str:
     return f'{number[:-1]}°"' if number.endswith('"') else f"{number} degree"
 
 
-def unbracketed(text: str) -> str:
+def strip_brackets(text: str) -> str:
     """What a fraction holds needs no brackets of its own."""
     if not (text.startswith("(") and text.endswith(")")):
         return text

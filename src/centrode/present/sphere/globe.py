@@ -16,7 +16,7 @@ from centrode.model.values import unit_vector
 from centrode.present import signs
 from centrode.present.displayed_units import plain
 from centrode.present.scene import box, corners
-from centrode.present.sheet import Sheet
+from centrode.present.sheet import MotionPlaces
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.present.tags import label_places
 
@@ -32,7 +32,7 @@ ABOVE = np.array([0.55, 0.35, 0.45])  # added to the direction of sight: a view 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Globe(Sheet):
+class Globe(MotionPlaces):
     """A spherical motion on its sheet; the tracks are unit vectors (sample, 3).
 
     Attributes

@@ -1,8 +1,9 @@
 r"""What a report is made of: plain data, which the renderers of pages and of PDF show alike.
 
-Text is in the reader's language. In a `Paragraph`, `Items`, a `Check`, heads and cells of a `Table` and in captions
-every other part between dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign
-of the text itself is written `\$`. What users named goes through `shown` first: it is shown as it is. Titles, and why a
+Text is in the reader's language. In a `ParagraphBlock`, `ItemsBlock`, a `CheckBlock`, heads and cells of a `TableBlock`
+and in captions every other part between dollar signs is mathematics as the formula printer spells it (typst's
+notation); a dollar sign of the text itself is written `\$`. What users named goes through `shown` first: it is shown as
+it is. Titles, and why a
 chapter is missing, are plain text without mathematics.
 """
 
@@ -18,14 +19,14 @@ from centrode.present.equations.typst import shown as shown
 
 
 @dataclass(frozen=True)
-class Paragraph:
+class ParagraphBlock:
     """Sentences."""
 
     text: str
 
 
 @dataclass(frozen=True)
-class Items:
+class ItemsBlock:
     """Sentences below each other, each with a mark; numbered where their order matters."""
 
     texts: tuple[str, ...]
@@ -33,7 +34,7 @@ class Items:
 
 
 @dataclass(frozen=True)
-class Formula:
+class FormulaBlock:
     """Relations below each other, aligned at their first sign of equality.
 
     Attributes
@@ -45,7 +46,7 @@ class Formula:
 
 
 @dataclass(frozen=True)
-class System:
+class SystemBlock:
     """matrix unknowns = right, as mathematics."""
 
     matrix: tuple[tuple[str, ...], ...]
@@ -54,7 +55,7 @@ class System:
 
 
 @dataclass(frozen=True)
-class Table:
+class TableBlock:
     """Rows under heads.
 
     Attributes
@@ -82,7 +83,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Check:
+class CheckBlock:
     """How something was verified: by what second route, how far it is off, and what was allowed."""
 
     text: str
@@ -112,7 +113,7 @@ class Outline:
 
 
 @dataclass(frozen=True)
-class Ring:
+class RingBlock:
     """A circle on the sphere.
 
     Attributes
@@ -160,7 +161,7 @@ class Moving:
     tracks: tuple[str, ...]
     still: Picture
     caption: str
-    shapes: tuple[Outline | Ring, ...] = ()
+    shapes: tuple[Outline | RingBlock, ...] = ()
     view: np.ndarray | None = None
     driven: tuple[str, ...] = ()
     dots: tuple[str, ...] = ()
@@ -168,11 +169,13 @@ class Moving:
     box: np.ndarray | None = None
 
 
-Block: TypeAlias = Paragraph | Items | Formula | System | Table | Picture | Check | Moving
+Block: TypeAlias = (
+    ParagraphBlock | ItemsBlock | FormulaBlock | SystemBlock | TableBlock | Picture | CheckBlock | Moving
+)
 
 
 @dataclass(frozen=True)
-class Section:
+class SectionBlocks:
     """A heading below a chapter's, and what stands under it."""
 
     title: str
@@ -180,12 +183,12 @@ class Section:
 
 
 @dataclass(frozen=True)
-class Chapter:
+class ChapterBlocks:
     """A chapter; where it could not be made, `missing` says why and what would help."""
 
     name: str
     title: str
-    sections: tuple[Section, ...] = ()
+    sections: tuple[SectionBlocks, ...] = ()
     missing: str = ""
 
 
@@ -203,4 +206,4 @@ class Report:
     title: str
     subtitle: str
     language: str
-    chapters: tuple[Chapter, ...] = field(default=())
+    chapters: tuple[ChapterBlocks, ...] = field(default=())

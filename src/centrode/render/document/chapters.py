@@ -41,21 +41,21 @@ from centrode.sheets.sheet import (
 Pictures: TypeAlias = Mapping[str, Picture]
 
 
-def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapter:
+def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.ChapterBlocks:
     """A chapter of a sheet, spelled and with its pictures drawn."""
     chapter, spelling = sheet.chapters[name], DocumentSpelling(numbers)
     sections = tuple(_section(section, sheet.pictures, spelling) for section in chapter.sections)
-    return blocks.Chapter(name, spelling.text(chapter.title), sections)
+    return blocks.ChapterBlocks(name, spelling.text(chapter.title), sections)
 
 
-def document_section(section: Section, pictures: Pictures, numbers: Numbers) -> blocks.Section:
+def document_section(section: Section, pictures: Pictures, numbers: Numbers) -> blocks.SectionBlocks:
     """A section of a sheet with the pictures of that sheet, for a chapter that has others beside it."""
     return _section(section, pictures, DocumentSpelling(numbers))
 
 
-def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Section:
+def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.SectionBlocks:
     made = [_block(block, pictures, spelling) for block in section.blocks if _is_there(block, pictures)]
-    return blocks.Section(spelling.text(section.title), tuple(made))
+    return blocks.SectionBlocks(spelling.text(section.title), tuple(made))
 
 
 def _is_there(block: Block, pictures: Pictures) -> bool:
@@ -68,9 +68,9 @@ def _is_there(block: Block, pictures: Pictures) -> bool:
 def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Block:
     match block:
         case Paragraph(text):
-            return blocks.Paragraph(spelling.text(text))
+            return blocks.ParagraphBlock(spelling.text(text))
         case Formula(lines):
-            return blocks.Formula(tuple(tuple(map(spelling.mathematics, line)) for line in lines))
+            return blocks.FormulaBlock(tuple(tuple(map(spelling.mathematics, line)) for line in lines))
         case Table():
             return _table(block, spelling)
         case FactTable(facts, caption):
@@ -95,9 +95,9 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Check():
             return _check(block, spelling)
         case Items(texts, numbered):
-            return blocks.Items(tuple(map(spelling.text, texts)), numbered)
+            return blocks.ItemsBlock(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):
-            return blocks.Paragraph(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
+            return blocks.ParagraphBlock(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
         case _:
             assert_never(block)
 
@@ -130,12 +130,12 @@ def _drawn(
     return drawn_to_scale(figure, caption, right, top)
 
 
-def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
+def _table(table: Table, spelling: DocumentSpelling) -> blocks.TableBlock:
     columns = [column for column in table.columns if not column.is_empty]
     heads = tuple(map(spelling.head, columns))
     cells = [_cells(column, table.rows, spelling) for column in columns]
     numbers = tuple(column.is_numeric for column in columns)
-    return blocks.Table(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
+    return blocks.TableBlock(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
 
 
 def _cells(column: Column, rows: Sequence[int] | None, spelling: DocumentSpelling) -> Sequence[str]:
@@ -163,16 +163,16 @@ def _cells_of_own_units(column: Column, spelling: DocumentSpelling) -> list[str]
     return cells
 
 
-def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.Table:
+def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.TableBlock:
     rows = tuple((spelling.text(fact.label), spelling.text(fact.value)) for fact in facts)
-    return blocks.Table((_("what"), _("value")), rows, caption, (False, False))
+    return blocks.TableBlock((_("what"), _("value")), rows, caption, (False, False))
 
 
-def _check(check: Check, spelling: DocumentSpelling) -> blocks.Check:
+def _check(check: Check, spelling: DocumentSpelling) -> blocks.CheckBlock:
     """A difference that is no number does not hold; of nothing no share can be given, and only nothing is right."""
     share = check.difference / check.size if check.size else check.difference
     shown = spelled_number(f"{share:.1e}") if share else "0"
     statement = _(check.statement.message).format(
         share=shown, **{name: spelling.text(value) for name, value in check.statement.values.items()}
     )
-    return blocks.Check(statement, bool(share <= check.bound))
+    return blocks.CheckBlock(statement, bool(share <= check.bound))

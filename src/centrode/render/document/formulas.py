@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from centrode.model.settings import Display
-from centrode.present.equations.typst import quoted
+from centrode.present.equations.typst import quote
 from centrode.render.document.numbers import Numbers
 
 
@@ -11,7 +11,7 @@ def with_unit(numbers: Numbers, value: float, unit: str) -> str:
     """A quantity in SI with its unit, as mathematics."""
     label = numbers.shown(unit)[1]
     size = numbers.math(value, unit)
-    return f"{size} thin {quoted(label)}" if label else size
+    return f"{size} thin {quote(label)}" if label else size
 
 
 def in_si(numbers: Numbers) -> Numbers:
@@ -25,6 +25,6 @@ def factor(numbers: Numbers, value: float, unit: str = "1") -> str:
     return f"({size})" if value < 0 or "dot" in size else size
 
 
-def squared(numbers: Numbers, value: float, unit: str = "1") -> str:
+def square(numbers: Numbers, value: float, unit: str = "1") -> str:
     """The square of a number."""
     return f"{factor(numbers, value, unit)}^(2)"

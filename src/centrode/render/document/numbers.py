@@ -29,7 +29,7 @@ def spelled_number(text: str) -> str:
     return f"{minus}{digits}·10{str(int(power)).translate(_RAISED)}" if sign else f"{minus}{digits}"
 
 
-def respelled(text: str) -> str:
+def respell(text: str) -> str:
     """A text of numbers and units from elsewhere ("-0.5 mm/s^2"), spelled as in the rest of a report."""
 
     def one(found: re.Match[str]) -> str:

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from centrode.equations.symbols import Letter
 from centrode.locale import _
 from centrode.present.equations.typst import TypstSpelling, decimal
-from centrode.render.document.blocks import Table, shown
-from centrode.render.document.numbers import Numbers, respelled
+from centrode.render.document.blocks import TableBlock, shown
+from centrode.render.document.numbers import Numbers, respell
 
 CONDITION = re.compile(r"\b(sin|cos)\(([^()]*\bphi\d+[^()]*)\) = 0")
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")
@@ -26,9 +26,9 @@ def told(text: str, numbers: Numbers) -> str:
     parts, position = [], 0
     for found in CONDITION.finditer(text):
         inside = " ".join(map(_term, found[2].split(" ")))
-        parts += [_spelled(text[position : found.start()], numbers), f"${found[1]} ({inside}) = 0$"]
+        parts += [_spell(text[position : found.start()], numbers), f"${found[1]} ({inside}) = 0$"]
         position = found.end()
-    spelled = "".join([*parts, _spelled(text[position:], numbers)])
+    spelled = "".join([*parts, _spell(text[position:], numbers)])
     return SCALE.sub(r"$mu_\1$", spelled)
 
 
@@ -45,11 +45,11 @@ def sentence(text: str, numbers: Numbers) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def _spelled(text: str, numbers: Numbers) -> str:
+def _spell(text: str, numbers: Numbers) -> str:
     apart = PAIR.sub(r"(\1; \2)", text)  # a comma would be taken for a decimal mark
-    mantissas = POWER.sub(lambda found: _rounded(found[0], numbers.digits), apart)
-    short = LONG.sub(lambda found: _rounded(found[0], numbers.digits), mantissas)
-    return respelled(shown(degrees(short)))
+    mantissas = POWER.sub(lambda found: _round(found[0], numbers.digits), apart)
+    short = LONG.sub(lambda found: _round(found[0], numbers.digits), mantissas)
+    return respell(shown(degrees(short)))
 
 
 def degrees(text: str) -> str:
@@ -57,7 +57,7 @@ def degrees(text: str) -> str:
     return DEGREES.sub(lambda found: f" °{found[1]}" if found[1] else "°", text)
 
 
-def _rounded(text: str, digits: int) -> str:
+def _round(text: str, digits: int) -> str:
     """A decimal with at most so many digits; its whole part stays."""
     whole = len(text.partition(".")[0])
     if len(text.replace(".", "").lstrip("0")) <= digits:
@@ -70,12 +70,12 @@ def _rounded(text: str, digits: int) -> str:
 
 def rows_table(
     rows: Iterable[Sequence[str]], numbers: Numbers, caption: str = "", head: tuple[str, str] | None = None
-) -> Table:
+) -> TableBlock:
     """Rows of a label and a text; a row without a label goes on with the one above."""
     cells = tuple((told(label, numbers), told(text, numbers)) for label, text in rows)
-    return Table(head or (_("what"), _("value")), cells, caption, (False, False))
+    return TableBlock(head or (_("what"), _("value")), cells, caption, (False, False))
 
 
 def small(value: float) -> str:
     """A difference in two figures; nothing as nothing."""
-    return respelled(f"{value:.1e}") if value else "0"
+    return respell(f"{value:.1e}") if value else "0"

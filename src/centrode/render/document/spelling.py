@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.present.equations.typst import quoted, shown
+from centrode.present.equations.typst import quote, shown
 from centrode.render.document.formulas import in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.document.vectors import vector_mathematics
@@ -71,18 +71,18 @@ class DocumentSpelling(Spelling):
         sign = text[0] if text[0] in "+-" else ""
         body, percent = (text[len(sign) :].removesuffix("%"), "%" if text.endswith("%") else "")
         mantissa, exponent, power = body.partition("e")
-        mantissa = shortened(mantissa, self.numbers.digits)
+        mantissa = shorten(mantissa, self.numbers.digits)
         spelled = spelled_number(("-" if sign == "-" else "") + mantissa + (f"e{power}" if exponent else ""))
         return ("+" if sign == "+" else "") + spelled + percent
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index, as mathematics."""
-        index = symbol.index if symbol.slanted else f"upright({quoted(symbol.index)})"
+        index = symbol.index if symbol.slanted else f"upright({quote(symbol.index)})"
         return f"${symbol.letter}_({index})$" if symbol.index else f"${symbol.letter}$"
 
     def indexed(self, symbol: Indexed) -> str:
         """A letter with its index, as mathematics."""
-        return f"${symbol.letter}_({quoted(symbol.index)})$"
+        return f"${symbol.letter}_({quote(symbol.index)})$"
 
     def expression(self, expression: Expression) -> str:
         """Mathematics between dollar signs."""
@@ -114,18 +114,18 @@ class DocumentSpelling(Spelling):
                 return notation.format(**{name: self.mathematics(value) for name, value in values.items()})
             case Number():
                 size, label = self._size(leaf)
-                return f"{size} thin {quoted(label)}" if label and not leaf.unit_hidden else size
+                return f"{size} thin {quote(label)}" if label and not leaf.unit_hidden else size
             case Factor(number):
                 size, _label = self._size(number)
                 return f"({size})" if number.value < 0 or "dot" in size else size
             case Name(text):
-                return quoted(text)
+                return quote(text)
             case Sentence():
-                return quoted(self.text(leaf))
+                return quote(self.text(leaf))
             case Symbol():
                 return self.symbol(leaf).strip("$")
             case Indexed(letter, index):
-                return f"{letter}_({index if index.isdecimal() else quoted(index)})"
+                return f"{letter}_({index if index.isdecimal() else quote(index)})"
             case VectorNotation():
                 return vector_mathematics(filled_notation(leaf))
             case _:
@@ -146,7 +146,7 @@ class DocumentSpelling(Spelling):
         return in_si(self.numbers) if column.unit_fixed else self.numbers
 
 
-def shortened(mantissa: str, digits: int) -> str:
+def shorten(mantissa: str, digits: int) -> str:
     """A decimal with at most so many digits; its whole part stays."""
     whole = len(mantissa.partition(".")[0])
     if "." not in mantissa or len(mantissa.replace(".", "").lstrip("0")) <= digits:

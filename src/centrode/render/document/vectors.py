@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from centrode.present.equations.typst import decimal, in_degrees, quoted, word
+from centrode.present.equations.typst import decimal, in_degrees, quote, word
 
 GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
@@ -59,4 +59,4 @@ def _token(found: re.Match[str], vectors: bool) -> str:
         return "sin"
     if found["word"]:
         return word(found["word"])
-    return SIGNS.get(found["sign"], quoted(found["sign"]))
+    return SIGNS.get(found["sign"], quote(found["sign"]))

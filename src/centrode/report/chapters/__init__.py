@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
-from centrode.render.document.blocks import Chapter
+from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
     cam_choice_chapter,
     cam_contact_chapter,
@@ -46,7 +46,7 @@ from centrode.topics import order
 from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
 
-Make: TypeAlias = Callable[[ReportStudy], Chapter | None]
+Make: TypeAlias = Callable[[ReportStudy], ChapterBlocks | None]
 
 
 class Kind(NamedTuple):
@@ -59,7 +59,7 @@ class Kind(NamedTuple):
 def either(*makers: Make) -> Make:
     """One chapter of the plane, of the sphere and of cams: the first that has something to tell."""
 
-    def make(study: ReportStudy) -> Chapter | None:
+    def make(study: ReportStudy) -> ChapterBlocks | None:
         return next((chapter for one in makers if (chapter := one(study)) is not None), None)
 
     return make

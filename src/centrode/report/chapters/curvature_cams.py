@@ -11,15 +11,24 @@ from centrode.locale import _
 from centrode.present.cams.choice import choice_figures
 from centrode.present.cams.curves import cam_curves_figure, cam_path_figure, cam_routes_figure, contact_figure
 from centrode.present.cams.profiles import cam_body_figures, profile_figure
-from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table, shown
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ParagraphBlock,
+    SectionBlocks,
+    TableBlock,
+    shown,
+)
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.rows import rows_table, told
-from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.chapters.forces.tables import ForceColumn, over_samples
 from centrode.report.player_cams import moving_wheel
-from centrode.report.texts import listed, measured
+from centrode.report.texts import difference_check, typeset_table
 from centrode.study.cams.parts import Asked, CamPart
-from centrode.study.cams.parts import Table as Told
+from centrode.study.cams.parts import CamTable as Told
 from centrode.study.cams.results import PARTS
 from centrode.views.columns import rows_shown
 
@@ -53,27 +62,27 @@ def part_of(study: ReportStudy, name: str) -> CamPart | None:
 
 def told_part(study: ReportStudy, part: CamPart) -> tuple[Block, ...]:
     """What the command prints of a part: rows, tables, what the cam cannot do."""
-    failures = [Check(told(f"{one}.", study.numbers), False) for one in part.failures]
-    return (rows_table(part.rows, study.numbers), *(_listed(study, one) for one in part.tables), *failures)
+    failures = [CheckBlock(told(f"{one}.", study.numbers), False) for one in part.failures]
+    return (rows_table(part.rows, study.numbers), *(_typeset(study, one) for one in part.tables), *failures)
 
 
-def _listed(study: ReportStudy, table: Told) -> Table:
-    return listed(study.numbers, table.header, table.lines, shown(table.heading))
+def _typeset(study: ReportStudy, table: Told) -> TableBlock:
+    return typeset_table(study.numbers, table.header, table.lines, shown(table.heading))
 
 
-def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str) -> Table:
+def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str) -> TableBlock:
     """Variables of a dataset over the angle of the carrier, at even steps."""
-    found = [Column("$phi$", "rad", data["carrier_angle"].to_numpy())]
+    found = [ForceColumn("$phi$", "rad", data["carrier_angle"].to_numpy())]
     for name, letter in columns:
         values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
         scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
-        found.append(Column(f"${letter}$", shown_unit, scale * values))
+        found.append(ForceColumn(f"${letter}$", shown_unit, scale * values))
     return over_samples(study.numbers, found, rows_shown(data.sizes["sample"]), caption)
 
 
-def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:
+def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[SectionBlocks, ...]:
     """Sections with something in them."""
-    return tuple(Section(title, blocks) for title, blocks in titled if blocks)
+    return tuple(SectionBlocks(title, blocks) for title, blocks in titled if blocks)
 
 
 # What a cam's description gives, as a table.
@@ -85,7 +94,7 @@ def given_of(study: ReportStudy) -> tuple[Block, ...]:
         "A roller rides on a fixed cam, led by a carrier that turns about the cam's centre. The curvature of the path"
         " of its centre is given."
     )
-    return Paragraph(text), Table((_("what"), _("value")), tuple(_rows(study.cam, study.numbers)))
+    return ParagraphBlock(text), TableBlock((_("what"), _("value")), tuple(_rows(study.cam, study.numbers)))
 
 
 def _rows(cam: Cam, numbers: Numbers) -> Iterator[tuple[str, str]]:
@@ -141,24 +150,24 @@ ROUNDED = float(np.finfo(float).eps) * (1 << 16)
 """What rounding may leave of sums that are to vanish: series of some twenty terms, quotients near a stall."""
 
 
-def cam_data_chapter(study: ReportStudy) -> Chapter | None:
+def cam_data_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """What the description gives."""
     if not study.is_cam or study.is_plate_cam:
         return None
-    return Chapter("data", _("Data"), (Section("", given_of(study)),))
+    return ChapterBlocks("data", _("Data"), (SectionBlocks("", given_of(study)),))
 
 
-def cam_motion_chapter(study: ReportStudy) -> Chapter | None:
+def cam_motion_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The wheel that walks, which a page plays."""
     curved = study.is_cam and not study.is_plate_cam
     part = part_of(study, "walking") if curved and study.cam.mover is not None else None
     if part is None or "wheel" not in part.objects:
         return None
     moving = moving_wheel(part.objects["wheel"], _(study.cam.title))
-    return Chapter("motion", _("Motion"), (Section("", (moving,)),))
+    return ChapterBlocks("motion", _("Motion"), (SectionBlocks("", (moving,)),))
 
 
-def cam_path_chapter(study: ReportStudy) -> Chapter | None:
+def cam_path_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Curvature law, equations, path, pressure angle, stall."""
     part = part_of(study, "path")
     if part is None:
@@ -185,14 +194,14 @@ def cam_path_chapter(study: ReportStudy) -> Chapter | None:
         picture(cam_curves_figure(cam, data), _("Radius, pressure angle and curvature of the path")),
     )
     sections = sections_of(
-        ("", (Paragraph(text), Formula(lines), *told_part(study, part))),
+        ("", (ParagraphBlock(text), FormulaBlock(lines), *told_part(study, part))),
         (_("Over the range"), (table, _equation_check(study))),
         (_("Figures"), figures),
     )
-    return Chapter("path", _("Path of the roller's centre"), sections)
+    return ChapterBlocks("path", _("Path of the roller's centre"), sections)
 
 
-def _equation_check(study: ReportStudy) -> Check:
+def _equation_check(study: ReportStudy) -> CheckBlock:
     """The differential equation with the path's own derivatives put in."""
     part = part_of(study, "path")
     assert part is not None
@@ -209,10 +218,10 @@ def _equation_check(study: ReportStudy) -> Check:
     known = np.isfinite(terms).all(axis=0)
     off = float(np.abs(terms[:, known].sum(axis=0)).max(initial=0.0))
     text = _("The equation of $eta$ holds along the path to {share} of its greatest term.")
-    return measured(text, off, float(np.abs(terms[:, known]).max(initial=0.0)), ROUNDED)
+    return difference_check(text, off, float(np.abs(terms[:, known]).max(initial=0.0)), ROUNDED)
 
 
-def cam_routes_chapter(study: ReportStudy) -> Chapter | None:
+def cam_routes_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """One power series, series expanded anew, an integrator, beside each other."""
     part = part_of(study, "routes")
     if part is None:
@@ -231,13 +240,21 @@ def cam_routes_chapter(study: ReportStudy) -> Chapter | None:
     )
     steps, tolerance = float(data.attrs["steps"]), float(data.attrs["tolerance"])
     agree = _("The integrated path is off from the one by steps by {share} of its radius.")
-    check = measured(agree, float(data.attrs["worst_difference"]), 1.0, tolerance * (1.0 + steps) + ROUNDED)
+    check = difference_check(
+        agree, float(data.attrs["worst_difference"]), 1.0, tolerance * (1.0 + steps) + ROUNDED
+    )
     figure = picture(cam_routes_figure(cam, data), _("Differences between the routes"))
-    blocks: tuple[Block, ...] = (Paragraph(text), Formula(lines), *told_part(study, part), check, figure)
-    return Chapter("routes", _("Three routes to the path"), (Section("", blocks),))
+    blocks: tuple[Block, ...] = (
+        ParagraphBlock(text),
+        FormulaBlock(lines),
+        *told_part(study, part),
+        check,
+        figure,
+    )
+    return ChapterBlocks("routes", _("Three routes to the path"), (SectionBlocks("", blocks),))
 
 
-def cam_profile_chapter(study: ReportStudy) -> Chapter | None:
+def cam_profile_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The profile that the roller leaves, how it closes, undercut."""
     part = part_of(study, "profile")
     if part is None:
@@ -247,16 +264,16 @@ def cam_profile_chapter(study: ReportStudy) -> Chapter | None:
         " working arc in value, slope and curvature."
     )
     lines = (("x", "rho sin phi - r sin psi"), ("y", "rho cos phi - r cos psi"), ("psi", "phi - gamma"))
-    blocks: list[Block] = [Paragraph(text), Formula(lines), *told_part(study, part)]
+    blocks: list[Block] = [ParagraphBlock(text), FormulaBlock(lines), *told_part(study, part)]
     body = part.objects.get("body")
     if body is None:
-        return Chapter("profile", _("Profile of the cam"), (Section("", tuple(blocks)),))
+        return ChapterBlocks("profile", _("Profile of the cam"), (SectionBlocks("", tuple(blocks)),))
     if body.returned is not None:
         gap = max(abs(joint.gap) for joint in body.closed.joints)
         joined = _("The arcs join: the gap is {share} of the radius.")
-        blocks.append(measured(joined, gap, float(body.returned.radius.greatest), ROUNDED))
+        blocks.append(difference_check(joined, gap, float(body.returned.radius.greatest), ROUNDED))
         smooth = _("They join without a kink, to {share} rad.")
-        blocks.append(measured(smooth, float(body.closed.greatest_kink), 1.0, ROUNDED))
+        blocks.append(difference_check(smooth, float(body.closed.greatest_kink), 1.0, ROUNDED))
     columns = [("profile_radius", "R"), ("profile_angle", "alpha"), ("cam_pressure_angle", "gamma")]
     table = course(study, part.datasets["cam-profile"], columns, _("The profile in polar coordinates"))
     figure = profile_figure(body, _(study.cam.title), study.cam.display)
@@ -265,10 +282,10 @@ def cam_profile_chapter(study: ReportStudy) -> Chapter | None:
         (_("Coordinates"), (table,)),
         (_("Figures"), (picture(figure, _("The cam with its roller and the path of the roller's centre")),)),
     )
-    return Chapter("profile", _("Profile of the cam"), sections)
+    return ChapterBlocks("profile", _("Profile of the cam"), sections)
 
 
-def cam_walking_chapter(study: ReportStudy) -> Chapter | None:
+def cam_walking_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The wheel that walks: the shoe, its travel, the proof that it stays level and does not slip."""
     part = part_of(study, "walking")
     if part is None:
@@ -284,10 +301,10 @@ def cam_walking_chapter(study: ReportStudy) -> Chapter | None:
         ("y_B", "p cos phi - p' sin phi"),
         ("frac(d X, d phi)", "h + rho' sin phi"),
     )
-    blocks: list[Block] = [Paragraph(text), Formula(lines), *told_part(study, part)]
+    blocks: list[Block] = [ParagraphBlock(text), FormulaBlock(lines), *told_part(study, part)]
     wheel = part.objects.get("wheel")
     if wheel is None:
-        return Chapter("walking", _("Walking wheel"), (Section("", tuple(blocks)),))
+        return ChapterBlocks("walking", _("Walking wheel"), (SectionBlocks("", tuple(blocks)),))
     data = part.datasets["shoe-profile"]
     columns = [
         ("shoe_radius", "r_B"), ("shoe_angle", "alpha"), ("shoe_bend", "R_B"),
@@ -303,21 +320,21 @@ def cam_walking_chapter(study: ReportStudy) -> Chapter | None:
         (_("The shoe"), (table,)),
         (_("Figures"), (picture(figure, _("The wheel over a step")),)),
     )
-    return Chapter("walking", _("Walking wheel"), sections)
+    return ChapterBlocks("walking", _("Walking wheel"), sections)
 
 
-def _proof(study: ReportStudy) -> tuple[Check, ...]:
+def _proof(study: ReportStudy) -> tuple[CheckBlock, ...]:
     """Level, without slip, equal arcs: by the shoe's curve alone, put on the ground."""
     part = part_of(study, "walking")
     assert part is not None
     told = {name: one.value for name, one in part.scalars.items()}
     height = told["walking_hub_height"]
     return (
-        measured(_("The shoe on the ground holds the hub level to {share} of its height."),
+        difference_check(_("The shoe on the ground holds the hub level to {share} of its height."),
                  told["walking_level_error"], height, ROUNDED),
-        measured(_("The shoe's point at the contact moves at {share} of the speed of the hub."),
+        difference_check(_("The shoe's point at the contact moves at {share} of the speed of the hub."),
                  told["walking_slip"], 1.0, ROUNDED),
-        measured(_("The arc of the shoe is as long as the ground travelled, to {share} of it."),
+        difference_check(_("The arc of the shoe is as long as the ground travelled, to {share} of it."),
                  told["walking_arc_difference"], told["walking_footprint"], ROUNDED),
     )  # fmt: skip
 
@@ -325,7 +342,7 @@ def _proof(study: ReportStudy) -> tuple[Check, ...]:
 # The chapters on the contact of a cam and its roller, and on the design that was chosen.
 
 
-def cam_contact_chapter(study: ReportStudy) -> Chapter | None:
+def cam_contact_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Hertzian stress between roller and cam."""
     part = part_of(study, "contact")
     if part is None:
@@ -350,14 +367,14 @@ def cam_contact_chapter(study: ReportStudy) -> Chapter | None:
     ]  # fmt: skip
     table = course(study, data, columns, _("The contact over the working arc"))
     sections = sections_of(
-        ("", (Paragraph(text), Formula(lines), *told_part(study, part))),
+        ("", (ParagraphBlock(text), FormulaBlock(lines), *told_part(study, part))),
         (_("Over the working arc"), (table,)),
         (_("Figures"), (picture(contact_figure(cam, data), _("Contact stress over the working arc")),)),
     )
-    return Chapter("contact", _("Contact of roller and cam"), sections)
+    return ChapterBlocks("contact", _("Contact of roller and cam"), sections)
 
 
-def cam_choice_chapter(study: ReportStudy) -> Chapter | None:
+def cam_choice_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The parameters that make one measure least while others keep their bounds."""
     part = part_of(study, "choice")
     if part is None:
@@ -371,5 +388,5 @@ def cam_choice_chapter(study: ReportStudy) -> Chapter | None:
     drawn = tuple(
         picture(figure, captions.get(name, _("The chosen cam"))) for name, figure in figures.items()
     )
-    sections = sections_of(("", (Paragraph(text), *told_part(study, part))), (_("Figures"), drawn))
-    return Chapter("choice", _("Chosen parameters"), sections)
+    sections = sections_of(("", (ParagraphBlock(text), *told_part(study, part))), (_("Figures"), drawn))
+    return ChapterBlocks("choice", _("Chosen parameters"), sections)

@@ -14,14 +14,22 @@ from centrode.model.mechanism import FRAME, Drive, Link, Mechanism
 from centrode.present.equations import page
 from centrode.present.equations.typst import TypstSpelling
 from centrode.present.figures import motion_figures
-from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    CheckBlock,
+    ParagraphBlock,
+    SectionBlocks,
+    TableBlock,
+    shown,
+)
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers
 from centrode.report.chapters.forces.places import head_of_places, places_of, unit_of_place
-from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.chapters.forces.tables import ForceColumn, over_samples
 from centrode.report.equations import section_of
 from centrode.report.study import Moment, ReportStudy, moments_of
-from centrode.report.texts import facts, measured
+from centrode.report.texts import difference_check, facts
 from centrode.report.topics import left_out
 from centrode.study.summary import motion_rows
 from centrode.views.columns import rows_shown
@@ -30,7 +38,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def sphere_data_chapter(study: ReportStudy) -> Chapter | None:
+def sphere_data_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Everything the description gives of the geometry and the drives; arcs are angles."""
     if not study.is_spherical:
         return None
@@ -39,12 +47,12 @@ def sphere_data_chapter(study: ReportStudy) -> Chapter | None:
         "Everything moves on a sphere about its centre, where all axes meet. Lengths are arcs; the angle of a link is"
         " measured at its first point from its reference arc, counter-clockwise seen from outside."
     )
-    blocks: list[Block] = [Paragraph(text), _points(mechanism, numbers), *_links(mechanism, numbers)]
+    blocks: list[Block] = [ParagraphBlock(text), _points(mechanism, numbers), *_links(mechanism, numbers)]
     blocks += [*_guides(mechanism, numbers), *_gears(mechanism, numbers), _drives(mechanism, numbers)]
-    return Chapter("data", _("Data"), (Section("", tuple(blocks)),))
+    return ChapterBlocks("data", _("Data"), (SectionBlocks("", tuple(blocks)),))
 
 
-def _points(mechanism: Mechanism, numbers: Numbers) -> Table:
+def _points(mechanism: Mechanism, numbers: Numbers) -> TableBlock:
     """Places of the frame, as directions and by longitude and latitude."""
     names = list(mechanism.frame.points)
     places = [_angles(mechanism.frame.points[name]) for name in names]
@@ -56,7 +64,7 @@ def _points(mechanism: Mechanism, numbers: Numbers) -> Table:
         _("point"), "$x$", "$y$", "$z$", numbers.head(_("longitude"), "rad"), numbers.head(_("latitude"), "rad")
     )  # fmt: skip
     rows = tuple(zip(*columns, strict=True))
-    return Table(head, rows, _("Points of the frame"), (False, *(True,) * 5))
+    return TableBlock(head, rows, _("Points of the frame"), (False, *(True,) * 5))
 
 
 def _angles(place: object) -> tuple[float, float]:
@@ -64,7 +72,7 @@ def _angles(place: object) -> tuple[float, float]:
     return float(place[0]), float(place[1])
 
 
-def _links(mechanism: Mechanism, numbers: Numbers) -> Iterator[Table]:
+def _links(mechanism: Mechanism, numbers: Numbers) -> Iterator[TableBlock]:
     rows, bodies = [], []
     for number, (name, link) in enumerate(mechanism.links.items(), start=1):
         arc = "" if link.length is None else _angle(numbers, link.length)
@@ -77,12 +85,12 @@ def _links(mechanism: Mechanism, numbers: Numbers) -> Iterator[Table]:
         _("number"), _("link"), _("points"), numbers.head(_("arc"), "rad"), _("angle is from arc"),
         numbers.head(_("initial angle"), "rad"),
     )  # fmt: skip
-    yield Table(head, tuple(rows), _("Moving links"), (True, False, False, True, False, True))
+    yield TableBlock(head, tuple(rows), _("Moving links"), (True, False, False, True, False, True))
     if bodies:
         own = (
             _("link"), _("point"), numbers.head(_("longitude"), "rad"), numbers.head(_("latitude"), "rad")
         )  # fmt: skip
-        yield Table(
+        yield TableBlock(
             own, tuple(bodies), _("Points of rigid links, in the links' own axes"), (False, False, True, True)
         )
 
@@ -101,7 +109,7 @@ def _angle(numbers: Numbers, value: float) -> str:
     return numbers.plain(value * numbers.shown("rad")[0] + 0.0)
 
 
-def _guides(mechanism: Mechanism, numbers: Numbers) -> Iterator[Table]:
+def _guides(mechanism: Mechanism, numbers: Numbers) -> Iterator[TableBlock]:
     if mechanism.guides:
         head = (_("guide"), _("point"), _("on"), _("pole"), numbers.head(_("radius"), "rad"))
         rows = tuple(
@@ -114,10 +122,12 @@ def _guides(mechanism: Mechanism, numbers: Numbers) -> Iterator[Table]:
             )
             for guide in mechanism.guides
         )
-        yield Table(head, rows, _("Circles on which points are kept"), (False, False, False, False, True))
+        yield TableBlock(
+            head, rows, _("Circles on which points are kept"), (False, False, False, False, True)
+        )
 
 
-def _gears(mechanism: Mechanism, numbers: Numbers) -> Iterator[Table]:
+def _gears(mechanism: Mechanism, numbers: Numbers) -> Iterator[TableBlock]:
     if mechanism.gears:
         head = (_("gear"), _("links"), _("carrier"), _("ratio"))
         rows = tuple(
@@ -129,10 +139,10 @@ def _gears(mechanism: Mechanism, numbers: Numbers) -> Iterator[Table]:
             )
             for gear in mechanism.gears
         )
-        yield Table(head, rows, _("Bevel gears"), (False, False, False, True))
+        yield TableBlock(head, rows, _("Bevel gears"), (False, False, False, True))
 
 
-def _drives(mechanism: Mechanism, numbers: Numbers) -> Table:
+def _drives(mechanism: Mechanism, numbers: Numbers) -> TableBlock:
     head = (_("drive"), _("what is given"), _("initial value"), _("law"))
     rows = tuple(
         (
@@ -143,7 +153,7 @@ def _drives(mechanism: Mechanism, numbers: Numbers) -> Table:
         )
         for drive in mechanism.drives
     )
-    return Table(head, rows, _("Drives"), (False, False, True, False))
+    return TableBlock(head, rows, _("Drives"), (False, False, True, False))
 
 
 def _given(drive: Drive) -> str:
@@ -181,19 +191,19 @@ CAPTIONS = {
 }
 
 
-def sphere_plots_chapter(study: ReportStudy) -> Chapter | None:
+def sphere_plots_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The figures that `centrode run` draws."""
     if not study.is_spherical:
         return None
     figures = motion_figures(study.mechanism, study.motion, study.wishes.instants)
     blocks = tuple(picture(figure, _(CAPTIONS[name])) for name, figure in figures.items())
-    return Chapter("plots", _("Plots of the motion"), (Section("", blocks),))
+    return ChapterBlocks("plots", _("Plots of the motion"), (SectionBlocks("", blocks),))
 
 
 # Equations of a linkage on the sphere, as `centrode equations` prints them.
 
 
-def sphere_equations_chapter(study: ReportStudy) -> Chapter | None:
+def sphere_equations_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Closures of the dyads, their derivatives, Cramer's rule, normal form, accelerations."""
     if not study.is_spherical:
         return None
@@ -207,8 +217,8 @@ def sphere_equations_chapter(study: ReportStudy) -> Chapter | None:
         "Each dyad brings a new point: the law of cosines in the triangle of its two centres and that point gives its"
         " angle, the angle of its other arc to its path follows."
     )
-    sections = [Section("", (Paragraph(text),)), *map(section_of, found)]
-    return Chapter("equations", _("Constraint equations"), tuple(sections))
+    sections = [SectionBlocks("", (ParagraphBlock(text),)), *map(section_of, found)]
+    return ChapterBlocks("equations", _("Constraint equations"), tuple(sections))
 
 
 # Tables of a motion on the sphere: the instants, the whole motion, and what every sample has to keep.
@@ -219,23 +229,23 @@ ROUNDED = 1 << 20
 VECTORS = (("position", "r"), ("velocity", "v"), ("acceleration", "a"))
 
 
-def sphere_tables_chapter(study: ReportStudy) -> Chapter | None:
+def sphere_tables_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Range and statuses, tables of the instants, a table over the motion, checks."""
     if not study.is_spherical:
         return None
     first: list[Block] = [facts(study.numbers, motion_rows(study.study))]
     if study.study.failure is not None:
-        first.append(Paragraph(shown(f"{study.study.failure}.")))
-    sections = [Section(_("Range"), tuple(first))]
-    sections += [Section(moment.title, tuple(_instant(study, moment))) for moment in moments_of(study)]
-    sections.append(Section(_("The whole motion"), (_course(study),)))
-    sections.append(Section(_("Checks"), tuple(_checks(study))))
-    return Chapter("tables", _("Tables of the motion"), tuple(sections))
+        first.append(ParagraphBlock(shown(f"{study.study.failure}.")))
+    sections = [SectionBlocks(_("Range"), tuple(first))]
+    sections += [SectionBlocks(moment.title, tuple(_instant(study, moment))) for moment in moments_of(study)]
+    sections.append(SectionBlocks(_("The whole motion"), (_course(study),)))
+    sections.append(SectionBlocks(_("Checks"), tuple(_checks(study))))
+    return ChapterBlocks("tables", _("Tables of the motion"), tuple(sections))
 
 
 def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
     if not moment.reached:
-        yield Paragraph(moment.missing)
+        yield ParagraphBlock(moment.missing)
         return
     here = moment.data.isel(sample=moment.sample)
     yield from _joints(study, here)
@@ -243,7 +253,7 @@ def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
     yield _point_tables(study, here)
 
 
-def _joints(study: ReportStudy, here: xr.Dataset) -> Iterator[Table]:
+def _joints(study: ReportStudy, here: xr.Dataset) -> Iterator[TableBlock]:
     """Angles of the links in their hinges and ways along circles, with rates."""
     numbers = study.numbers
     groups = (
@@ -265,10 +275,10 @@ def _joints(study: ReportStudy, here: xr.Dataset) -> Iterator[Table]:
             for name, unit in zip(variables, units, strict=True)
         ]
         rows = tuple(zip(map(shown, names), *columns, strict=True))
-        yield Table((head, *heads), rows, caption, (False, True, True, True))
+        yield TableBlock((head, *heads), rows, caption, (False, True, True, True))
 
 
-def _link_tables(study: ReportStudy, here: xr.Dataset) -> Table:
+def _link_tables(study: ReportStudy, here: xr.Dataset) -> TableBlock:
     """Angular velocities and accelerations as vectors in the axes of the frame."""
     numbers = study.numbers
     heads, columns = [_("link")], [tuple(map(shown, here["link"].to_numpy().tolist()))]
@@ -285,10 +295,10 @@ def _link_tables(study: ReportStudy, here: xr.Dataset) -> Table:
         columns.append(numbers.column(np.linalg.norm(values, axis=1), unit, least))
     rows = tuple(zip(*columns, strict=True))
     caption = _("Angular velocities and accelerations in the axes of the frame")
-    return Table(tuple(heads), rows, caption, (False, *(True,) * 8))
+    return TableBlock(tuple(heads), rows, caption, (False, *(True,) * 8))
 
 
-def _point_tables(study: ReportStudy, here: xr.Dataset) -> Table:
+def _point_tables(study: ReportStudy, here: xr.Dataset) -> TableBlock:
     """Places, velocities and accelerations on the unit sphere."""
     numbers, names = study.numbers, list(study.mechanism.moving_points)
     own = here.sel(point=names)
@@ -301,13 +311,13 @@ def _point_tables(study: ReportStudy, here: xr.Dataset) -> Table:
             columns.append(numbers.column(values[:, k], unit, least))
     rows = tuple(zip(*columns, strict=True))
     caption = _("Places, velocities and accelerations of the points on the unit sphere")
-    return Table(tuple(heads), rows, caption, (False, *(True,) * 9))
+    return TableBlock(tuple(heads), rows, caption, (False, *(True,) * 9))
 
 
-def _course(study: ReportStudy) -> Table:
+def _course(study: ReportStudy) -> TableBlock:
     """Angles in the hinges and ways along circles with their rates, at even steps."""
     data = study.motion
-    columns = [Column(head_of_places(study), unit_of_place(study), places_of(study, data))]
+    columns = [ForceColumn(head_of_places(study), unit_of_place(study), places_of(study, data))]
     for dimension, value, rate, letter in (
         ("joint", "joint_angle", "joint_velocity", "psi"),
         ("guide", "slide", "slide_velocity", "s"),
@@ -315,14 +325,14 @@ def _course(study: ReportStudy) -> Table:
         for name in data[dimension].to_numpy().tolist()[:4]:
             one = data.sel({dimension: name})
             below = f'_("{name}")'.replace("$", r"\$")
-            columns.append(Column(f"${letter}{below}$", "rad", one[value].to_numpy()))
-            columns.append(Column(f"$dot({letter}){below}$", "rad/s", one[rate].to_numpy()))
+            columns.append(ForceColumn(f"${letter}{below}$", "rad", one[value].to_numpy()))
+            columns.append(ForceColumn(f"$dot({letter}){below}$", "rad/s", one[rate].to_numpy()))
     return over_samples(
         study.numbers, columns, rows_shown(data.sizes["sample"], ROWS), _("The motion at even steps")
     )
 
 
-def _checks(study: ReportStudy) -> list[Check]:
+def _checks(study: ReportStudy) -> list[CheckBlock]:
     """Closure, arcs that stay what they are, and v = omega x r; none of them is what the motion was found by."""
     data, eps = study.motion, float(np.finfo(float).eps)
     reached = data["status"].to_numpy() == Status.OK
@@ -351,6 +361,6 @@ def _checks(study: ReportStudy) -> list[Check]:
     )
     size = float(np.abs(rate).max())
     return [
-        measured(arcs, stretch, 1.0, 64.0 * eps * data.sizes["link"]),
-        measured(turns, slip, size, ROUNDED * eps),
+        difference_check(arcs, stretch, 1.0, 64.0 * eps * data.sizes["link"]),
+        difference_check(turns, slip, size, ROUNDED * eps),
     ]

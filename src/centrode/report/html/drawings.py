@@ -51,7 +51,7 @@ class Drawings:
             raise InputError("", _("a figure is no SVG: {why}").format(why=root.tag))
         self.count += 1
         view = root.get("viewBox") or f"0 0 {_size(root.get('width'))} {_size(root.get('height'))}"
-        used = _referenced(root)
+        used = _references(root)
         names = self._names(root, used)
         whole = Xml.Element("svg", {"viewBox": view, "role": "img", "aria-label": label})
         for child in root:
@@ -97,7 +97,7 @@ def _size(text: str | None) -> str:
     return found.group() if found else "100"
 
 
-def _referenced(root: Xml.Element) -> set[str]:
+def _references(root: Xml.Element) -> set[str]:
     found: set[str] = set()
     for element in root.iter():
         for key, value in element.attrib.items():
@@ -138,10 +138,10 @@ def _keep(made: Xml.Element, key: str, value: str, names: dict[str, str]) -> Non
             made.set("id", names[value])
     elif key in ATTRIBUTES and not FOREIGN.search(value):
         value = REFERENCE.sub(lambda found: f"url(#{names.get(found[1], '')})", value)
-        made.set(key, _rounded(value) if key in ("d", "points", "x", "y") else value)
+        made.set(key, _round(value) if key in ("d", "points", "x", "y") else value)
 
 
-def _rounded(value: str) -> str:
+def _round(value: str) -> str:
     """Coordinates to hundredths of a point: less than what is seen or printed."""
     rounded = NUMBER.sub(lambda found: f"{float(found[0]):.{DECIMALS}f}".rstrip("0").rstrip("."), value)
     return " ".join(rounded.split())

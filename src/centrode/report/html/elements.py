@@ -10,20 +10,20 @@ from itertools import zip_longest
 from centrode.locale import _
 from centrode.render.document.blocks import (
     Block,
-    Check,
-    Formula,
-    Items,
+    CheckBlock,
+    FormulaBlock,
+    ItemsBlock,
     Moving,
-    Paragraph,
+    ParagraphBlock,
     Picture,
     Report,
-    System,
-    Table,
+    SystemBlock,
+    TableBlock,
 )
 from centrode.report.html.drawings import Drawings
 from centrode.report.html.mathematics import Formulas, fragments_of
 from centrode.report.html.stage import stage_of
-from centrode.report.mathematics import checked
+from centrode.report.mathematics import check_formula
 from centrode.report.texts import parts_of
 
 BREAK = "<wbr>"
@@ -40,25 +40,25 @@ def blocks_of(report: Report) -> Iterator[Block]:
 
 def formulas_in(block: Block) -> Iterator[str]:
     """The mathematics of a block, as it is spelled; ValueError, which is a fault, for what is none."""
-    if isinstance(block, Formula):
+    if isinstance(block, FormulaBlock):
         for line in block.lines:
             yield from line[:1]
             for part in line:
                 yield from fragments_of(part)
-    elif isinstance(block, System):
+    elif isinstance(block, SystemBlock):
         for row in (*block.matrix, block.unknowns, block.right):
-            yield from map(checked, row)
+            yield from map(check_formula, row)
     else:
         for text in _texts(block):
-            yield from (checked(part.text) for part in parts_of(text) if part.mathematics)
+            yield from (check_formula(part.text) for part in parts_of(text) if part.mathematics)
 
 
 def _texts(block: Block) -> Iterator[str]:
-    if isinstance(block, Paragraph | Check):
+    if isinstance(block, ParagraphBlock | CheckBlock):
         yield block.text
-    elif isinstance(block, Items):
+    elif isinstance(block, ItemsBlock):
         yield from block.texts
-    elif isinstance(block, Table):
+    elif isinstance(block, TableBlock):
         yield from (block.caption, *block.head)
         for row in block.rows:
             yield from row
@@ -84,25 +84,25 @@ class Elements:
 
     def element(self, block: Block) -> str:
         """A block."""
-        if isinstance(block, Paragraph):
+        if isinstance(block, ParagraphBlock):
             return f"<p>{self.text(block.text)}</p>"
-        if isinstance(block, Items):
+        if isinstance(block, ItemsBlock):
             kind = "ol" if block.numbered else "ul"
             return f"<{kind}>{''.join(f'<li>{self.text(one)}</li>' for one in block.texts)}</{kind}>"
-        if isinstance(block, Formula):
+        if isinstance(block, FormulaBlock):
             return self.formula(block)
-        if isinstance(block, System):
+        if isinstance(block, SystemBlock):
             system = self.formulas.system(block.matrix, block.unknowns, block.right)
             return f'<div class="formulas"><div class="one system">{system}</div></div>'
-        if isinstance(block, Table):
+        if isinstance(block, TableBlock):
             return self.table(block)
-        if isinstance(block, Check):
+        if isinstance(block, CheckBlock):
             return self.check(block)
         if isinstance(block, Moving):
             return self.moving(block)
         return self.picture(block)
 
-    def formula(self, block: Formula) -> str:
+    def formula(self, block: FormulaBlock) -> str:
         """Lines of a = b = ..., aligned at their first relation unless a left side is too long for that."""
         lines = [line for line in block.lines if line]
         aligned = all(len(line) > 1 and _length(line[0]) <= LONG for line in lines)
@@ -119,7 +119,7 @@ class Elements:
         kind = "aligned" if aligned else "running"
         return f'<div class="formulas"><div class="{kind}">{"".join(drawn)}</div></div>'
 
-    def table(self, block: Table) -> str:
+    def table(self, block: TableBlock) -> str:
         """Rows under heads, with a number if it has a caption."""
         flush = [number for number, _name in zip_longest(block.numbers, block.head, fillvalue=False)]
         kinds = [' class="n"' if number is True else "" for number in flush]
@@ -144,7 +144,7 @@ class Elements:
         drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         return f'{caption}<div class="table">{drawn}</div>'
 
-    def check(self, block: Check) -> str:
+    def check(self, block: CheckBlock) -> str:
         """How something was verified."""
         mark, word = ("\u2713", _("Checked")) if block.holds else ("\u2717", _("Does not hold"))
         kind = "check" if block.holds else "check fails"

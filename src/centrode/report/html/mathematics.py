@@ -11,7 +11,7 @@ from xml.etree import ElementTree as Xml
 
 import typst
 
-from centrode.report.mathematics import checked, pieces_of
+from centrode.report.mathematics import check_formula, pieces_of
 
 FORMULA = re.compile(r"<math\b.*?</math>", re.DOTALL)
 STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
@@ -70,27 +70,27 @@ class Formulas:
 def fragments_of(spelled: str) -> list[str]:
     """The pieces that a formula is laid out in; long ones are cut inside of their bracket as well."""
     found = []
-    for piece in pieces_of(checked(spelled)):
+    for piece in pieces_of(check_formula(spelled)):
         found += pieces_of(piece, depth=1) if len(piece) > LONG else [piece]
     return found
 
 
 def formulas_of(spelled: Iterable[str]) -> Formulas:
-    """Lay out formulas in typst's notation, which were `checked`, each of them once."""
+    """Lay out formulas in typst's notation, which were `check_formula`, each of them once."""
     wanted = list(dict.fromkeys(spelled))
     if not wanted:
         return Formulas({}, "")
     source = "\n\n".join(f"$ {one} $" for one in wanted)
-    page = _compiled(source)
+    page = _compile(source)
     # the one thing that pages may write and XML may not
-    found = [_mended(Xml.fromstring(one.replace("]]>", "]]&gt;"))) for one in FORMULA.findall(page)]
+    found = [_mend(Xml.fromstring(one.replace("]]>", "]]&gt;"))) for one in FORMULA.findall(page)]
     if len(found) != len(wanted):
         raise ValueError(f"{len(wanted)} formulas became {len(found)}")
     style = STYLE.search(page)
     return Formulas(dict(zip(wanted, found, strict=True)), style.group(1) if style else "")
 
 
-def _compiled(source: str) -> str:
+def _compile(source: str) -> str:
     """The page that typst makes; it sees nothing of the machine."""
     files: Any = {"main": source.encode()}
     compiler = typst.Compiler(ignore_system_fonts=True)
@@ -99,7 +99,7 @@ def _compiled(source: str) -> str:
     return page.decode()
 
 
-def _mended(formula: Xml.Element) -> Xml.Element:
+def _mend(formula: Xml.Element) -> Xml.Element:
     for raised in [*formula.iter("msup"), *formula.iter("msubsup")]:
         if raised[-1].text in PRIMES:
             _lower(raised)

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from centrode.locale import _, speaking
-from centrode.render.document.blocks import Chapter, Report, Section
+from centrode.render.document.blocks import ChapterBlocks, Report, SectionBlocks
 from centrode.report.html.elements import Elements, blocks_of, formulas_in
 from centrode.report.html.mathematics import formulas_of
 
@@ -58,13 +58,13 @@ def _page(report: Report) -> str:
     )
 
 
-def _chapter(chapter: Chapter, number: int, elements: Elements) -> str:
+def _chapter(chapter: ChapterBlocks, number: int, elements: Elements) -> str:
     """A chapter with its sections, or why there is none."""
     drawn = f'<h2 id="c{number}"><span class="number">{number}</span>{html.escape(chapter.title)}</h2>\n'
     if chapter.missing:
         words = _("This chapter could not be made: {reason}").format(reason=chapter.missing)
         drawn += f'<p class="missing">{html.escape(words)}</p>\n'
-    for part, section in _numbered(chapter):
+    for part, section in _number_sections(chapter):
         if section.title:
             own = f"{number}.{part}"
             drawn += f'<h3 id="c{number}-{part}"><span class="number">{own}</span>{html.escape(section.title)}</h3>\n'
@@ -72,7 +72,7 @@ def _chapter(chapter: Chapter, number: int, elements: Elements) -> str:
     return f"<section>{drawn}</section>\n"
 
 
-def _numbered(chapter: Chapter) -> Iterator[tuple[int, Section]]:
+def _number_sections(chapter: ChapterBlocks) -> Iterator[tuple[int, SectionBlocks]]:
     """Sections with their numbers; those without a title are not counted."""
     number = 0
     for section in chapter.sections:
@@ -80,11 +80,11 @@ def _numbered(chapter: Chapter) -> Iterator[tuple[int, Section]]:
         yield number, section
 
 
-def _entry(chapter: Chapter, number: int) -> str:
+def _entry(chapter: ChapterBlocks, number: int) -> str:
     """A chapter in the contents."""
     parts = "".join(
         f'<li><a href="#c{number}-{part}"><span>{html.escape(section.title)}</span></a></li>'
-        for part, section in _numbered(chapter)
+        for part, section in _number_sections(chapter)
         if section.title
     )
     below = f"<ol>{parts}</ol>" if parts else ""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.present.style import DASHES, GROUND, PALETTE
-from centrode.render.document.blocks import Moving, Outline, Ring
+from centrode.render.document.blocks import Moving, Outline, RingBlock
 
 Array = NDArray[np.float64]
 WIDE, TALLEST = 6400, 5200
@@ -27,7 +27,7 @@ SAME = 1e-6
 """A motion is closed where its last picture is the first, within this part of its extent."""
 
 
-class Sheet:
+class PictureMap:
     """From places of a motion to places of a picture, whose y points down."""
 
     def __init__(self, moving: Moving) -> None:
@@ -102,7 +102,7 @@ def _controls(moving: Moving) -> str:
 
 def _data(moving: Moving) -> dict[str, Any]:
     """What the script draws."""
-    sheet = Sheet(moving)
+    sheet = PictureMap(moving)
     names = list(moving.places)
     samples = len(moving.drive)
     outlines = [one for one in moving.shapes if isinstance(one, Outline)]
@@ -110,7 +110,7 @@ def _data(moving: Moving) -> dict[str, Any]:
         "samples": samples,
         "start": moving.start,
         "axes": 3 if moving.view is not None else 2,
-        "loop": _closed(moving),
+        "loop": _is_closed(moving),
         "size": sheet.size,
         "label": moving.caption,
         "points": [_point(moving, sheet, name) for name in names],
@@ -140,7 +140,7 @@ def _data(moving: Moving) -> dict[str, Any]:
         "rings": [
             {"at": _vectors(one.poles), "arc": one.arc, "colour": one.colour}
             for one in moving.shapes
-            if isinstance(one, Ring)
+            if isinstance(one, RingBlock)
         ],
         "tracks": [names.index(one) for one in moving.tracks],
         "texts": list(moving.drive_texts),
@@ -155,7 +155,7 @@ def _data(moving: Moving) -> dict[str, Any]:
     return found
 
 
-def _point(moving: Moving, sheet: Sheet, name: str) -> dict[str, Any]:
+def _point(moving: Moving, sheet: PictureMap, name: str) -> dict[str, Any]:
     places = moving.places[name]
     line = moving.guides.get(moving.sliders.get(name, ""))
     slope = None
@@ -177,7 +177,7 @@ def _dashes(number: int) -> str:
     return "none" if dashes == "-" else " ".join(f"{26 * part:g}" for part in dashes[1])
 
 
-def _ground(sheet: Sheet, line: Array) -> str:
+def _ground(sheet: PictureMap, line: Array) -> str:
     """The hatched line under a slider, on the side that points down or away from the middle."""
     start, end = sheet.place(line)
     way = end - start
@@ -187,7 +187,7 @@ def _ground(sheet: Sheet, line: Array) -> str:
     aside = across[1] if abs(along[0]) > 0.2 else float(across @ outward)
     away = across if aside >= 0 else -across
     start, end = start + 95 * away - 220 * along, end + 95 * away + 220 * along
-    return _hatched(start, end, away)
+    return _hatch(start, end, away)
 
 
 def _support() -> str:
@@ -195,10 +195,10 @@ def _support() -> str:
     left, right = np.array([-2.0, 3.2]) * SIGN, np.array([2.0, 3.2]) * SIGN
     over = np.array([0.8 * SIGN, 0.0])
     triangle = f"M0 0L{left[0]:.0f} {left[1]:.0f}L{right[0]:.0f} {right[1]:.0f}Z"
-    return triangle + _hatched(left - over, right + over, np.array([0.0, 1.0]))
+    return triangle + _hatch(left - over, right + over, np.array([0.0, 1.0]))
 
 
-def _hatched(start: Array, end: Array, away: Array) -> str:
+def _hatch(start: Array, end: Array, away: Array) -> str:
     """A line of the picture with strokes on one side of it."""
     way = end - start
     length = float(np.hypot(*way)) or 1.0
@@ -225,7 +225,7 @@ def _box(moving: Moving) -> tuple[Array, Array]:
     return known.min(axis=0), known.max(axis=0)
 
 
-def _closed(moving: Moving) -> bool:
+def _is_closed(moving: Moving) -> bool:
     """Whether the last picture is the first."""
     tracks = [one for one in moving.places.values() if len(one) > 1]
     if len(moving.drive) < 3 or not tracks:

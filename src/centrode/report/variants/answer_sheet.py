@@ -13,7 +13,15 @@ from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, ngettext
 from centrode.model.files import kind_at
 from centrode.model.units import KINDS
-from centrode.render.document.blocks import Block, Chapter, Paragraph, Report, Section, Table, shown
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    ParagraphBlock,
+    Report,
+    SectionBlocks,
+    TableBlock,
+    shown,
+)
 from centrode.render.document.numbers import NOTHING, Numbers
 from centrode.render.document.rows import told
 from centrode.report.chapters.forces.results import reactions_at_instants
@@ -50,13 +58,17 @@ def answer_sheet(
     sheet = _Sheet(topology, numbers, rows, answers)
     count = ngettext("{n} variant", "{n} variants", len(rows)).format(n=len(rows))
     chapters = [
-        Chapter("variants", _("Data of the variants"), (Section("", tuple(sheet.data(variants))),)),
-        Chapter("turning", _("Rotatability"), (Section("", (sheet.turning(), *sheet.missing())),)),
+        ChapterBlocks(
+            "variants", _("Data of the variants"), (SectionBlocks("", tuple(sheet.data(variants))),)
+        ),
+        ChapterBlocks(
+            "turning", _("Rotatability"), (SectionBlocks("", (sheet.turning(), *sheet.missing())),)
+        ),
     ]
     for number, title in enumerate(sheet.titles()):
         sections = tuple(sheet.instant(number))
         if sections:
-            chapters.append(Chapter(f"instant-{number + 1}", title, sections))
+            chapters.append(ChapterBlocks(f"instant-{number + 1}", title, sections))
     title = _("Answers: {topology}").format(topology=_(topology.title) or _("Mechanism"))
     made = _("Computed by centrode {version}").format(version=__version__)
     return Report(title, f"{count}. {made}", chosen_language(), tuple(chapters))
@@ -74,7 +86,7 @@ class _Sheet:
     ) -> None:
         self.topology, self.numbers, self.rows, self.answers = topology, numbers, rows, answers
 
-    def data(self, variants: Sequence[Variant]) -> list[Table]:
+    def data(self, variants: Sequence[Variant]) -> list[TableBlock]:
         """What the table gave; numbers that are the same throughout, as those of a link and its drive, stand once."""
         columns: dict[tuple[float, ...], tuple[str, str]] = {}
         for path in dict.fromkeys(path for variant in variants for path in variant.values):
@@ -83,7 +95,7 @@ class _Sheet:
         heads = [(shown(path), unit) for path, unit in columns.values()]
         return self._tables([variant.name for variant in variants], heads, list(columns))
 
-    def turning(self) -> Table:
+    def turning(self) -> TableBlock:
         """Whether each turns fully, where it locks and why."""
         words = {True: _("yes"), False: _("no"), None: NOTHING}
         cells = []
@@ -103,20 +115,20 @@ class _Sheet:
                 )
             )
         head = (_("variant"), _("turns fully"), _("limit"), _("group"), _("cause"), _("status"))
-        return Table(head, tuple(cells), "", (False, False, True, False, False, False))
+        return TableBlock(head, tuple(cells), "", (False, False, True, False, False, False))
 
     def _group(self, row: VariantRow) -> str:
         """The group that locks, in the reader's language where the variant has answers."""
         known = self.answers.get(row.variant)
         return shown(row.group if known is None else known["group"])
 
-    def missing(self) -> list[Paragraph]:
+    def missing(self) -> list[ParagraphBlock]:
         """Variants without answers."""
         names = [row.variant for row in self.rows if row.variant not in self.answers]
         if not names:
             return []
         text = _("No answers, for the causes above: {names}.")
-        return [Paragraph(text.format(names=shown(", ".join(names))))]
+        return [ParagraphBlock(text.format(names=shown(", ".join(names))))]
 
     def titles(self) -> list[str]:
         """Titles of the instants: what all variants call them, else their number."""
@@ -133,7 +145,7 @@ class _Sheet:
     def _with(self, number: int) -> list[Answers]:
         return [known for known in self.answers.values() if len(known["instants"]) > number]
 
-    def instant(self, number: int) -> list[Section]:
+    def instant(self, number: int) -> list[SectionBlocks]:
         """Links, points and drives at one instant."""
         flat = self.topology.space == "plane"
         link_head = _("Links") if flat else _("Angles of the links, from their reference arcs")
@@ -146,16 +158,16 @@ class _Sheet:
             blocks: list[Block] = []
             for order, (letter, unit) in enumerate(kinds):
                 blocks += self._numbers(number, key, order, letter, unit)
-            sections.append(Section(title, tuple(blocks)))
+            sections.append(SectionBlocks(title, tuple(blocks)))
         given: list[Block] = []
         for name, unit in drives.items():
             given += self._numbers(number, "drives", None, "M" if unit == "N m" else "F", unit, name)
-        sections.append(Section(_("What the drives must give"), tuple(given)))
+        sections.append(SectionBlocks(_("What the drives must give"), tuple(given)))
         return [section for section in sections if section.blocks]
 
     def _numbers(
         self, number: int, key: str, order: int | None, letter: str, unit: str, only: str | None = None
-    ) -> list[Table]:
+    ) -> list[TableBlock]:
         """A quantity of all links or points, columns, for all variants, rows."""
         instants = {
             row.variant: known["instants"][number][key]
@@ -184,7 +196,7 @@ class _Sheet:
         heads: Sequence[tuple[str, str]],
         columns: Sequence[Sequence[float]],
         least: float = 0.0,
-    ) -> list[Table]:
+    ) -> list[TableBlock]:
         """As many tables as keep to the width of a page; what is below `least` is zero."""
         found = []
         names = tuple(map(shown, variants))
@@ -196,7 +208,7 @@ class _Sheet:
                 texts.append(self.numbers.column(values, unit, least))
                 shown_heads.append(self.numbers.head(head, unit))
             rows = tuple(zip(*texts, strict=True))
-            found.append(Table(tuple(shown_heads), rows, "", (False, *(True,) * (len(shown_heads) - 1))))
+            found.append(TableBlock(tuple(shown_heads), rows, "", (False, *(True,) * (len(shown_heads) - 1))))
         return found
 
 

@@ -15,7 +15,7 @@ from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
 from centrode.report.document import report
 from centrode.report.files import FORMATS, check_formats, document, write_report
-from centrode.report.study import ReportOptions, ReportStudy, settled
+from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answer_sheet import Answers, answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, write_variants
 from centrode.study.variant_results import spoken_variants
@@ -51,7 +51,7 @@ class VariantReport:
             made = report(mechanism, ReportOptions(), language=self.language)
             named = Report(title, made.subtitle, made.language, made.chapters)
             write_report(named, folder, self.formats)
-            study = ReportStudy(mechanism, settled(mechanism, ReportOptions(), CHAPTERS))
+            study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
             text = json.dumps(answers_of(study), indent=1, ensure_ascii=False) + "\n"
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")
 

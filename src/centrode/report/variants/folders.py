@@ -23,14 +23,14 @@ from centrode import render
 from centrode.equations.integration import IntegrationResults
 from centrode.errors import InputError
 from centrode.files.drafts import clear_folder, draft_folder, refusals, remove_file, replace_file, write_whole
-from centrode.files.inputs import Input, carry_on, keep_inputs, noted
-from centrode.files.locks import locked
+from centrode.files.inputs import Input, carry_on, inputs_read, keep_inputs
+from centrode.files.locks import hold_lock
 from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_csv
-from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, computed
+from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, compute_variant
 from centrode.study.variant_tables import Table, Variant, read_variants
 from centrode.version import __version__
 from centrode.views import integrations
@@ -83,16 +83,16 @@ class Task:
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
-def finished(task: Task) -> VariantRow | None:
+def finished_row(task: Task) -> VariantRow | None:
     """The row of a variant whose files are there; None where they are not, or are those of other numbers."""
-    told = _marked(task)
+    told = _read_marker(task)
     try:
         return VariantRow(**told["row"]) if told["digest"] == task.digest else None
     except (KeyError, TypeError):
         return None
 
 
-def _marked(task: Task) -> dict[str, Any]:
+def _read_marker(task: Task) -> dict[str, Any]:
     """What a variant's marker holds; nothing where there is none that can be read."""
     try:
         told = json.loads((task.folder / MARKER).read_text(encoding="utf-8"))
@@ -108,7 +108,7 @@ def run(task: Task) -> VariantRow:
     clear_folder(draft)
     draft.mkdir()
     try:
-        results = computed(parse_mechanism(task.topology), task.variant)
+        results = compute_variant(parse_mechanism(task.topology), task.variant)
         _write(results, draft, figures=task.figures)
         if task.more is not None and results.mechanism is not None:
             task.more(results, draft)
@@ -131,7 +131,7 @@ def _exchange(task: Task, draft: Path, row: VariantRow) -> None:
     Raises InputError before anything is touched where one of them is a file that was read.
     """
     names = sorted(file.name for file in draft.iterdir())
-    before = [str(name) for name in _marked(task).get("files", []) if Path(str(name)).name == str(name)]
+    before = [str(name) for name in _read_marker(task).get("files", []) if Path(str(name)).name == str(name)]
     keep_inputs(*(task.folder / name for name in (*before, *names, MARKER)))
     write_whole(task.folder / MARKER, {"digest": "", "files": sorted({*before, *names})})
     for name in before:
@@ -217,7 +217,7 @@ def write_variants(
     keep_inputs(folder / SUMMARY)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        with locked(folder / LOCK, str(folder)):
+        with hold_lock(folder / LOCK, str(folder)):
             rows = _all(tasks, jobs, progress)
             _write_summary(rows, folder, spelling)
     return tuple(rows)
@@ -239,7 +239,7 @@ def _check_jobs(jobs: object) -> None:
 
 def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[VariantRow]:
     """Rows of all tasks, those of finished ones from their markers."""
-    rows = {task.variant.name: row for task in tasks if (row := finished(task)) is not None}
+    rows = {task.variant.name: row for task in tasks if (row := finished_row(task)) is not None}
     open_tasks = [task for task in tasks if task.variant.name not in rows]
     if progress is not None:
         progress(len(rows), len(tasks))
@@ -254,7 +254,7 @@ def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
     """Rows as processes finish them; interrupted, those that run are finished and the others left."""
     context = multiprocessing.get_context("spawn")
     size = min(jobs, len(tasks))
-    pool = ProcessPoolExecutor(size, mp_context=context, initializer=_prepare, initargs=(noted(),))
+    pool = ProcessPoolExecutor(size, mp_context=context, initializer=_prepare, initargs=(inputs_read(),))
     with pool:
         futures: list[Future[VariantRow]] = [pool.submit(run, task) for task in tasks]
         try:

@@ -7,7 +7,7 @@ from centrode.cams.parameter_choice.search import CamChoice, choose_cam
 from centrode.locale import _, ngettext
 from centrode.model.cam import CONSTANT, Cam
 from centrode.sheets.sheet import Scalar
-from centrode.study.cams.parts import Asked, CamPart, Rows, Table, Units
+from centrode.study.cams.parts import Asked, CamPart, CamTable, Rows, Units
 
 MEGA = 1e-6
 UNITS = {
@@ -94,7 +94,7 @@ def _proof(found: CamChoice) -> Rows:
     return [(_("bounds"), kept), (_("other designs"), told)]
 
 
-def _parameters(found: CamChoice) -> Table:
+def _parameters(found: CamChoice) -> CamTable:
     units = Units(found.cam)
     chosen, start = found.choice.chosen.parameters, found.choice.start.parameters
     assert found.cam.choose is not None
@@ -103,12 +103,12 @@ def _parameters(found: CamChoice) -> Table:
         unit = parameter_unit(found.cam, name)
         low, high = found.cam.choose.parameters[name]
         lines.append((name, *(units.text(one, unit) for one in (value, start[name], low, high))))
-    return Table(
+    return CamTable(
         _("Parameters"), (_("parameter"), _("chosen"), _("start"), _("from"), _("to")), lines, named=True
     )
 
 
-def _measures(found: CamChoice) -> Table:
+def _measures(found: CamChoice) -> CamTable:
     lines: list[tuple[str, ...]] = []
     for name in found.measures:
         judged, bound = found.choice.chosen.measures[name], ""
@@ -117,7 +117,7 @@ def _measures(found: CamChoice) -> Table:
             bound = told.format(value=_shown(found.cam, name, judged.bound))
         before = _shown(found.cam, name, found.choice.start.measures[name].value)
         lines.append((_(MEASURES[name].title), _shown(found.cam, name, judged.value), before, bound))
-    return Table(_("Measures"), (_("measure"), _("chosen"), _("start"), _("bound")), lines, named=True)
+    return CamTable(_("Measures"), (_("measure"), _("chosen"), _("start"), _("bound")), lines, named=True)
 
 
 def _shown(cam: Cam, name: str, value: float) -> str:

@@ -63,7 +63,7 @@ def bounds_told(cam: PlateCam, body: FollowerCam) -> BoundsTold:
     least = None
     try:
         least = least_base_radius(layout, body.motion, kept)
-        told.rows.append((_("least base radius"), _decided(least, units)))
+        told.rows.append((_("least base radius"), _deciding_bound(least, units)))
         free = least.by == "nothing"
         if not free:
             told.scalars["cam_least_base_radius"] = Scalar(least.base_radius, "m")
@@ -94,7 +94,7 @@ def _admissible(cam: PlateCam, units: Units) -> str:
     return ", ".join(texts)
 
 
-def _decided(least: Least, units: Units) -> str:
+def _deciding_bound(least: Least, units: Units) -> str:
     if least.by == "nothing":
         return _("none: no bound decides it")
     return _("{radius}, decided by {bound} at {at}").format(

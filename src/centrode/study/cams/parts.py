@@ -30,7 +30,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Table:
+class CamTable:
     """A table below the rows of a part: heading, names of columns, lines, and whether these begin with a name."""
 
     heading: str
@@ -52,7 +52,7 @@ class CamPart:
         What `summary.json` holds.
     datasets : mapping of name to Dataset
         What is written as tables and drawn; the names are those of the files.
-    tables : tuple of Table
+    tables : tuple of CamTable
     failures : tuple of str
         What the cam cannot do, in sentences: the command ends with 3.
     objects : mapping of name to anything
@@ -63,7 +63,7 @@ class CamPart:
     rows: Rows
     scalars: Mapping[str, Scalar]
     datasets: Mapping[str, xr.Dataset] = field(default_factory=dict)
-    tables: tuple[Table, ...] = ()
+    tables: tuple[CamTable, ...] = ()
     failures: tuple[str, ...] = ()
     objects: Mapping[str, Any] = field(default_factory=dict)
 

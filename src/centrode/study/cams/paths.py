@@ -22,7 +22,7 @@ from centrode.errors import CentrodeError
 from centrode.locale import _, ngettext
 from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
-from centrode.study.cams.parts import Asked, CamPart, Rows, Table, Units
+from centrode.study.cams.parts import Asked, CamPart, CamTable, Rows, Units
 
 FURTHER = math.tau
 """Angle [rad] up to which a stall beyond the range is looked for."""
@@ -187,9 +187,7 @@ PLACES = 3
 def routes_part(cam: Cam, asked: Asked) -> CamPart:
     """One series, series expanded anew, an integrator, beside each other."""
     found = cam_routes(cam, asked.samples, terms=asked.terms)
-    shown = (
-        cam_routes(cam, at=cam.study.instants, terms=asked.terms) if cam.study.instants else thinned(found)
-    )
+    shown = cam_routes(cam, at=cam.study.instants, terms=asked.terms) if cam.study.instants else thin(found)
     return CamPart(
         _("Three routes to the path"),
         _rows(cam, found),
@@ -199,7 +197,7 @@ def routes_part(cam: Cam, asked: Asked) -> CamPart:
     )
 
 
-def thinned(found: xr.Dataset) -> xr.Dataset:
+def thin(found: xr.Dataset) -> xr.Dataset:
     """A few of many samples, both ends among them."""
     count = found.sizes["sample"]
     if count <= MOST_LINES:
@@ -317,7 +315,7 @@ def _scalars(found: xr.Dataset) -> dict[str, Scalar]:
     return {name: one for name, one in scalars.items() if math.isfinite(one.value)}
 
 
-def _table(cam: Cam, shown: xr.Dataset) -> Table:
+def _table(cam: Cam, shown: xr.Dataset) -> CamTable:
     units = Units(cam)
     factor, unit = units.shown("m")
     turn, angle = units.shown("rad")
@@ -351,7 +349,7 @@ def _table(cam: Cam, shown: xr.Dataset) -> Table:
             )
         )
     heading = _("Differences in {unit}; foretold: by the next four terms of the series").format(unit=unit)
-    return Table(heading, header, lines)
+    return CamTable(heading, header, lines)
 
 
 def _number(value: float, form: str) -> str:

@@ -12,7 +12,15 @@ from centrode.cams.followers.base_circle import admissible_of, exact_margin, has
 from centrode.cams.nodes import nodes_of
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Table, shown
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ParagraphBlock,
+    TableBlock,
+    shown,
+)
 from centrode.render.document.numbers import NOTHING
 from centrode.render.document.rows import small
 from centrode.report.chapters.followers.formulas import Spelled
@@ -31,7 +39,7 @@ NEAR = 1e-6
 """By how much of itself a least radius is changed to see that it is one."""
 
 
-def base_radius_chapter(study: ReportStudy) -> Chapter | None:
+def base_radius_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """What decides the size of the cam; nothing where neither a size nor bounds are given."""
     body = body_of(study) if study.is_plate_cam else None
     if body is None:
@@ -41,25 +49,25 @@ def base_radius_chapter(study: ReportStudy) -> Chapter | None:
         (_("The least base radius"), tuple(_least(study, body))),
         (_("Base radii beside each other"), (_beside(study, body), *closed_forms(study, body))),
     )
-    return Chapter("base-radius", _("Choice of the base radius"), sections)
+    return ChapterBlocks("base-radius", _("Choice of the base radius"), sections)
 
 
 def _demands(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
     """What grows and what shrinks with the cam."""
     spelled = Spelled(body, study.numbers, 0.0)
     if spelled.book.has_pressure_angle:
-        yield Paragraph(_(
+        yield ParagraphBlock(_(
             "The smaller the cam, the greater the pressure angle $alpha$ between the normal and the follower's way, and"
             " the smaller the radius of curvature $R$ of the profile where it bulges; at $R <= 0$ the profile is"
             " undercut."
         ))  # fmt: skip
     else:
-        yield Paragraph(_(
+        yield ParagraphBlock(_(
             "Under a flat face that is square to the follower's way the pressure angle is zero. The smaller the cam,"
             " the smaller the radius of curvature $R$ of its profile; at $R <= 0$ it is undercut."
         ))  # fmt: skip
     lines = [line[:2] for line in (*spelled.start(), *spelled.pressure(), *spelled.radius())]
-    yield Formula(tuple(line for line in lines if line[0] != "alpha"))
+    yield FormulaBlock(tuple(line for line in lines if line[0] != "alpha"))
 
 
 def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
@@ -68,7 +76,7 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
     try:
         least = least_cam(cam)
     except CentrodeError as refusal:
-        yield Paragraph(shown(f"{refusal.what}. {refusal.repair or ''}".strip()))
+        yield ParagraphBlock(shown(f"{refusal.what}. {refusal.repair or ''}".strip()))
         return
     admissible = _("The bounds of the description decide it.")
     none = _("No bounds are given: the profile is only kept from being undercut.")
@@ -77,9 +85,9 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
             "No bounds are given, and no base radius undercuts the profile: the size of the cam is free."
         )
         kept = _("no bound decides the base radius: a cam as small as one likes keeps them all")
-        yield Paragraph(f"{kept[0].upper()}{kept[1:]}." if has_bounds(cam) else free)
+        yield ParagraphBlock(f"{kept[0].upper()}{kept[1:]}." if has_bounds(cam) else free)
         return
-    yield Paragraph(admissible if has_bounds(cam) else none)
+    yield ParagraphBlock(admissible if has_bounds(cam) else none)
     decided = {
         "pressure angle": _(
             "The least base radius is {radius}. The pressure angle decides it, at $phi$ = {angle}:"
@@ -90,15 +98,17 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
     }
     at = least.at % math.tau
     text = decided[least.by]
-    yield Paragraph(
+    yield ParagraphBlock(
         text.format(radius=numbers.measured(least.base_radius, "m"), angle=numbers.measured(at, "rad"))
     )
     there = layout_of(cam).cam(motion_of(study), least.base_radius * (1.0 + 1e-12))
     spelled = Spelled(there, numbers, at)
     decisive = spelled.pressure() if least.by == "pressure angle" else spelled.radius()
-    yield Formula((("r_0", spelled.told(least.base_radius)), *spelled.start(), *spelled.lift(), *decisive))
+    yield FormulaBlock(
+        (("r_0", spelled.told(least.base_radius)), *spelled.start(), *spelled.lift(), *decisive)
+    )
     yield _is_least(study, least)
-    yield Paragraph(_taken(cam, body, least, study))
+    yield ParagraphBlock(_taken(cam, body, least, study))
     yield from _best_offset(study, least)
 
 
@@ -111,7 +121,7 @@ def _taken(cam: PlateCam, body: FollowerCam, least: Least, study: ReportStudy) -
     return text.format(radius=study.numbers.measured(body.base_radius, "m"), share=share)
 
 
-def _is_least(study: ReportStudy, least: Least) -> Check:
+def _is_least(study: ReportStudy, least: Least) -> CheckBlock:
     """A little smaller a cam breaks the bounds, a little greater one keeps them."""
     layout, kept, motion = layout_of(study.plate), admissible_of(study.plate), motion_of(study)
 
@@ -125,7 +135,7 @@ def _is_least(study: ReportStudy, least: Least) -> Check:
     text = _(
         "With a base radius smaller by {share} of itself a bound is broken, with one so much greater none is."
     )
-    return Check(text.format(share=small(NEAR)), right)
+    return CheckBlock(text.format(share=small(NEAR)), right)
 
 
 def _best_offset(study: ReportStudy, least: Least) -> Iterator[Block]:
@@ -143,10 +153,10 @@ def _best_offset(study: ReportStudy, least: Least) -> Iterator[Block]:
     saved = study.numbers.plain(100.0 * (1.0 - best.base_radius / least.base_radius), 3)
     offset = 0.0 if abs(best.offset) < 1e-9 * best.base_radius else best.offset
     shown_offset, radius = (study.numbers.measured(one, "m") for one in (offset, best.base_radius))
-    yield Paragraph(text.format(offset=shown_offset, radius=radius, share=saved))
+    yield ParagraphBlock(text.format(offset=shown_offset, radius=radius, share=saved))
 
 
-def _beside(study: ReportStudy, body: FollowerCam) -> Table:
+def _beside(study: ReportStudy, body: FollowerCam) -> TableBlock:
     """Pressure angles and the least radius of curvature of cams of several sizes."""
     numbers, layout, motion = study.numbers, layout_of(study.plate), motion_of(study)
     pressed = Spelled(body, numbers, 0.0).book.has_pressure_angle
@@ -171,7 +181,7 @@ def _beside(study: ReportStudy, body: FollowerCam) -> Table:
     caption = _(
         "Greatest pressure angles and least radius of curvature; a dash: the cam cannot lead the follower"
     )
-    return Table(tuple(heads), tuple(zip(*columns, strict=True)), caption, (True,) * len(heads))
+    return TableBlock(tuple(heads), tuple(zip(*columns, strict=True)), caption, (True,) * len(heads))
 
 
 def _worst(cam: FollowerCam) -> tuple[float, float, float]:

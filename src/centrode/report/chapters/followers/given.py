@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
-from centrode.render.document.blocks import Block, Chapter, Section, Table
+from centrode.render.document.blocks import Block, ChapterBlocks, SectionBlocks, TableBlock
 from centrode.render.document.numbers import NARROW, spelled_unit
-from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.chapters.forces.tables import ForceColumn, over_samples
 from centrode.views.followers import CONTACTS, KINDS
 
 if TYPE_CHECKING:
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
 
 
-def follower_data_chapter(study: ReportStudy) -> Chapter | None:
+def follower_data_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Everything the description gives."""
     if not study.is_plate_cam:
         return None
     cam, numbers = study.plate, study.numbers
     blocks: list[Block] = [
-        Table((_("what"), _("value")), tuple(given_rows(cam, numbers)), _("Cam and follower"))
+        TableBlock((_("what"), _("value")), tuple(given_rows(cam, numbers)), _("Cam and follower"))
     ]
     bounds = tuple(_bounds(cam, numbers))
     if bounds:
-        blocks.append(Table((_("what"), _("value")), bounds, _("What is admissible")))
+        blocks.append(TableBlock((_("what"), _("value")), bounds, _("What is admissible")))
     blocks += segment_tables(cam, numbers)
-    return Chapter("data", _("Data"), (Section("", tuple(blocks)),))
+    return ChapterBlocks("data", _("Data"), (SectionBlocks("", tuple(blocks)),))
 
 
 def given_rows(cam: PlateCam, numbers: Numbers) -> Iterator[tuple[str, str]]:
@@ -113,7 +113,7 @@ def _bounds(cam: PlateCam, numbers: Numbers) -> Iterator[tuple[str, str]]:
             yield label, numbers.measured(size, unit)
 
 
-def segment_tables(cam: PlateCam, numbers: Numbers) -> Iterator[Table]:
+def segment_tables(cam: PlateCam, numbers: Numbers) -> Iterator[TableBlock]:
     """The segments of a turn, and of those through points their conditions."""
     unit, letter = ("rad", "psi") if cam.swings else ("m", "s")
     start = before = 0.0
@@ -135,12 +135,14 @@ def segment_tables(cam: PlateCam, numbers: Numbers) -> Iterator[Table]:
         (str(k + 1), _(segment.curve), *(column[k] for column in columns))
         for k, segment in enumerate(cam.segments)
     )
-    yield Table(head, cells, _("Segments of a turn"), (True, False, True, True, True, True))
+    yield TableBlock(head, cells, _("Segments of a turn"), (True, False, True, True, True, True))
     for number, segment in enumerate(cam.segments, 1):
         yield from _through(segment, number, unit, letter, numbers)
 
 
-def _through(segment: LiftSegment, number: int, unit: str, letter: str, numbers: Numbers) -> Iterator[Table]:
+def _through(
+    segment: LiftSegment, number: int, unit: str, letter: str, numbers: Numbers
+) -> Iterator[TableBlock]:
     """Derivatives at the ends and points on the way that a segment is asked for."""
     ends = [
         (f"${letter}^(({order}))$", where, numbers.measured(value, f"{unit}/rad" + (f"^{order}" if order > 1 else "")))
@@ -149,9 +151,12 @@ def _through(segment: LiftSegment, number: int, unit: str, letter: str, numbers:
     ]  # fmt: skip
     if ends:
         caption = _("Derivatives by the angle of the cam that segment {number} has").format(number=number)
-        yield Table((_("derivative"), _("where"), _("value")), tuple(ends), caption)
+        yield TableBlock((_("derivative"), _("where"), _("value")), tuple(ends), caption)
     if segment.through:
         angles, lifts = zip(*segment.through, strict=True)
-        columns = [Column("$phi$", "rad", np.array(angles)), Column(f"${letter}$", unit, np.array(lifts))]
+        columns = [
+            ForceColumn("$phi$", "rad", np.array(angles)),
+            ForceColumn(f"${letter}$", unit, np.array(lifts)),
+        ]
         caption = _("Points of segment {number}, angles from its start").format(number=number)
         yield over_samples(numbers, columns, range(len(angles)), caption)

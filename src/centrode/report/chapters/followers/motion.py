@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
-from centrode.render.document.blocks import Chapter, Section
+from centrode.render.document.blocks import ChapterBlocks, SectionBlocks
 from centrode.report.chapters.followers.parts import body_of
 from centrode.report.player_cams import moving_follower
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
 
 
-def follower_motion_chapter(study: ReportStudy) -> Chapter | None:
+def follower_motion_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """A turn of the cam; nothing where its size is not given."""
     body = body_of(study) if study.is_plate_cam else None
     if body is None:
         return None
     moving = moving_follower(body, _(study.plate.title))
-    return Chapter("motion", _("Motion"), (Section("", (moving,)),))
+    return ChapterBlocks("motion", _("Motion"), (SectionBlocks("", (moving,)),))

@@ -9,9 +9,9 @@ import numpy as np
 from centrode.cams.followers.base_circle import follower_cam, has_bounds
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
 from centrode.locale import _
-from centrode.render.document.blocks import Block, Check, Section, Table
+from centrode.render.document.blocks import Block, CheckBlock, SectionBlocks, TableBlock
 from centrode.render.document.rows import told
-from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.chapters.forces.tables import ForceColumn, over_samples
 from centrode.study.cams.parts import Asked, CamPart
 from centrode.study.cams.results import FOLLOWER_PARTS
 from centrode.views.columns import rows_shown
@@ -63,16 +63,16 @@ def rate(letter: str, order: int) -> str:
 
 def course(
     study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str, *, brief: bool = False
-) -> Table:
+) -> TableBlock:
     """Variables of a dataset over the angle of the cam, at even steps; stresses in MPa.
 
     A `brief` one has of rows that are alike, but for the angle, only the first and the last.
     """
-    found = [Column("$phi$", "rad", data["cam_angle"].to_numpy())]
+    found = [ForceColumn("$phi$", "rad", data["cam_angle"].to_numpy())]
     for name, letter in columns:
         values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
         scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
-        found.append(Column(f"${letter}$", shown_unit, scale * values))
+        found.append(ForceColumn(f"${letter}$", shown_unit, scale * values))
     kept = list(rows_shown(data.sizes["sample"], ROWS))
     if brief:
         kept = _unlike(kept, found[1:])
@@ -81,7 +81,7 @@ def course(
     return over_samples(study.numbers, found, kept, caption)
 
 
-def _unlike(kept: list[int], columns: list[Column]) -> list[int]:
+def _unlike(kept: list[int], columns: list[ForceColumn]) -> list[int]:
     """Rows without those between others that are the same."""
     values = np.array([one.values[kept] for one in columns])
     sizes = np.nanmax(np.abs(values), axis=1, initial=0.0, keepdims=True)
@@ -91,11 +91,11 @@ def _unlike(kept: list[int], columns: list[Column]) -> list[int]:
     return [row for k, row in enumerate(kept) if k not in set(inner.tolist())]
 
 
-def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:
+def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[SectionBlocks, ...]:
     """Sections with something in them."""
-    return tuple(Section(title, blocks) for title, blocks in titled if blocks)
+    return tuple(SectionBlocks(title, blocks) for title, blocks in titled if blocks)
 
 
-def told_failures(study: ReportStudy, part: CamPart) -> tuple[Check, ...]:
+def told_failures(study: ReportStudy, part: CamPart) -> tuple[CheckBlock, ...]:
     """What the cam cannot do."""
-    return tuple(Check(told(f"{one}.", study.numbers), False) for one in part.failures)
+    return tuple(CheckBlock(told(f"{one}.", study.numbers), False) for one in part.failures)

@@ -13,7 +13,7 @@ from centrode.cams.followers.motion import derivative, extremes_of, greatest_siz
 from centrode.locale import _
 from centrode.present.cams.curves import plate_curves_figure
 from centrode.present.cams.profiles import cam_body_figures
-from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph
+from centrode.render.document.blocks import Block, ChapterBlocks, CheckBlock, FormulaBlock, ParagraphBlock
 from centrode.render.document.figures import picture
 from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.followers.formulas import Array, Spelled, Textbook
@@ -25,7 +25,7 @@ from centrode.report.chapters.followers.parts import (
     sections_of,
     told_failures,
 )
-from centrode.report.texts import measured
+from centrode.report.texts import difference_check
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
@@ -41,7 +41,7 @@ def angles() -> Array:
     return np.linspace(0.0, 2.0 * np.pi, PLACES)[:-1]
 
 
-def closed_forms(study: ReportStudy, body: FollowerCam) -> Iterator[Check]:
+def closed_forms(study: ReportStudy, body: FollowerCam) -> Iterator[CheckBlock]:
     """Pressure angle and curvature by the formulas above against those of the envelope."""
     del study
     book, phi = Textbook(body), angles()
@@ -49,7 +49,7 @@ def closed_forms(study: ReportStudy, body: FollowerCam) -> Iterator[Check]:
     if book.has_pressure_angle:
         apart = float(np.abs(np.arctan(book.pressure(rows)) - found.pressure_angle).max())
         text = _("At 720 angles the formula of $alpha$ and the normal of the envelope agree to {share} rad.")
-        yield measured(text, apart, 1.0, ROUNDED)
+        yield difference_check(text, apart, 1.0, ROUNDED)
     with np.errstate(divide="ignore"):
         apart = float(
             np.max(
@@ -62,7 +62,7 @@ def closed_forms(study: ReportStudy, body: FollowerCam) -> Iterator[Check]:
     worst = float(
         np.max(np.abs(found.path_curvature * found.bend), initial=1.0, where=np.isfinite(found.bend))
     )
-    yield measured(text, apart, 1.0, ROUNDED * max(1.0, worst, *_lost(body, found.stretch)))
+    yield difference_check(text, apart, 1.0, ROUNDED * max(1.0, worst, *_lost(body, found.stretch)))
 
 
 def _lost(body: FollowerCam, stretch: Array) -> tuple[float, ...]:
@@ -71,17 +71,17 @@ def _lost(body: FollowerCam, stretch: Array) -> tuple[float, ...]:
     return (size / float(np.abs(stretch).min()),) if np.abs(stretch).min() > 0.0 else (np.inf,)
 
 
-def by_formulas(body: FollowerCam) -> Check:
+def by_formulas(body: FollowerCam) -> CheckBlock:
     """Points by the formulas above against those of the envelope."""
     phi = angles()
     apart = np.hypot(*(Textbook(body).place(phi, body.motion.lift(phi, 3)) - body.contact(phi).place).T)
     text = _(
         "At 720 angles the formulas give the points of the envelope of the follower's places, to {share} of $r_0$."
     )
-    return measured(text, float(apart.max()), body.base_radius, ROUNDED)
+    return difference_check(text, float(apart.max()), body.base_radius, ROUNDED)
 
 
-def by_instant_centre(body: FollowerCam) -> Check:
+def by_instant_centre(body: FollowerCam) -> CheckBlock:
     """Points and normals from the instant centre of cam and follower, which no profile enters."""
     phi = angles()
     found, met = body.contact(phi), meeting_of(body, body.motion.lift(phi, 3))
@@ -92,23 +92,23 @@ def by_instant_centre(body: FollowerCam) -> Check:
         "The normal through the instant centre of cam and follower on the line of their axes leads to the same points,"
         " to {share} of $r_0$."
     )
-    return measured(text, apart, body.base_radius, ROUNDED)
+    return difference_check(text, apart, body.base_radius, ROUNDED)
 
 
-def not_undercut(body: FollowerCam) -> Check:
+def not_undercut(body: FollowerCam) -> CheckBlock:
     """The closed forms against a profile on which no stretch runs back."""
     book, phi = Textbook(body), angles()
     rows = body.motion.lift(phi, 3)
     if book.flat:
         positive = bool(np.all(book.radius(rows) > 0.0))
-        return Check(
+        return CheckBlock(
             _("The profile is not undercut: at 720 angles the formula of $R$ stays positive."), positive
         )
     positive = bool(np.all(1.0 - book.roller * book.bending(rows) > 0.0))
-    return Check(_("The profile is not undercut: at 720 angles $1 - r K$ stays positive."), positive)
+    return CheckBlock(_("The profile is not undercut: at 720 angles $1 - r K$ stays positive."), positive)
 
 
-def follower_profile_chapter(study: ReportStudy) -> Chapter | None:
+def follower_profile_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The profile; nothing where neither a size nor bounds are given."""
     part = part_of(study, "profile")
     if part is None:
@@ -116,7 +116,7 @@ def follower_profile_chapter(study: ReportStudy) -> Chapter | None:
     cam, body = study.plate, part.objects.get("plate")
     title, rows = _("Profile of the cam"), rows_table(part.rows, study.numbers)
     if body is None:
-        return Chapter("profile", title, sections_of(("", (rows, *told_failures(study, part)))))
+        return ChapterBlocks("profile", title, sections_of(("", (rows, *told_failures(study, part)))))
     data = part.datasets["cam-profile"]
     drawn = cam_body_figures(cam, part.objects)["cam-body"]
     pictures = (
@@ -129,7 +129,7 @@ def follower_profile_chapter(study: ReportStudy) -> Chapter | None:
         (_("Points of the profile"), (_table(study, body),)),
         (_("Drawings"), pictures),
     )
-    return Chapter("profile", title, sections)
+    return ChapterBlocks("profile", title, sections)
 
 
 def _formulas(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
@@ -140,15 +140,15 @@ def _formulas(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
         "In the axes of the cam, which are those of the frame at $phi = 0$, the follower goes about the cam against its"
         " turning; the profile is the envelope of its places."
     )
-    yield Paragraph(text)
+    yield ParagraphBlock(text)
     letters = [line[:2] for line in spelled.start()]
     if not spelled.book.flat:
         letters += [line[:2] for line in spelled.radius() if line[0].startswith("u")]
-        yield Paragraph(_(
+        yield ParagraphBlock(_(
             "$(u_x; u_y)$ is how the centre of the roller (the edge) goes in the cam, $(x_P; y_P)$ the contact, both"
             " along the axes of the frame:"
         ))  # fmt: skip
-    yield Formula(
+    yield FormulaBlock(
         (
             *letters,
             *((name, text) for name, text in spelled.aids()),
@@ -162,10 +162,10 @@ def _formulas(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
         example = _("For example where the pressure angle is greatest, at $phi$ = {angle}:")
     else:
         example = _("For example where the velocity is greatest, at $phi$ = {angle}:")
-    yield Paragraph(example.format(angle=told_angle))
+    yield ParagraphBlock(example.format(angle=told_angle))
     kept = ("u_x", "u_y", "w_x", "w_y", "K", "R")
     worked = [line if line[0] not in kept[:4] else (line[0], line[-1]) for line in spelled.radius()]
-    yield Formula((*spelled.start(), *spelled.lift(), *spelled.pressure(), *worked,
+    yield FormulaBlock((*spelled.start(), *spelled.lift(), *spelled.pressure(), *worked,
                    *((name, last) for name, _letters, last in spelled.place())))  # fmt: skip
 
 
@@ -184,7 +184,7 @@ def _undercut(body: FollowerCam, study: ReportStudy) -> Block:
     if not body.undercuts:
         return not_undercut(body)
     text = _("The profile is undercut at {stretches} deg: there the lift is lost.")
-    return Check(told(text.format(stretches=stretches_text(body.undercuts)), study.numbers), False)
+    return CheckBlock(told(text.format(stretches=stretches_text(body.undercuts)), study.numbers), False)
 
 
 def _table(study: ReportStudy, body: FollowerCam) -> Block:

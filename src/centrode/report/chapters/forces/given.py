@@ -11,9 +11,9 @@ from centrode.dynamics.state import Centre
 from centrode.locale import _, mark
 from centrode.model.labels import LOADS, load_name
 from centrode.quantities import display_unit
-from centrode.render.document.blocks import Block, Chapter, Paragraph, Section, Table
+from centrode.render.document.blocks import Block, ChapterBlocks, ParagraphBlock, SectionBlocks, TableBlock
 from centrode.render.document.rows import told
-from centrode.report.texts import facts, listed
+from centrode.report.texts import facts, typeset_table
 
 if TYPE_CHECKING:
     from centrode.dynamics.state import Mass
@@ -38,17 +38,17 @@ def has_masses(mechanism: Mechanism) -> bool:
     return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
 
 
-def masses_and_loads(study: ReportStudy) -> Chapter | None:
+def masses_and_loads(study: ReportStudy) -> ChapterBlocks | None:
     """Masses of the links, loads, gravity, and the machine that the mechanism works in."""
     if study.is_cam or not has_masses(study.mechanism):
         return None
     mechanism = study.mechanism
-    sections = [Section(_("Masses of the links"), _masses(mechanism, study.numbers))]
+    sections = [SectionBlocks(_("Masses of the links"), _masses(mechanism, study.numbers))]
     if mechanism.loads or mechanism.gravity:
-        sections.append(Section(_("Loads"), _loads(mechanism, study.numbers)))
+        sections.append(SectionBlocks(_("Loads"), _loads(mechanism, study.numbers)))
     if mechanism.machine is not None:
-        sections.append(Section(_("Machine"), (_machine(mechanism, study.numbers),)))
-    return Chapter("masses-and-loads", _("Masses and loads"), tuple(sections))
+        sections.append(SectionBlocks(_("Machine"), (_machine(mechanism, study.numbers),)))
+    return ChapterBlocks("masses-and-loads", _("Masses and loads"), tuple(sections))
 
 
 def _masses(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
@@ -60,10 +60,10 @@ def _masses(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
             (one.link, f"{float(one.mass):.6g}", _centre(mechanism, one), _inertia(mechanism, one))
             for one in masses
         ]
-        blocks.append(listed(numbers, head, rows))
+        blocks.append(typeset_table(numbers, head, rows))
     massless = ", ".join(massless_links(mechanism))
     if massless:
-        blocks.append(Paragraph(told(_("Without mass: {links}.").format(links=massless), numbers)))
+        blocks.append(ParagraphBlock(told(_("Without mass: {links}.").format(links=massless), numbers)))
     return tuple(blocks)
 
 
@@ -102,7 +102,7 @@ def _loads(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
     if mechanism.gravity:
         vector = "; ".join(f"{x:.6g}" for x in mechanism.gravity)
         blocks.append(
-            Paragraph(told(_("Weights act with g = ({vector}) m/s².").format(vector=vector), numbers))
+            ParagraphBlock(told(_("Weights act with g = ({vector}) m/s².").format(vector=vector), numbers))
         )
     if mechanism.loads:
         head = (_("load"), _("kind"), _("acts on"), _("amount (SI)"))
@@ -110,7 +110,7 @@ def _loads(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
             (load_name(mechanism, one.label), _(LOADS[one.kind]), _acts_on(one), _amount(one))
             for one in mechanism.loads
         ]
-        blocks.append(listed(numbers, head, rows))
+        blocks.append(typeset_table(numbers, head, rows))
     return tuple(blocks)
 
 
@@ -146,7 +146,7 @@ def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:.6g}"
 
 
-def _machine(mechanism: Mechanism, numbers: Numbers) -> Table:
+def _machine(mechanism: Mechanism, numbers: Numbers) -> TableBlock:
     machine = mechanism.machine
     assert machine is not None
     rows = [(_("mean speed of the drive"), f"{machine.mean_speed:.6g} rad/s")]

@@ -8,19 +8,19 @@ from collections.abc import Iterator
 from centrode.locale import _
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
-from centrode.render.document.blocks import Block, Chapter, Section, Table, shown
+from centrode.render.document.blocks import Block, ChapterBlocks, SectionBlocks, TableBlock, shown
 from centrode.render.document.numbers import Numbers
 from centrode.report.chapters.followers.given import given_rows, segment_tables, turning_text
 from centrode.report.study import ReportStudy
 
 
-def data_chapter(study: ReportStudy) -> Chapter | None:
+def data_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Everything the description gives of the geometry and the drives, in the units of the display."""
     if not study.is_planar:
         return None
     made = _Data(study.mechanism, study.numbers)
     blocks: list[Block] = [*made.points(), *made.links(), *made.guides(), *made.wheels(), *made.drives()]
-    return Chapter("data", _("Data"), (Section("", tuple(blocks)),))
+    return ChapterBlocks("data", _("Data"), (SectionBlocks("", tuple(blocks)),))
 
 
 class _Data:
@@ -39,17 +39,17 @@ class _Data:
     def head(self, text: str, unit: str) -> str:
         return self.numbers.head(text, unit)
 
-    def points(self) -> Iterator[Table]:
+    def points(self) -> Iterator[TableBlock]:
         """Points of the frame."""
         rows = []
         for name in self.mechanism.frame.points:
-            x, y = _resolved(self.mechanism.frame.points[name])
+            x, y = _resolve(self.mechanism.frame.points[name])
             rows.append((shown(name), self.length(x), self.length(y)))
         if rows:
             head = (_("point"), self.head("$x$", "m"), self.head("$y$", "m"))
-            yield Table(head, tuple(rows), _("Points of the frame"), (False, True, True))
+            yield TableBlock(head, tuple(rows), _("Points of the frame"), (False, True, True))
 
-    def links(self) -> Iterator[Table]:
+    def links(self) -> Iterator[TableBlock]:
         """Moving links with their points; those of more points with coordinates in the link's own axes."""
         rows, local = [], []
         for number, (name, link) in enumerate(self.mechanism.links.items(), start=1):
@@ -73,13 +73,13 @@ class _Data:
         head = (
             _("number"), _("link"), _("points"), self.head(_("length"), "m"), self.head(_("initial angle"), "rad")
         )  # fmt: skip
-        yield Table(head, tuple(rows), _("Moving links"), (True, False, False, True, True))
+        yield TableBlock(head, tuple(rows), _("Moving links"), (True, False, False, True, True))
         if local:
             own = (_("link"), _("point"), self.head("$xi$", "m"), self.head("$eta$", "m"))
             caption = _("Points of rigid links, in the links' own axes")
-            yield Table(own, tuple(local), caption, (False, False, True, True))
+            yield TableBlock(own, tuple(local), caption, (False, False, True, True))
 
-    def guides(self) -> Iterator[Table]:
+    def guides(self) -> Iterator[TableBlock]:
         """Lines on which points are kept."""
         if self.mechanism.guides:
             head = (
@@ -87,14 +87,14 @@ class _Data:
                 self.head(_("direction"), "rad"), _("link that does not turn against it"),
             )  # fmt: skip
             rows = tuple(self._guide(guide) for guide in self.mechanism.guides)
-            yield Table(head, rows, _("Guides"), (False, False, False, True, True, False))
+            yield TableBlock(head, rows, _("Guides"), (False, False, False, True, True, False))
 
     def _guide(self, guide: Guide) -> tuple[str, ...]:
         through = guide.through
         if isinstance(through, str):
             place = shown(through)
         else:
-            x, y = _resolved(through)
+            x, y = _resolve(through)
             place = f"({self.length(x)}; {self.length(y)})"
         on = _("frame") if guide.on == FRAME else shown(guide.on)
         own = "" if guide.link is None else shown(guide.link)
@@ -107,11 +107,11 @@ class _Data:
             own,
         )
 
-    def wheels(self) -> Iterator[Table]:
+    def wheels(self) -> Iterator[TableBlock]:
         """Gears and rolling wheels."""
         if self.mechanism.gears:
             head = (_("gear"), _("links"), _("carrier"), _("ratio"))
-            yield Table(
+            yield TableBlock(
                 head,
                 tuple(self._gear(gear) for gear in self.mechanism.gears),
                 _("Gears"),
@@ -120,7 +120,7 @@ class _Data:
         if self.mechanism.rolling:
             own = (_("wheel"), _("rolls on"), self.head(_("radius"), "m"))
             rows = tuple(self._rolling(wheel) for wheel in self.mechanism.rolling)
-            yield Table(own, rows, _("Rolling wheels"), (False, False, True))
+            yield TableBlock(own, rows, _("Rolling wheels"), (False, False, True))
 
     def _gear(self, gear: Gear) -> tuple[str, ...]:
         links = ", ".join(_("frame") if link == FRAME else shown(link) for link in gear.links)
@@ -131,17 +131,17 @@ class _Data:
         on = _("frame") if wheel.on == FRAME else shown(wheel.on)
         return shown(wheel.id), on, self.length(float(wheel.radius))
 
-    def drives(self) -> Iterator[Table]:
+    def drives(self) -> Iterator[TableBlock]:
         """What is given of the motion."""
         head = (_("drive"), _("what is given"), _("initial value"), _("law"))
         rows = tuple(self._drive(drive) for drive in self.mechanism.drives)
         if rows:
-            yield Table(head, rows, _("Drives"), (False, False, True, False))
+            yield TableBlock(head, rows, _("Drives"), (False, False, True, False))
         for drive in self.mechanism.drives:
             if drive.cam is not None:
                 yield from self._cam(drive, drive.cam)
 
-    def _cam(self, drive: Drive, cam: PlateCam) -> Iterator[Table]:
+    def _cam(self, drive: Drive, cam: PlateCam) -> Iterator[TableBlock]:
         """A cam that drives, with its follower's motion."""
         rows = [*given_rows(cam, self.numbers)]
         speed = next((k for k, row in enumerate(rows) if row[0] == _("speed of the cam")), None)
@@ -156,7 +156,7 @@ class _Data:
         caption = (
             _("Cam {title}, which moves drive {drive}") if cam.title else _("Cam that moves drive {drive}")
         )
-        yield Table((_("what"), _("value")), tuple(rows), caption.format(**name))
+        yield TableBlock((_("what"), _("value")), tuple(rows), caption.format(**name))
         yield from segment_tables(cam, self.numbers)
 
     def _drive(self, drive: Drive) -> tuple[str, ...]:
@@ -192,7 +192,7 @@ def _given(drive: Drive) -> str:
     return _("distance of {first} and {second}").format(first=first, second=second)
 
 
-def _resolved(place: Vector | Placed | None) -> tuple[float, float]:
+def _resolve(place: Vector | Placed | None) -> tuple[float, float]:
     """Coordinates of a place, of one that the chain places those that it got."""
     at = place.at if isinstance(place, Placed) else place
     x, y = at or (0.0, 0.0)

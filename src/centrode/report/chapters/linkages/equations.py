@@ -16,9 +16,17 @@ from centrode.locale import _
 from centrode.present.equations import page
 from centrode.present.equations.page import index_of
 from centrode.present.equations.typst import TypstSpelling
-from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, System
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ParagraphBlock,
+    SectionBlocks,
+    SystemBlock,
+)
 from centrode.render.document.rows import small
-from centrode.report.equations import NOTHING, cleaned, section_of, with_numbers
+from centrode.report.equations import NOTHING, clean_rates, section_of, with_numbers
 from centrode.report.study import Moment, ReportStudy, moments_of
 
 EPS = float(np.finfo(float).eps)
@@ -26,7 +34,7 @@ SAMPLES = 12
 """Samples at which the constraints are put to the test."""
 
 
-def page_sections(study: ReportStudy) -> list[page.Section]:
+def page_sections(study: ReportStudy) -> list[page.PageSection]:
     """The page of the equations, as `centrode equations` prints it, in the report's mathematics."""
     return study.once("page", lambda: page.sections(study.equations, TypstSpelling(), study.points))
 
@@ -37,15 +45,15 @@ def first_sections(study: ReportStudy) -> int:
     return sum(section.heading in headings for section in page_sections(study))
 
 
-def constraints_chapter(study: ReportStudy) -> Chapter | None:
+def constraints_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """The same relations that `centrode equations` prints, checked on samples of the motion."""
     if not study.is_planar:
         return None
     sections = [section_of(section) for section in page_sections(study)[: first_sections(study)]]
     check = _constraint_check(study)
     if check is not None:
-        sections.append(Section(_("Check"), (check,)))
-    return Chapter("equations", _("Constraint equations"), tuple(sections))
+        sections.append(SectionBlocks(_("Check"), (check,)))
+    return ChapterBlocks("equations", _("Constraint equations"), tuple(sections))
 
 
 def _constraint_check(study: ReportStudy) -> Block | None:
@@ -65,7 +73,7 @@ def _constraint_check(study: ReportStudy) -> Block | None:
         "With the angles and displacements of the motion in closed form put in, both sides of every constraint "
         "agree to {worst} at {count} positions; rounding allows {allowed} (lengths in m, angles in rad)."
     )
-    return Check(
+    return CheckBlock(
         text.format(worst=small(worst), count=len(chosen), allowed=small(allowed)),
         worst <= allowed,
     )
@@ -93,7 +101,7 @@ STRAIGHT = 1e-13
 """Angles [rad] below which they are rounding."""
 
 
-def derivation_chapter(study: ReportStudy) -> Chapter | None:
+def derivation_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Formulas as `centrode equations` prints them, then the same with the numbers of each instant."""
     if not study.is_planar:
         return None
@@ -101,13 +109,13 @@ def derivation_chapter(study: ReportStudy) -> Chapter | None:
     if study.equations.groups:
         for moment in moments_of(study):
             title = _("Numbers at {place}").format(place=moment.title)
-            sections.append(Section(title, tuple(_numbers(study, moment))))
-    return Chapter("derivation", _("Velocities and accelerations"), tuple(sections))
+            sections.append(SectionBlocks(title, tuple(_numbers(study, moment))))
+    return ChapterBlocks("derivation", _("Velocities and accelerations"), tuple(sections))
 
 
 def _numbers(study: ReportStudy, moment: Moment) -> Iterator[Block]:
     if not moment.reached:
-        yield Paragraph(moment.missing)
+        yield ParagraphBlock(moment.missing)
         return
     length = study.numbers.shown("m")[0]
     instant = instant_of(study.equations, moment.data, moment.sample, length)
@@ -133,8 +141,8 @@ class _Numbers:
         self.numbers = study.numbers
         self.instant = instant
         found = study.equations.unknowns
-        self.values = cleaned(instant.values, [one.rate for one in found])
-        self.values |= cleaned(self.values, [one.second for one in found])
+        self.values = clean_rates(instant.values, [one.rate for one in found])
+        self.values |= clean_rates(self.values, [one.second for one in found])
         angles = [one.letter for one in found if not one.name.startswith("slide.")]
         self.values |= {letter: 0.0 for letter in angles if abs(self.values[letter]) < STRAIGHT}
         unit = study.numbers.shown("m")[1]
@@ -152,7 +160,7 @@ class _Numbers:
 
     def lines(self, lines: list[tuple[str, ...]]) -> Iterator[Block]:
         if lines:
-            yield Formula(tuple(lines))
+            yield FormulaBlock(tuple(lines))
 
     def value(self, letter: Letter) -> str:
         """A number with the unit of its letter; angular rates also in degrees where these are shown."""
@@ -173,7 +181,7 @@ class _Numbers:
             lines.append((SPELLING.letter(driven.letter), self.value(driven.letter)))
             lines.append((SPELLING.letter(driven.rate), self.value(driven.rate)))
         lines += [(SPELLING.letter(one.letter), self.value(one.letter)) for one in equations.unknowns]
-        return Formula(tuple(lines))
+        return FormulaBlock(tuple(lines))
 
     def solved(self, solution: GroupSolution, solved: SolvedSystem) -> Iterator[Block]:
         """The system and its determinants."""
@@ -184,7 +192,7 @@ class _Numbers:
         largest = float(np.nanmax(np.abs(solved.matrix)))
         matrix = tuple(tuple(self.short(x, largest) for x in row) for row in solved.matrix.tolist())
         right = [self.short(x, largest * self.fastest) for x in solved.right.tolist()]
-        yield System(matrix, unknowns, tuple(right))
+        yield SystemBlock(matrix, unknowns, tuple(right))
         if system.determinant is None or system.numerators is None:
             return
         under = SPELLING.letter(solution.under)
@@ -197,7 +205,7 @@ class _Numbers:
             lines.append(self.told(top, one, float(number), size))
             above, below = self.short(float(number), size), self.numbers.math(solved.determinant)
             lines.append((unknown, f"frac({top}, {under})", f"frac({above}, {below})", self.value(letter)))
-        yield Formula(tuple(lines))
+        yield FormulaBlock(tuple(lines))
 
     def told(self, left: str, formula: Equation, value: float, size: float) -> tuple[str, ...]:
         """A determinant, its formula with numbers where that can be read, its value."""
@@ -251,10 +259,12 @@ def _check(study: ReportStudy, instant: Instant, moment: Moment) -> Block:
         rates, key=lambda rate: abs(rate.solved - rate.closed) / max(rate.allowed, 1e-300), default=None
     )
     if worst is None:
-        return Paragraph(_("The motion in closed form has no rates to compare these with."))
+        return ParagraphBlock(_("The motion in closed form has no rates to compare these with."))
     text = _(
         "The systems give the same rates and accelerations as the motion in closed form: the difference is at most "
         "{worst}, rounding and the condition of the systems allow {allowed} (rad or m, by s or s²)."
     )
     off = small(abs(worst.solved - worst.closed))
-    return Check(text.format(worst=off, allowed=small(worst.allowed)), all(rate.agrees for rate in rates))
+    return CheckBlock(
+        text.format(worst=off, allowed=small(worst.allowed)), all(rate.agrees for rate in rates)
+    )

@@ -6,39 +6,39 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.render.document.blocks import (
     Block,
-    Chapter,
-    Check,
-    Formula,
-    Items,
-    Paragraph,
-    Section,
-    Table,
+    ChapterBlocks,
+    CheckBlock,
+    FormulaBlock,
+    ItemsBlock,
+    ParagraphBlock,
+    SectionBlocks,
+    TableBlock,
     shown,
 )
 from centrode.render.document.rows import small
 from centrode.report.study import ReportStudy
 from centrode.structure.assur import AssurGroup
 from centrode.structure.rank import is_bare, slider_of
-from centrode.study.check import Check as Checked
+from centrode.study.check import MechanismCheck as Checked
 
 CLOSES = 1e-9
 """Residual over the greatest length up to which an initial position is accepted as closed."""
 
 
-def structure_chapter(study: ReportStudy) -> Chapter | None:
+def structure_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Pairs, mobility by formula and by rank, structural formula."""
     if study.is_cam:
         return None
     checked = study.check
     sections = (
-        Section(_("Kinematic pairs"), (_pairs(study.mechanism),)),
-        Section(_("Mobility"), _mobility(checked)),
-        Section(_("Assur groups"), _groups(checked)),
+        SectionBlocks(_("Kinematic pairs"), (_pairs(study.mechanism),)),
+        SectionBlocks(_("Mobility"), _mobility(checked)),
+        SectionBlocks(_("Assur groups"), _groups(checked)),
     )
-    return Chapter("structure", _("Structure"), sections)
+    return ChapterBlocks("structure", _("Structure"), sections)
 
 
-def _pairs(mechanism: Mechanism) -> Table:
+def _pairs(mechanism: Mechanism) -> TableBlock:
     """Every pair with the bodies it joins: hinges of k links are k - 1 pairs."""
     rows: list[tuple[str, str, str, str]] = []
 
@@ -47,7 +47,7 @@ def _pairs(mechanism: Mechanism) -> Table:
         rows.append((name, f"{one} – {other}", kind, letter))
 
     turning, sliding = _("turning pair, class 5"), _("sliding pair, class 5")
-    for point, bodies in _hinged(mechanism).items():
+    for point, bodies in _hinged_bodies(mechanism).items():
         for other in bodies[1:]:
             add(shown(point), (bodies[0], other), turning, "R")
     for guide in mechanism.guides:
@@ -61,14 +61,14 @@ def _pairs(mechanism: Mechanism) -> Table:
     for wheel in mechanism.rolling:
         add(shown(wheel.id), (wheel.link, wheel.on), _("rolling pair"), "")
     head = (_("pair"), _("bodies"), _("kind"), _("sign"))
-    return Table(head, tuple(rows), _("Kinematic pairs"))
+    return TableBlock(head, tuple(rows), _("Kinematic pairs"))
 
 
 def _cylinder(name: str) -> tuple[str, str]:
     return _("barrel of cylinder {name}").format(name=name), _("rod of cylinder {name}").format(name=name)
 
 
-def _hinged(mechanism: Mechanism) -> dict[str, list[str]]:
+def _hinged_bodies(mechanism: Mechanism) -> dict[str, list[str]]:
     """Points with the bodies hinged there, the frame last; sliders and cylinders are bodies as well."""
     found: dict[str, list[str]] = {}
     for name, link in mechanism.links.items():
@@ -92,17 +92,17 @@ def _mobility(checked: Checked) -> tuple[Block, ...]:
     count = checked.count
     numbers = f"3 dot.op {count.moving_links} - 2 dot.op {count.lower_pairs} - {count.higher_pairs}"
     blocks: list[Block] = [
-        Paragraph(
+        ParagraphBlock(
             _(
                 "Moving links: $n = {n}$; pairs of class 5: $p_5 = {lower}$; pairs of class 4: $p_4 = {higher}$."
             ).format(n=count.moving_links, lower=count.lower_pairs, higher=count.higher_pairs)
         ),
-        Formula((("W", "3 n - 2 p_5 - p_4", numbers, str(count.mobility)),)),
+        FormulaBlock((("W", "3 n - 2 p_5 - p_4", numbers, str(count.mobility)),)),
     ]
     if checked.redundant:
         listed = shown(", ".join(checked.redundant))
         blocks.append(
-            Paragraph(
+            ParagraphBlock(
                 _("Redundant constraints, which only have to fit: {constraints}.").format(constraints=listed)
             )
         )
@@ -110,9 +110,9 @@ def _mobility(checked: Checked) -> tuple[Block, ...]:
         "The rank of the Jacobian of all constraints at real positions gives the mobility {rank}, "
         "as many as there are drives."
     )
-    blocks.append(Check(rank.format(rank=checked.mobility), checked.mobility == len(checked.drives)))
+    blocks.append(CheckBlock(rank.format(rank=checked.mobility), checked.mobility == len(checked.drives)))
     blocks.append(
-        Paragraph(
+        ParagraphBlock(
             ngettext(
                 "There is {n} independent closed loop.",
                 "There are {n} independent closed loops.",
@@ -128,12 +128,12 @@ def _groups(checked: Checked) -> tuple[Block, ...]:
     head = (_("group"), _("class"), _("order"), _("kind"))
     residual = small(checked.initial_residual)
     return (
-        Paragraph(
+        ParagraphBlock(
             _("Structural formula: {formula}").format(formula=shown(checked.formula.replace("->", "→")))
         ),
-        Table(head, rows, _("Groups in the order of solving"), (False, False, True, False)),
-        Items(tuple(shown(step) for step in checked.plan), numbered=True),
-        Check(
+        TableBlock(head, rows, _("Groups in the order of solving"), (False, False, True, False)),
+        ItemsBlock(tuple(shown(step) for step in checked.plan), numbered=True),
+        CheckBlock(
             _("The initial position closes to {residual} of the greatest length.").format(residual=residual),
             checked.initial_residual <= CLOSES,
         ),

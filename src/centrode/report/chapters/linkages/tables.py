@@ -14,7 +14,15 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.present.equations.typst import word
 from centrode.quantities import QUANTITIES, status_word
-from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    CheckBlock,
+    ParagraphBlock,
+    SectionBlocks,
+    TableBlock,
+    shown,
+)
 from centrode.render.document.numbers import NOTHING, Numbers
 from centrode.render.document.rows import rows_table, sentence, small
 from centrode.render.document.vectors import symbol
@@ -24,13 +32,13 @@ from centrode.report.study import Moment, ReportStudy, moments_of
 # acceleration.
 
 
-def coefficient_tables(study: ReportStudy, data: xr.Dataset) -> Iterator[Table]:
+def coefficient_tables(study: ReportStudy, data: xr.Dataset) -> Iterator[TableBlock]:
     """One table of the links, one of the points; `data` is a sample of a motion with one drive."""
     yield _of_links(study, data)
     yield _of_points(study, data)
 
 
-def _of_links(study: ReportStudy, data: xr.Dataset) -> Table:
+def _of_links(study: ReportStudy, data: xr.Dataset) -> TableBlock:
     heads, columns = [], []
     for order, kind in enumerate(("velocity", "acceleration"), start=1):
         values = data[f"angular_{kind}_coefficient"]
@@ -39,10 +47,12 @@ def _of_links(study: ReportStudy, data: xr.Dataset) -> Table:
         heads.append(study.numbers.head(f"$phi{order * chr(39)}$", unit))
     names = [shown(name) for name in study.mechanism.link_names]
     caption = _("Kinematic coefficients of the links: derivatives of their angles by the value of the drive")
-    return Table((_("link"), *heads), tuple(zip(names, *columns, strict=True)), caption, (False, True, True))
+    return TableBlock(
+        (_("link"), *heads), tuple(zip(names, *columns, strict=True)), caption, (False, True, True)
+    )
 
 
-def _of_points(study: ReportStudy, data: xr.Dataset) -> Table:
+def _of_points(study: ReportStudy, data: xr.Dataset) -> TableBlock:
     heads, columns = [], []
     points = list(study.mechanism.moving_points)
     for order, kind in enumerate(("velocity", "acceleration"), start=1):
@@ -53,7 +63,7 @@ def _of_points(study: ReportStudy, data: xr.Dataset) -> Table:
             heads.append(study.numbers.head(f"${axis}{order * chr(39)}$", unit))
     names = [shown(name) for name in points]
     caption = _("Kinematic coefficients of the points: analogs of their velocities and accelerations")
-    return Table(
+    return TableBlock(
         (_("point"), *heads), tuple(zip(names, *columns, strict=True)), caption, (False, *(True,) * 4)
     )
 
@@ -69,7 +79,7 @@ ROUNDED = 1 << 20
 """Rounding of a rate is multiplied by this at a transmission angle of 0.06 deg: one over the square of its sine."""
 
 
-def identity_checks(study: ReportStudy) -> Iterator[Check]:
+def identity_checks(study: ReportStudy) -> Iterator[CheckBlock]:
     """Theorems on the velocities and accelerations of rigid bodies, over all samples that are reached."""
     data = study.motion
     reached = data["status"].to_numpy() == Status.OK
@@ -98,7 +108,7 @@ def identity_checks(study: ReportStudy) -> Iterator[Check]:
             continue
         allowed = ROUNDED * EPS + (MENDED[order - 1] if mended else 0.0)
         told = text.format(off=small(worst), allowed=small(allowed))
-        yield Check(told, worst <= allowed)
+        yield CheckBlock(told, worst <= allowed)
 
 
 def off_rigid(mechanism: Mechanism, data: xr.Dataset, order: int) -> float | None:
@@ -142,7 +152,7 @@ STILL = 1e-12
 """Part of the greatest number of its kind by which a number may change that stays the same."""
 
 
-class Column(NamedTuple):
+class MotionColumn(NamedTuple):
     """A head with its cells."""
 
     head: str
@@ -206,10 +216,10 @@ def _course(study: ReportStudy, letter: str, name: str, samples: list[int], **wh
 
 
 def _tables(
-    numbers: Numbers, front: Sequence[Column], groups: Sequence[Sequence[Course]], caption: str
+    numbers: Numbers, front: Sequence[MotionColumn], groups: Sequence[Sequence[Course]], caption: str
 ) -> Iterator[Block]:
     """What moves as tables, what belongs together side by side; what stays the same as a sentence."""
-    moving: list[list[Column]] = []
+    moving: list[list[MotionColumn]] = []
     still: list[str] = []
     for group in groups:
         sizes: dict[str, float] = {}
@@ -224,32 +234,34 @@ def _tables(
                 still.append(f"${one.letter}$ = {numbers.measured(value, one.unit)}")
             else:
                 head = numbers.head(f"${one.letter}$", one.unit)
-                moving[-1].append(Column(head, numbers.column(one.rows, one.unit, least=rounding)))
-    yield from _parted(front, moving, caption)
+                moving[-1].append(MotionColumn(head, numbers.column(one.rows, one.unit, least=rounding)))
+    yield from _split_columns(front, moving, caption)
     if still:
-        yield Paragraph(_("The same at all samples: {quantities}.").format(quantities=", ".join(still)))
+        yield ParagraphBlock(_("The same at all samples: {quantities}.").format(quantities=", ".join(still)))
 
 
-def _front(study: ReportStudy, data: xr.Dataset) -> list[Column]:
+def _front(study: ReportStudy, data: xr.Dataset) -> list[MotionColumn]:
     """Time, values of drives that are no angles of links, and the status where not all samples are reached."""
     numbers = study.numbers
-    found = [Column(numbers.head("$t$", "s"), numbers.column(known(data["time"]), "s"))]
+    found = [MotionColumn(numbers.head("$t$", "s"), numbers.column(known(data["time"]), "s"))]
     for k, drive in enumerate(study.mechanism.drives):
         unit = study.mechanism.motion_parameter.drive(drive.id).unit
         if drive.link is not None and drive.relative_to == FRAME:
             continue  # its angle stands among those of the links
         values = known(data["drive_value"])[:, k]
-        found.append(Column(numbers.head(shown(drive.id), unit), numbers.column(values, unit)))
+        found.append(MotionColumn(numbers.head(shown(drive.id), unit), numbers.column(values, unit)))
     status = data["status"].to_numpy()
     if (status != Status.OK).any():
-        found.append(Column(_("status"), tuple(status_word(int(each)) for each in status), False))
+        found.append(MotionColumn(_("status"), tuple(status_word(int(each)) for each in status), False))
     return found
 
 
-def _parted(front: Sequence[Column], groups: Sequence[Sequence[Column]], caption: str) -> Iterator[Table]:
+def _split_columns(
+    front: Sequence[MotionColumn], groups: Sequence[Sequence[MotionColumn]], caption: str
+) -> Iterator[TableBlock]:
     """Groups of columns in as few tables as a page is wide for, each with the front; long groups are cut."""
     room = max(1, WIDE - len(front))
-    parts: list[list[Column]] = []
+    parts: list[list[MotionColumn]] = []
     for group in groups:
         count = -(-len(group) // room)
         for number in range(count):
@@ -262,22 +274,24 @@ def _parted(front: Sequence[Column], groups: Sequence[Sequence[Column]], caption
         columns = [*front, *part]
         rows = tuple(zip(*(column.cells for column in columns), strict=True))
         more = _("{caption} (continued)").format(caption=caption) if number else caption
-        yield Table(tuple(one.head for one in columns), rows, more, tuple(one.is_number for one in columns))
+        yield TableBlock(
+            tuple(one.head for one in columns), rows, more, tuple(one.is_number for one in columns)
+        )
 
 
 CLOSED = 1e-9
 """Residual over the greatest length below which a sample is closed."""
 
 
-def tables_chapter(study: ReportStudy) -> Chapter | None:
+def tables_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """Statuses and limits, tables of the instants, tables over the motion, checks."""
     if not study.is_planar:
         return None
-    sections = [Section(_("Range"), tuple(_range(study)))]
-    sections += [Section(moment.title, tuple(_instant(study, moment))) for moment in moments_of(study)]
-    sections.append(Section(_("The whole motion"), tuple(long_tables(study))))
-    sections.append(Section(_("Checks"), tuple(_checks(study))))
-    return Chapter("tables", _("Tables of the motion"), tuple(sections))
+    sections = [SectionBlocks(_("Range"), tuple(_range(study)))]
+    sections += [SectionBlocks(moment.title, tuple(_instant(study, moment))) for moment in moments_of(study)]
+    sections.append(SectionBlocks(_("The whole motion"), tuple(long_tables(study))))
+    sections.append(SectionBlocks(_("Checks"), tuple(_checks(study))))
+    return ChapterBlocks("tables", _("Tables of the motion"), tuple(sections))
 
 
 def _range(study: ReportStudy) -> Iterator[Block]:
@@ -293,15 +307,15 @@ def _range(study: ReportStudy) -> Iterator[Block]:
     )
     yield rows_table(rows, study.numbers, _("Range of the motion"))
     if study.study.failure is not None:
-        yield Paragraph(sentence(study.study.failure, study.numbers))
+        yield ParagraphBlock(sentence(study.study.failure, study.numbers))
     for note in study.study.notes:
-        yield Paragraph(sentence(note, study.numbers))
+        yield ParagraphBlock(sentence(note, study.numbers))
 
 
 def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
     """Links and points at one instant, and their kinematic coefficients."""
     if not moment.reached:
-        yield Paragraph(moment.missing)
+        yield ParagraphBlock(moment.missing)
         return
     data = moment.data.isel(sample=moment.sample)
     mechanism, numbers = study.mechanism, study.numbers
@@ -314,7 +328,7 @@ def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
     columns = [numbers.column(known(data[name]), unit) for name, _letter, unit in letters]
     names = [shown(name) for name in mechanism.link_names]
     numbered = [str(k) for k in range(1, len(names) + 1)]
-    yield Table(
+    yield TableBlock(
         (_("number"), _("link"), *head),
         tuple(zip(numbered, names, *columns, strict=True)),
         _("Links: angle, angular velocity, angular acceleration"),
@@ -327,7 +341,7 @@ def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
         yield from coefficient_tables(study, data)
 
 
-def _points(study: ReportStudy, data: xr.Dataset) -> Table:
+def _points(study: ReportStudy, data: xr.Dataset) -> TableBlock:
     numbers, names = study.numbers, list(study.mechanism.moving_points)
     own = data.sel(point=names)
     place, rate, second = (own[name].to_numpy() for name in ("position", "velocity", "acceleration"))
@@ -344,10 +358,10 @@ def _points(study: ReportStudy, data: xr.Dataset) -> Table:
     head = tuple(numbers.head(f"${letter}$", unit) for letter, unit in letters)
     rows = tuple(zip([shown(name) for name in names], *columns, strict=True))
     caption = _("Points: place, velocity and acceleration by components and size")
-    return Table((_("point"), *head), rows, caption, (False, *(True,) * 8))
+    return TableBlock((_("point"), *head), rows, caption, (False, *(True,) * 8))
 
 
-def _guides(study: ReportStudy, data: xr.Dataset) -> Table:
+def _guides(study: ReportStudy, data: xr.Dataset) -> TableBlock:
     numbers = study.numbers
     units = ("m", "m/s", "m/s^2")
     names = ("slide", "slide_velocity", "slide_acceleration")
@@ -357,7 +371,9 @@ def _guides(study: ReportStudy, data: xr.Dataset) -> Table:
         for letter, unit in zip(("s", "dot(s)", "dot.double(s)"), units, strict=True)
     )
     rows = tuple(zip([shown(guide.id) for guide in study.mechanism.guides], *columns, strict=True))
-    return Table((_("guide"), *head), rows, _("Displacements along the guides"), (False, True, True, True))
+    return TableBlock(
+        (_("guide"), *head), rows, _("Displacements along the guides"), (False, True, True, True)
+    )
 
 
 def _checks(study: ReportStudy) -> Iterator[Block]:
@@ -368,14 +384,14 @@ def _checks(study: ReportStudy) -> Iterator[Block]:
         "All constraints hold at every sample that is reached; the worst residual is {value} "
         "of the greatest length ({constraint})."
     )
-    yield Check(
+    yield CheckBlock(
         text.format(value=small(residual), constraint=shown(words.solved.worst_constraint.label)),
         residual <= CLOSED,
     )
     yield from identity_checks(study)
     status = data["status"].to_numpy()
     rows = chosen_rows(study)
-    yield Paragraph(
+    yield ParagraphBlock(
         ngettext(
             "The tables show {rows} row of {samples} samples; {sign} stands where nothing is known.",
             "The tables show {rows} rows of {samples} samples; {sign} stands where nothing is known.",
