@@ -26,8 +26,9 @@ MECHANISM = Lazily("centrode.model.mechanism", "Mechanism")
 def sheet_of(result: Any) -> Sheet:
     """What there is to say about a result, as data; InputError for what is no result of a topic."""
     kind = type(result)
+    names = {(one.__module__, one.__qualname__) for one in kind.__mro__}
     for topic in TOPICS:
-        if (topic.result.module, topic.result.name) == (kind.__module__, kind.__qualname__):
+        if (topic.result.module, topic.result.name) in names:
             return cast("Sheet", topic.view(result))
     known = ", ".join(topic.result.name for topic in TOPICS)
     raise InputError(

@@ -8,6 +8,7 @@ from math import degrees
 from typing import TYPE_CHECKING, Any, assert_never
 
 from centrode.analysis.redesign.candidates import Impossibility
+from centrode.analysis.redesign.results import RotatabilityResults
 from centrode.analysis.rotatability.causes import (
     AngleCondition,
     AngleSymbol,
@@ -58,8 +59,9 @@ ROUNDING = 1e-12
 """A least transmission angle [rad] below which it is zero but for rounding."""
 
 
-def sheet(found: Rotatability) -> Sheet:
+def sheet(turning: Rotatability) -> Sheet:
     """Whether the drives turn and why not, how everything moves; where a repair was sought, this in its place."""
+    found = turning if isinstance(turning, RotatabilityResults) else RotatabilityResults.of(turning)
     shown = (
         Sheet(facts=tuple(_facts(found)), record=_record(found))
         if found.repair is None
@@ -506,7 +508,7 @@ def impossibility_text(reason: Impossibility) -> Text:
 # Chapter
 
 
-def _chapter(found: Rotatability) -> Chapter:
+def _chapter(found: RotatabilityResults) -> Chapter:
     """What bounds the motion, transmission angles, and the repair of what does not turn fully."""
     sections = [Section(NOTHING, (FactTable(tuple(_facts(found))),))]
     if found.angles is not None:
@@ -516,7 +518,7 @@ def _chapter(found: Rotatability) -> Chapter:
     return Chapter(Sentence("Rotatability"), tuple(sections))
 
 
-def _repair_blocks(found: Rotatability) -> Iterator[Block]:
+def _repair_blocks(found: RotatabilityResults) -> Iterator[Block]:
     """The smallest change after which the drive turns fully, or why there is none."""
     repair = found.repair
     if repair is None:

@@ -3,21 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
+from centrode.analysis.redesign.repair import Repair
 from centrode.analysis.redesign.repair import repair as find_repair
-from centrode.analysis.rotatability.rotatability import rotatability
-from centrode.analysis.transmission import transmission_results
+from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
+from centrode.analysis.transmission import TransmissionResults, transmission_results
 from centrode.errors import CentrodeError, InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
     from centrode.analysis.redesign.candidates import Value
-    from centrode.analysis.redesign.repair import Repair
-    from centrode.analysis.rotatability.rotatability import Rotatability
-    from centrode.analysis.transmission import TransmissionResults
     from centrode.model.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class RotatabilityResults(Rotatability):
+    """What a mechanism's geometry says of its turning, with what is made of it.
+
+    Attributes
+    ----------
+    repair : the smallest change after which the drive turns fully; None where none was sought
+    refusal : why none could be sought
+    angles : transmission angles over the motion, for documents; None where no group has one
+    """
+
+    repair: Repair | None = None
+    refusal: CentrodeError | None = None
+    angles: TransmissionResults | None = None
+
+    @classmethod
+    def of(
+        cls,
+        turning: Rotatability,
+        repair: Repair | None = None,
+        refusal: CentrodeError | None = None,
+        angles: TransmissionResults | None = None,
+    ) -> RotatabilityResults:
+        """What is known of the turning, and more."""
+        known = {one.name: getattr(turning, one.name) for one in fields(Rotatability)}
+        return cls(**known, repair=repair, refusal=refusal, angles=angles)
 
 
 def rotatability_results(
@@ -29,7 +55,7 @@ def rotatability_results(
     least_transmission_angle: Value | None = None,
     complete: bool = False,
     progress: Callable[[float], None] | None = None,
-) -> Rotatability:
+) -> RotatabilityResults:
     """Whether a mechanism turns fully, on demand with the repair of it.
 
     Parameters
@@ -62,14 +88,14 @@ def rotatability_results(
             least_transmission_angle,
             None if progress is None else lambda done, of: progress(done / of),
         )
-        return replace(found.before, repair=found)
+        return RotatabilityResults.of(found.before, found)
     turning = rotatability(mechanism)
     if not complete:
-        return turning
+        return RotatabilityResults.of(turning)
     mended, refusal = None, None
     if turning.turns_fully is False:
         mended, refusal = _repair_or_refusal(mechanism)
-    return replace(turning, repair=mended, refusal=refusal, angles=_angles(mechanism, samples))
+    return RotatabilityResults.of(turning, mended, refusal, _angles(mechanism, samples))
 
 
 def repair_results(mechanism: Mechanism, samples: int | None = None) -> Repair:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -44,11 +44,6 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import name_of
 from centrode.structure.groups import links_of
-
-if TYPE_CHECKING:
-    from centrode.analysis.redesign.repair import Repair
-    from centrode.analysis.transmission import TransmissionResults
-    from centrode.errors import CentrodeError
 
 
 @dataclass(frozen=True)
@@ -148,9 +143,6 @@ class Rotatability:
     limits : of all drives
     drives : LinkTurning of each drive, the others held
     four_bars : every four-bar and slider-crank loop with its type
-    repair : the smallest change after which the drive turns fully; None where none was sought
-    refusal : why none could be sought
-    angles : transmission angles over the motion, for documents; None where no group has one
     """
 
     mechanism: Mechanism
@@ -158,9 +150,6 @@ class Rotatability:
     limits: tuple[LimitFound, ...]
     drives: tuple[LinkTurning, ...]
     four_bars: tuple[FourBar, ...]
-    repair: Repair | None = None
-    refusal: CentrodeError | None = None
-    angles: TransmissionResults | None = None
 
     @property
     def one(self) -> LinkTurning:
