@@ -203,7 +203,7 @@ def _verbal(module: str) -> bool:
 
 def _participle(function: str) -> bool:
     name = function.lstrip("_")
-    return name.endswith("ed") and "_" not in name
+    return name.endswith("ed") and "_" not in name and name not in NOUNS
 
 
 def _first(names: Sequence[str], count: int) -> str:
