@@ -8,7 +8,10 @@ import pytest
 
 import centrode as ct
 from centrode.locale import LANGUAGES, speaking
-from centrode.model.labels import LOADS, body_name, constraint_name, load_name, reaction_name, side_name
+from centrode.model.labels import LOADS, body_name, load_name
+from centrode.render.spelling import PlainSpelling
+from centrode.sheets.texts import Text
+from centrode.views.reaction_names import contact_text, side_text
 
 PRESS = ct.example("six-bar-press")
 FRAME = {"en": "frame", "ru": "стойка", "uk": "стояк"}
@@ -18,6 +21,11 @@ SAID = {
     ("uk", "weight AB"): "вага AB",
     ("ru", "force H"): "сила H",
 }
+
+
+def said(text: Text) -> str:
+    """A text of a sheet as a terminal prints it."""
+    return PlainSpelling(PRESS.display).text(text)
 
 
 def named(name: str) -> ct.Mechanism:
@@ -50,9 +58,9 @@ def test_bodies_and_sides(language: str) -> None:
     with speaking(language):
         assert body_name(PRESS, "frame") == FRAME[language]
         assert body_name(PRESS, "slider") == "slider"
-        assert side_name("O/frame") == f"O/{FRAME[language]}"
+        assert said(side_text("O/frame")) == f"O/{FRAME[language]}"
         for label in ("O/OA", "guide 1/OA", "gear/slider C"):
-            assert side_name(label) == reaction_name(label) == label
+            assert said(side_text(label)) == said(contact_text(label)) == label
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -60,13 +68,13 @@ def test_english_is_what_results_have(language: str) -> None:
     """In English labels stay; in other languages none of their words does."""
     for label in ("guide H", "gear H", "slider H", *(f"{kind} H" for kind in LOADS)):
         with speaking(language):
-            said = {reaction_name(label), body_name(PRESS, label), load_name(PRESS, label)} - {label}
-        assert len(said) == (language != "en")
-        assert all(one.endswith(" H") and not one[:-1].isascii() for one in said)
+            names = {said(contact_text(label)), body_name(PRESS, label), load_name(PRESS, label)} - {label}
+        assert len(names) == (language != "en")
+        assert all(one.endswith(" H") and not one[:-1].isascii() for one in names)
 
 
-def test_constraints_by_a_symbol_stay() -> None:
+def test_gears_and_wheels_have_words() -> None:
     with speaking("ru"):
-        assert constraint_name("x_C") == "x_C"
-        assert constraint_name("gear sun-planet") == "зубчатая передача sun-planet"
-        assert constraint_name("rolling wheel") == "колесо wheel"
+        assert said(contact_text("x_C")) == "x_C"
+        assert said(contact_text("gear sun-planet")) == "зубчатая передача sun-planet"
+        assert said(contact_text("rolling wheel")) == "колесо wheel"

@@ -1,4 +1,4 @@
-"""Names that results have in English, in the language of the reader: loads, bodies, sides of joints, constraints."""
+"""Names that results have in English, in the language of the reader: loads and bodies."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from centrode.locale import _, mark
-from centrode.model.reading import FRAME, body_word
+from centrode.model.reading import body_word
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
@@ -41,30 +41,3 @@ def body_name(mechanism: Mechanism, name: str) -> str:
     if name in mechanism.links or not name.startswith(SLIDER):
         return body_word(name)
     return _("slider {point}").format(point=name.removeprefix(SLIDER))
-
-
-def side_name(label: str) -> str:
-    """One side of a hinge, "O/OA" and "O/frame"; the frame by its word."""
-    point, slash, body = label.partition("/")
-    return f"{point}/{body_word(body)}" if slash and body == FRAME else label
-
-
-def reaction_name(label: str) -> str:
-    """A reaction or a contact with friction: of a guide, a gear, a wheel, the centre of the sphere, else of a hinge."""
-    if "/" in label:  # no name has a stroke in it
-        return side_name(label)
-    for start, text in (
-        ("moment of guide ", _("guide {name}, moment")),
-        ("centre on ", _("centre on {name}")),
-        (GUIDE, _("guide {name}")),
-        (GEAR, _("gear {name}")),
-        (ROLLING, _("wheel {name}")),
-    ):
-        if label.startswith(start):
-            return text.format(name=label.removeprefix(start))
-    return label
-
-
-def constraint_name(name: str) -> str:
-    """A constraint that is written as an equation: of a gear or a wheel in words, else by its symbol ("x_C")."""
-    return reaction_name(name) if name.startswith((GEAR, ROLLING)) else name

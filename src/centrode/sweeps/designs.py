@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.locale import _, ngettext
+from centrode.locale import _
 from centrode.model.files import value_at
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
@@ -387,10 +387,3 @@ def path_digests(design: Design) -> dict[str, str]:
         digest = hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()
         told[path] = f"{dimension}: {values.size}, {digest}"
     return told
-
-
-def design_size_text(design: Design) -> str:
-    """How many mechanisms there are, in words; the extents of a grid with them."""
-    count = math.prod(design.shape)
-    words = ngettext("{n} mechanism", "{n} mechanisms", count).format(n=count)
-    return f"{words} ({' x '.join(map(str, design.shape))})" if len(design.shape) > 1 else words

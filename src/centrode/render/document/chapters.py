@@ -48,11 +48,6 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapte
     return blocks.ChapterBlocks(name, spelling.text(chapter.title), sections)
 
 
-def document_section(section: Section, pictures: Pictures, numbers: Numbers) -> blocks.SectionBlocks:
-    """A section of a sheet with the pictures of that sheet, for a chapter that has others beside it."""
-    return _section(section, pictures, DocumentSpelling(numbers))
-
-
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.SectionBlocks:
     made = [_block(block, pictures, spelling) for block in section.blocks if _is_there(block, pictures)]
     return blocks.SectionBlocks(spelling.text(section.title), tuple(made))
