@@ -34,13 +34,18 @@ def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     coordinate = mechanism.motion_parameter.drives[0]
     values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
     return Abscissa(
-        AxisLabel(text_of_drive(coordinate), unit=coordinate.unit),
+        drive_label(coordinate),
         values,
         order,
         limits_between(dataset, values),
         dataset["status"].to_numpy() == Status.CUT_OFF,
         _events(within(values, events(dataset))),
     )
+
+
+def drive_label(coordinate: DriveCoordinate) -> AxisLabel:
+    """What a drive moves, with its symbol."""
+    return AxisLabel(text_of_drive(coordinate), unit=coordinate.unit)
 
 
 def text_of_drive(coordinate: DriveCoordinate) -> Text:
@@ -89,6 +94,11 @@ def events(dataset: xarray.Dataset) -> list[tuple[float, int]]:
             dataset["event_value"].to_numpy().tolist(), dataset["event_kind"].to_numpy().tolist(), strict=True
         )
     )
+
+
+def events_of(dataset: xarray.Dataset) -> list[tuple[float, EventKind]]:
+    """Value of the drive [rad or m] (the time [s], with several drives) and kind of every event."""
+    return list(_events(events(dataset)))
 
 
 def within(values: Array, marks: list[tuple[float, int]]) -> list[tuple[float, int]]:

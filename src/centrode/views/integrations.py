@@ -24,7 +24,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Symbol, Text, Title
-from centrode.views.abscissas import events_of, over_time
+from centrode.views.abscissa import events_of, over_time
 from centrode.views.columns import columns_of, counted_statuses, numeric_columns
 from centrode.views.instants import place_number
 from centrode.views.motion_plots import (

@@ -12,7 +12,7 @@ from centrode.errors import Status
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath, AxisLabel
 from centrode.sheets.sheet import Column, Fact, Sheet, Table
 from centrode.sheets.texts import Joined, Name, Number, Sentence, Title
-from centrode.views.abscissas import drive_label
+from centrode.views.abscissa import drive_label
 from centrode.views.columns import counted_statuses
 from centrode.views.instants import place_number
 

@@ -12,7 +12,7 @@ from centrode.quantities import QUANTITIES
 from centrode.sheets.plots import AxisLabel, Curve, CurvePanel, Plot
 from centrode.sheets.sheet import Column, Illustration, Section, Sheet, Table
 from centrode.sheets.texts import NOTHING, Name, Number, Sentence, Symbol, Text, Title
-from centrode.views.abscissas import main_abscissa
+from centrode.views.abscissa import motion_abscissa
 
 if TYPE_CHECKING:
     from centrode.analysis.transmission import TransmissionResults
@@ -103,4 +103,4 @@ def _plot(results: TransmissionResults) -> Plot:
         for variable in VARIABLES
     )
     title = Sentence("Transmission and pressure angles")
-    return Plot(title, Title(mechanism.title), main_abscissa(mechanism, angles), rows)
+    return Plot(title, Title(mechanism.title), motion_abscissa(mechanism, angles), rows)
