@@ -241,8 +241,8 @@ def test_two_runs_at_once_are_refused_and_a_dead_one_is_not_feared(tmp_path: Pat
             sys.executable,
             "-c",
             "import sys, pathlib\n"
-            "from centrode.files.locks import locked\n"
-            "with locked(pathlib.Path(sys.argv[1]), ''):\n"
+            "from centrode.files.locks import hold_lock\n"
+            "with hold_lock(pathlib.Path(sys.argv[1]), ''):\n"
             "    print('held', flush=True)\n"
             "    sys.stdin.read()\n",
             str(store / "progress" / "lock"),

@@ -15,7 +15,7 @@ from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
-from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
+from centrode.sheets.texts import NOTHING, Joined, Leaf, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
@@ -46,6 +46,14 @@ class Fact:
 
     label: Text
     value: Text
+
+
+def _is_number(text: Text) -> bool:
+    """Whether a text is a number, alone or with words behind it; what a number and a name make is a name."""
+    if isinstance(text, Joined):
+        names = any(isinstance(part, Name) for part in text.parts)
+        return isinstance(text.parts[0], Number) and not names
+    return isinstance(text, Number)
 
 
 @dataclass(frozen=True)
@@ -83,10 +91,7 @@ class Column:
         if isinstance(self.values, np.ndarray):
             return True
         known = [text for text in self.values if text != NOTHING]
-        return bool(known) and all(
-            isinstance(text, Number) or (isinstance(text, Joined) and isinstance(text.parts[0], Number))
-            for text in known
-        )
+        return bool(known) and all(map(_is_number, known))
 
     @property
     def is_empty(self) -> bool:
