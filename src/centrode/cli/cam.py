@@ -19,7 +19,7 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
-from centrode.topics.presentation import sheets_of
+from centrode.topics.presentation import sheets_of_cam
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet
@@ -72,7 +72,7 @@ def cam(
     announce_samples(samples or 0)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
-        sheets = list(sheets_of(description, samples, ["laws"] if laws else []).values())
+        sheets = list(sheets_of_cam(description, samples, ["laws"] if laws else []).values())
         if out is None:
             results = ct.cam_results(description, samples, terms, groove=groove)
         else:

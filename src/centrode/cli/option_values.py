@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import centrode as ct
-from centrode.analysis.instant_centres.results import read_pair
 from centrode.errors import InputError
 from centrode.locale import _
 
@@ -71,9 +70,18 @@ def read_instant(mechanism: Mechanism, text: str, where: str) -> float:
     return ct.range_value(mechanism, text, where)
 
 
-def read_pairs_of_bodies(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[tuple[str, str]]:
+def read_pairs_of_bodies(
+    _mechanism: Mechanism | None, texts: Iterable[str], where: str
+) -> list[tuple[str, str]]:
     """Pairs of bodies of texts LINK,LINK."""
-    return [read_pair(mechanism, text, where) for text in texts]
+    found = []
+    for text in texts:
+        first, comma, second = (part.strip() for part in text.partition(","))
+        if not comma or not first or not second or "," in second:
+            what = _("expected LINK,LINK, got {text}").format(text=f'"{text}"')
+            raise InputError(where, what, _('write "AC,frame"'))
+        found.append((first, second))
+    return found
 
 
 def read_instants(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import TYPE_CHECKING, Any, assert_never
 
 import click
 
@@ -63,11 +63,13 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
             arguments["samples"] = samples
         if command.kinds:
             result, sheet, files = _beside_file(
-                topic, mechanism, description, arguments, out, written["force"]
+                topic, command, mechanism, description, arguments, out, written["force"]
             )
         else:
             folder = output.folder_of(out, mechanism, command.folder) if command.folder else out
-            result, sheet, files = _beside_folder(topic, mechanism, description, arguments, folder, written)
+            result, sheet, files = _beside_folder(
+                topic, command, mechanism, description, arguments, folder, written
+            )
         click.echo(_(description.title) or mechanism)
         click.echo()
         click.echo(render.sheet_text(sheet, description.display))
@@ -132,14 +134,15 @@ def _of_option(option: Option) -> Iterator[click.Parameter]:
 
 
 def _made_by(decorators: list[Any]) -> list[click.Parameter]:
-    """The parameters that decorators of click give a command."""
+    """The parameters that decorators of click give a command, in the order of the decorators."""
 
     def nothing() -> None:
         """Carries the parameters."""
 
+    decorated: Any = nothing
     for decorate in reversed(decorators):
-        decorate(nothing)
-    return list(reversed(cast("Any", nothing).__click_params__))
+        decorated = decorate(decorated)
+    return click.command()(decorated).params
 
 
 def _option_name(name: str) -> str:
@@ -191,9 +194,10 @@ def _arguments(command: Command, mechanism: Mechanism, given: dict[str, Any]) ->
     return arguments
 
 
-def _result(topic: Topic, mechanism: Mechanism, arguments: dict[str, Any], progress: Progress) -> Any:
+def _result(
+    topic: Topic, command: Command, mechanism: Mechanism, arguments: dict[str, Any], progress: Progress
+) -> Any:
     """What a topic computes; long work is announced before."""
-    command = cast("Command", topic.command)
     if command.needs is not None:
         command.needs(mechanism, **{name: arguments[name] for name in arguments if name != "samples"})
     if command.extent is not None:
@@ -208,6 +212,7 @@ def _result(topic: Topic, mechanism: Mechanism, arguments: dict[str, Any], progr
 
 def _beside_folder(
     topic: Topic,
+    command: Command,
     name: str,
     mechanism: Mechanism,
     arguments: dict[str, Any],
@@ -215,18 +220,17 @@ def _beside_folder(
     written: dict[str, bool],
 ) -> tuple[Any, Sheet, str]:
     """Result and sheet of a topic, written into a folder where one is named; and what was written."""
-    command = cast("Command", topic.command)
     if folder is None:
         with about(name), Progress() as progress:
             if command.complete:
                 arguments = arguments | {command.complete: False}
-            result = _result(topic, mechanism, arguments, progress)
+            result = _result(topic, command, mechanism, arguments, progress)
             return result, topic.view(result), ""
     # a folder that cannot be written is refused before anything is computed
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         with about(name):
-            result = _result(topic, mechanism, arguments, progress)
+            result = _result(topic, command, mechanism, arguments, progress)
         sheet = topic.view(result)
         figures = command.pictures and not written["no_figures"]
         write_sheet(sheet, draft, mechanism.display, progress, figures=figures, dark=written["dark"])
@@ -243,6 +247,7 @@ def _beside_folder(
 
 def _beside_file(
     topic: Topic,
+    command: Command,
     name: str,
     mechanism: Mechanism,
     arguments: dict[str, Any],
@@ -252,8 +257,8 @@ def _beside_file(
     """Result and sheet of a topic, written as one file where one is named; and what was written."""
     need_table(out)
     with about(name), Progress() as progress:
-        kind = None if out is None else _kind(out, cast("Command", topic.command).kinds)
-        result = _result(topic, mechanism, arguments, progress)
+        kind = None if out is None else _kind(out, command.kinds)
+        result = _result(topic, command, mechanism, arguments, progress)
         sheet = topic.view(result)
         if kind is None or out is None:
             return result, sheet, ""
@@ -264,7 +269,7 @@ def _beside_file(
         english = sheet
         if chosen_language() != "en":
             with speaking("en"):  # what files hold is English
-                english = topic.view(_result(topic, mechanism, arguments, progress))
+                english = topic.view(_result(topic, command, mechanism, arguments, progress))
     with output.output_table(out, force=force) as draft:
         if kind == "json":
             render.write_record(english.record, draft)

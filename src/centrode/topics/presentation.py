@@ -11,16 +11,13 @@ from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
 from centrode.locale import _
 from centrode.topics.registry import TOPICS
-from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from centrode.model.cam_files import AnyCam
-    from centrode.model.mechanism import Display, Mechanism
+    from centrode.model.mechanism import Display
     from centrode.sheets.sheet import Sheet, Table
-
-MECHANISM = Lazily("centrode.model.mechanism", "Mechanism")
 
 
 def sheet_of(result: Any) -> Sheet:
@@ -38,24 +35,21 @@ def sheet_of(result: Any) -> Sheet:
     )
 
 
-def sheets_of(
-    description: Mechanism | AnyCam, samples: int | None = None, flags: Collection[str] = ()
-) -> dict[str, Sheet]:
-    """The sheets of all topics that a description has something for, by the name of the topic.
+def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str] = ()) -> dict[str, Sheet]:
+    """The sheets of all topics that a cam has something for, by the name of the topic.
 
     Parameters
     ----------
     samples : int
         As of each computation.
     flags : collection of str
-        Topics that are left out otherwise; they refuse a description that has nothing for them.
+        Topics that are left out otherwise; they refuse a cam that has nothing for them.
     """
-    subject = "mechanism" if isinstance(description, cast("type", MECHANISM.load())) else "cam"
     return {
-        topic.name: topic.view(topic.compute(description, samples))
+        topic.name: topic.view(topic.compute(cam, samples))
         for topic in TOPICS
-        if topic.subject == subject
-        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(description))
+        if topic.subject == "cam"
+        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(cam))
     }
 
 
@@ -86,10 +80,11 @@ def figures(result: Any) -> dict[str, Figure]:
 def write(result: Any, folder: str | Path) -> None:
     """Write tables, datasets, figures and the summary of a result into a folder, which appears whole or not at all.
 
-    Raises InputError where the folder cannot be written.
+    A result without single numbers has no summary. Raises InputError where the folder cannot be written.
     """
     sheet, display = sheet_of(result), display_of(result)
     with draft_folder(Path(folder)) as draft:
         render.write_tables(sheet, draft, display)
         render.write_pictures(sheet.pictures, draft, display)
-        render.write_summary(sheet.scalars, draft / "summary.json")
+        if sheet.scalars:
+            render.write_summary(sheet.scalars, draft / "summary.json")

@@ -152,16 +152,6 @@ def need_pairs(mechanism: Mechanism, *, pairs: Sequence[Names] | None = None, **
         )
 
 
-def read_pair(_mechanism: object, text: str, where: str) -> Names:
-    """Two names from a text "AC,frame"; raises InputError, which names `where`, for another form."""
-    first, comma, second = (part.strip() for part in text.partition(","))
-    if not comma or not first or not second or "," in second:
-        raise InputError(
-            where, _("expected LINK,LINK, got {text}").format(text=f'"{text}"'), _('write "AC,frame"')
-        )
-    return first, second
-
-
 def is_planar(mechanism: Mechanism) -> bool:
     """Whether bodies have instant centres in a plane."""
     return mechanism.space == "plane"
