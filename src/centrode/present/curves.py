@@ -17,13 +17,12 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 from numpy.typing import NDArray
 
-from centrode.equations.instants import CHANGE_POINT
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.present.displayed_units import formula, label_with_unit, plain, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, Pen
 from centrode.quantities import QUANTITIES
-from centrode.views.abscissa import LIMIT, events, in_time, limits_between, passings, within
+from centrode.views.abscissa import CHANGE_POINT, LIMIT, events, in_time, limits_between, passings, within
 from centrode.views.motion_plots import MAGNITUDE, component, deal_to_panels, great_value, turning_links
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.equations.instants import CHANGE_POINT
 from centrode.locale import _
 from centrode.present.curves import DrawnAbscissa, Panel, sheet, write_legend, write_title
 from centrode.present.figure_files import save_figures
@@ -48,7 +47,7 @@ from centrode.sheets.plots import (
     VectorPage,
 )
 from centrode.sheets.scenes import Scene
-from centrode.views.abscissa import LIMIT
+from centrode.views.abscissa import CHANGE_POINT, LIMIT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
