@@ -225,6 +225,8 @@ from .topics.presentation import summary as summary
 from .topics.presentation import tables as tables
 from .topics.presentation import figures as figures
 from .topics.presentation import write as write
+from .topics.presentation import open as open
+from .topics.presentation import Result as Result
 from .topics.presentation import sheet_of as sheet_of
 
 # Presentations

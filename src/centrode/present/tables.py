@@ -15,6 +15,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import InputError, Status
+from centrode.files.netcdf import write_dataset
 from centrode.locale import _
 from centrode.present.displayed_units import shown_as
 from centrode.views.columns import drive_units, numeric_columns, unit_of
@@ -89,14 +90,7 @@ def field(value: float | str) -> str:
     return "" if value != value else repr(value)
 
 
-def write_motion_netcdf(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a motion as netCDF, in SI, through scipy; the same dataset gives the same bytes.
-
-    A dimension without entries (no events, no guides) cannot be told from an unlimited one in the file format:
-    what has such a dimension is left out.
-    """
-    empty = [name for name, size in dataset.sizes.items() if size == 0]
-    dataset.drop_dims(empty).to_netcdf(path, engine="scipy")
+write_motion_netcdf = write_dataset
 
 
 def write_columns(
