@@ -64,7 +64,7 @@ def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, thread
     ImportError
         Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
     """
-    lanes = np.array(parameters, np.float64)  # of its own: what is handed over once may change afterwards
+    lanes = np.array(parameters, np.float64)  # a copy: the caller may change its own array afterwards
     if choose_executor(executor) == ARRAYS:
 
         def take(inputs: npt.ArrayLike | None, out: Array) -> Array:

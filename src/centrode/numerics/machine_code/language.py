@@ -52,6 +52,7 @@ class Vector:
         """A number in every lane."""
         if self.number == "float":
             x = _as_single(x)
+        # LLVM writes a single-precision constant with the bits of the equal double
         bits = struct.unpack("<Q", struct.pack("<d", x))[0]
         return self._everywhere(f"{self.number} 0x{bits:016X}")
 
@@ -180,6 +181,7 @@ class Code:
 
     def polynomial(self, coefficients: Sequence[float], z: Value) -> Value:
         """Value of a polynomial by Horner's rule; the constant term comes first."""
+        # Horner from the highest coefficient: each step is one fused product and sum
         value = self.constant(coefficients[-1])
         for coefficient in reversed(coefficients[:-1]):
             value = self.multiply_add(value, z, self.constant(coefficient))
@@ -219,6 +221,7 @@ def by_library_where(
     block, vector = code.block, code.vector
     before, far, after = block.label, block.name("far"), block.name("after")
     truth = f"i{vector.width}"
+    # one comparison of all lanes at once: a vector without a lane beyond skips the calls
     some = block.put(f"icmp ne {truth} {block.put(f'bitcast {vector.truth} {condition} to {truth}')}, 0")
     block.line(f"br i1 {some}, label %{far}, label %{after}, !prof !0")
     block.begin(far)
