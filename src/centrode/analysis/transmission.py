@@ -48,8 +48,7 @@ from centrode.structure.groups import (
 # circles.
 #
 # A link's centre is its other hinge, a guide's the pole of its circle; of a link that aims with its guide
-# they are its
-# pivot and that pole, seen from the point aimed at.
+# they are its pivot and that pole, seen from the point aimed at.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -98,8 +97,7 @@ def _acute_arc(angle: Array) -> Array:
 # Least and greatest transmission angles of dyads over the part of a motion that is reached, found as roots.
 #
 # An extreme lies where the angle's rate is zero, at an end of what is reached, where the dyad is flat (0), or
-# where
-# its lines stand square to each other (90 deg).
+# where its lines stand square to each other (90 deg).
 
 LEAST_NODES = 720
 

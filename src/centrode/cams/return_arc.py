@@ -246,13 +246,10 @@ def _image(working: Arc, start: float, width: float, number: int) -> Arc:
 # to it.
 #
 # The smoothest one leaves rho'' + rho, which is constant on a circle about the cam's centre and to first
-# order on
-# any circle, as constant as it can: the integral of (rho''' + rho')^2 is least. By the equation of Euler and
-# Lagrange,
-# D^2 (D^2 + 1)^2 rho = 0, it is a sum of 1, tau, cos tau, sin tau, tau cos tau, tau sin tau. What may be
-# added, a
-# polynomial that vanishes at both ends with its derivatives, is square to it in the same integral, so that
-# integrals add.
+# order on any circle, as constant as it can: the integral of (rho''' + rho')^2 is least. By the equation of
+# Euler and Lagrange, D^2 (D^2 + 1)^2 rho = 0, it is a sum of 1, tau, cos tau, sin tau, tau cos tau, tau sin
+# tau. What may be added, a polynomial that vanishes at both ends with its derivatives, is square to it in the
+# same integral, so that integrals add.
 
 GAUSS_NODES = 96
 """Gauss nodes of the integral of smoothness."""

@@ -29,12 +29,10 @@ from centrode.numerics.search import Function, extremes
 
 # Taylor coefficients of a roller path from its differential equations, over any algebra with `+ - * /`.
 #
-# With eta = sin(gamma) and lambda = cos(gamma), gamma the pressure angle, the path of curvature K obeys
-# `eta' = lambda - rho K`, `rho' lambda = rho eta`, `lambda lambda' = -eta eta'`. Equation numbers are those
-# of
-# A. T. Skoibeda, V. N. Zhukovets, Solution of an autonomous nonlinear differential equation of second order
-# in the
-# construction of plane curves (in Russian).
+# With eta = sin(gamma) and lambda = cos(gamma), gamma the pressure angle, the path of curvature K obeys `eta'
+# = lambda - rho K`, `rho' lambda = rho eta`, `lambda lambda' = -eta eta'`. Equation numbers are those of A.
+# T. Skoibeda, V. N. Zhukovets, Solution of an autonomous nonlinear differential equation of second order in
+# the construction of plane curves (in Russian).
 
 Number = Any
 Series = list[Number]

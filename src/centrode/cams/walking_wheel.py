@@ -25,11 +25,10 @@ from centrode.numerics.search import Extremes, extremes, maxima_between
 # The shoe of a leg: the profile that rolls on flat ground while the hub stays at its height.
 #
 # The ground touches the shoe in the leg's axes as a line whose normal makes the angle phi with the leg. Its
-# distance
-# from the roller's centre is p(phi) = h - H cos phi, h the height of the hub, H the polar radius of the
-# roller's path:
-# the support function of the shoe. Its envelope is the paper's X_B = Y2 sin phi, Y_B = Y1 + Y2 cos phi with
-# Y1 = H' cot phi - H and Y2 = h - H' cos(phi)^2 / sin phi, but p has no quotient that vanishes at phi = 0.
+# distance from the roller's centre is p(phi) = h - H cos phi, h the height of the hub, H the polar radius of
+# the roller's path: the support function of the shoe. Its envelope is the paper's X_B = Y2 sin phi, Y_B = Y1
+# + Y2 cos phi with Y1 = H' cot phi - H and Y2 = h - H' cos(phi)^2 / sin phi, but p has no quotient that
+# vanishes at phi = 0.
 
 NEAR = 0.03
 """Within so many radians of phi = 0, H'/sin phi is the quotient of two series."""
@@ -177,10 +176,9 @@ def shoe(arc: Arc, height: float) -> Shoe:
 # The walking wheel: a fixed cam, a carrier of N legs with rollers, shoes that roll on the ground.
 #
 # The carrier turns clockwise and the hub goes to the right. The angle phi of a leg is counted from straight
-# down in the
-# sense of the carrier's turning; leg 0 stands straight down where the carrier has turned by 0, leg 1 comes
-# after it. The
-# ground is the x axis, the hub is over x = 0 then. Seen from the hub, the cam's y axis points down.
+# down in the sense of the carrier's turning; leg 0 stands straight down where the carrier has turned by 0,
+# leg 1 comes after it. The ground is the x axis, the hub is over x = 0 then. Seen from the hub, the cam's y
+# axis points down.
 
 LEAST_LEGS, MOST_LEGS = 3, 24
 PANEL = 0.1

@@ -26,13 +26,11 @@ from centrode.numerics.jets import Jet
 # Points that move: what a locus says of a point's next coefficient, the ones before being known.
 #
 # What the k-th derivative of a locus says of the k-th coefficient of a point is linear in it, and the
-# gradients are
-# the same for all orders: those of the velocities. So no closed form needs to be differentiated, and
-# derivatives of
-# any order cost a third of what that would take. Textbook: Uicker, Pennock, Shigley, Theory of Machines and
-# Mechanisms, the method of kinematic coefficients (loop equations differentiated); any order: Griewank and
-# Walther,
-# Evaluating Derivatives (2nd ed., 2008), chapters 13 and 15.
+# gradients are the same for all orders: those of the velocities. So no closed form needs to be
+# differentiated, and derivatives of any order cost a third of what that would take. Textbook: Uicker,
+# Pennock, Shigley, Theory of Machines and Mechanisms, the method of kinematic coefficients (loop equations
+# differentiated); any order: Griewank and Walther, Evaluating Derivatives (2nd ed., 2008), chapters 13 and
+# 15.
 
 Number: TypeAlias = Any
 Place: TypeAlias = Sequence[Number]

@@ -239,8 +239,7 @@ def rotate_by_cayley(vector: Vector, half: Vector) -> Vector:
 # Measures of the sphere and their gradients, by the coordinates of points and links.
 #
 # A gradient is a vector at a place; what depends on the place of a point in the axes of a link alone changes
-# by
-# the same gradient when the link turns.
+# by the same gradient when the link turns.
 
 FAINT = 1e-30
 """Far below rounding: it makes a place opposite to the right one infinitely wrong instead of undetermined."""

@@ -50,8 +50,7 @@ def spins_of(layout: PlanLayout, columns: Array) -> Array | None:
 # Angles of links that run on over turns, from their rotors.
 #
 # An angle belongs to the value of the drive, not to the samples asked for: turns are counted along the mesh
-# of
-# the path, outwards from the initial position, and a sample takes its turn from the nearest node.
+# of the path, outwards from the initial position, and a sample takes its turn from the nearest node.
 
 Side: TypeAlias = npt.NDArray[np.int8]
 Turns: TypeAlias = npt.NDArray[np.int32]

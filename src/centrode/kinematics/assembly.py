@@ -72,9 +72,8 @@ from centrode.structure.rank import columns_of, independent_rows, match
 # How wheels mesh: the constants of gears and rolling contacts, from the initial angles of the description.
 #
 # A gear gives the angle of a link; where that link stands initially is what its own `angle` says, else zero.
-# A wheel
-# that is turned by something else, and so puts its centre or its track somewhere, starts at the line's own
-# point.
+# A wheel that is turned by something else, and so puts its centre or its track somewhere, starts at the
+# line's own point.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

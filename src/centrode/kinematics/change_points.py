@@ -29,15 +29,11 @@ from centrode.structure.groups import links_of, points_of
 # What a group gives next to its change points: power series about the change point.
 #
 # Beside a change point the closed form of a group loses digits, while its motion is analytic there. So its
-# positions
-# are taken on a circle of complex values of the path's parameter around the change point, where nothing is
-# lost, and
-# Cauchy's integral gives the coefficients of their power series (Lyness and Moler, SIAM Journal on Numerical
-# Analysis
-# 4, 1967; Fornberg, ACM Transactions on Mathematical Software 7, 1981). The coefficients tell by themselves
-# whether
-# the circle holds a singularity: those that a power series does not have, of negative powers, are not zero
-# then.
+# positions are taken on a circle of complex values of the path's parameter around the change point, where
+# nothing is lost, and Cauchy's integral gives the coefficients of their power series (Lyness and Moler, SIAM
+# Journal on Numerical Analysis 4, 1967; Fornberg, ACM Transactions on Mathematical Software 7, 1981). The
+# coefficients tell by themselves whether the circle holds a singularity: those that a power series does not
+# have, of negative powers, are not zero then.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -220,11 +220,9 @@ def guard_with_bound(continuation: BranchedPlan, group: int, lanes: Lanes, at: A
 # derivative.
 #
 # Cells that are known need nothing but the signs at their nodes. In the others the least sizes are found by
-# the root of
-# the derivative, as far as nodes foretell them; then the cells are divided until they are known (`cells`).
-# What is left
-# are places: a sign that is only rounding is none, and a least size within the rounding error of the formulas
-# is zero.
+# the root of the derivative, as far as nodes foretell them; then the cells are divided until they are known
+# (`cells`). What is left are places: a sign that is only rounding is none, and a least size within the
+# rounding error of the formulas is zero.
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
 Found: TypeAlias = tuple[Lanes, Array]

@@ -28,8 +28,7 @@ from centrode.numerics.jets import Jet, JetFunctions
 # How fast several drives move together: the unit of time on which events are looked for, stretch by stretch.
 #
 # Stretches of time are counted from zero and double in length (dyadic), whatever range is asked for, so that
-# the
-# mesh belongs to the mechanism: a longer range adds nodes, and moves none.
+# the mesh belongs to the mechanism: a longer range adds nodes, and moves none.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

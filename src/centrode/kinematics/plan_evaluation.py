@@ -376,8 +376,7 @@ def branches_at_start(
 # Which column of the arrays of a motion holds what.
 #
 # Coordinates of moving points; the numbers that tell how links are turned; displacements of guides; cosine
-# and
-# sine of the angles that are not those of a link's own axes. How many numbers each takes, the space says.
+# and sine of the angles that are not those of a link's own axes. How many numbers each takes, the space says.
 
 
 @dataclass(frozen=True)

@@ -57,8 +57,8 @@ class Extremes:
 
 def sign_changes(value: Array) -> tuple[Lanes, Lanes]:
     """Rows and cells (k) of values (rows, nodes) between finite neighbours of opposite signs."""
-    # most rows of a batch have none, and their least value says so
-    # comparisons with NaN are false, so rows with gaps are looked into
+    # most rows of a batch have none, and their least value says so comparisons with NaN are false, so rows
+    # with gaps are looked into
     rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
     some = value[rows]
     with np.errstate(all="ignore"):

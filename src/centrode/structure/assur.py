@@ -42,10 +42,8 @@ from centrode.structure.rank import is_bare, slider_of
 # Class and order of groups that are solved as a whole, by their inner contours.
 #
 # A group's class is that of its highest contour: a link with three inner joints is a contour of class III, a
-# closed
-# chain of k inner joints one of class k; its order is the number of outer joints (Artobolevsky, Theory of
-# Mechanisms
-# and Machines, section 14).
+# closed chain of k inner joints one of class k; its order is the number of outer joints (Artobolevsky, Theory
+# of Mechanisms and Machines, section 14).
 
 Joint = tuple[str, str]
 

@@ -165,9 +165,8 @@ def _check_room(wheel: Rolling, radius: Number, track: Track) -> None:
 # hold.
 #
 # A wheel's turn against the carrier is its own angle where that is measured from an arc of the carrier. Where
-# it is
-# measured from an arc of the frame, about the point about which the carrier turns too, the carrier's angle is
-# taken off.
+# it is measured from an arc of the frame, about the point about which the carrier turns too, the carrier's
+# angle is taken off.
 
 
 def shares_of(mechanism: Mechanism, gear: str) -> tuple[float, float]:

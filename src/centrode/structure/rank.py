@@ -30,8 +30,7 @@ from centrode.structure.gearing import Gearing, Round, Straight, Track
 # says.
 #
 # An arm or a guide that keeps a wheel at its track does so because the arm turns about the circle's centre,
-# or because
-# the guide is parallel to the line. These two coincidences belong to the structure and are kept.
+# or because the guide is parallel to the line. These two coincidences belong to the structure and are kept.
 
 COINCIDE = 1e-9
 """Places closer than this (in the greatest length) are one, directions closer than this (sine) parallel."""

@@ -55,8 +55,7 @@ from centrode.sweeps.outputs import SweepColumn
 # mechanism.
 #
 # A fold of what another fold gave (`max(abs(x - mean(x)))`) needs that one first: samples are passed once for
-# each
-# depth of folds.
+# each depth of folds.
 
 
 @dataclass(frozen=True)
@@ -480,8 +479,7 @@ def judging_states(asked: Expressed) -> Reduction:
 # computed.
 #
 # A number of a mechanism is one stream of its samples. The result's arrays are views that have the samples in
-# front
-# of the numbers; nothing is put in another order.
+# front of the numbers; nothing is put in another order.
 
 AnyArray: TypeAlias = npt.NDArray[Any]
 

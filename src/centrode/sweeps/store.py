@@ -336,8 +336,7 @@ def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
 # chunks.
 #
 # A mark holds for exactly what was written: a chunk that was cut off, changed or taken away, a mark of
-# another block or
-# one that was edited give another checksum, and the block counts as damaged.
+# another block or one that was edited give another checksum, and the block counts as damaged.
 
 GREATEST = 8_000_000
 """Bytes of a small file of a store; a mark has some hundreds, the study holds the mechanism as text."""

@@ -373,10 +373,8 @@ def _row(stage: ConstructionStage, equation: AngleEquation) -> tuple[Mapping[str
 # Groups of higher class by the method of false position.
 #
 # A rod is taken out of the group, or a point off its guide, and a link is turned at will: what is left are
-# dyads. How
-# much the rod would stretch tells how wrong the trial is; rates depend on it linearly, so two trials give the
-# right
-# one.
+# dyads. How much the rod would stretch tells how wrong the trial is; rates depend on it linearly, so two
+# trials give the right one.
 
 MOST_TRIALS = 2
 """Links turned at will at once: with three, a person no longer draws."""

@@ -204,10 +204,8 @@ def refuse_batch(motion: xr.Dataset) -> None:
 # The bodies of a motion on the sphere: all turn about its centre, so angular velocities tell everything.
 #
 # Attitudes are matrices whose columns are a body's axes in those of the frame; they follow from the places of
-# two
-# of its points. The slider of a guide turns about the pole of its circle against what carries the guide, and
-# its axes
-# are those of that body, turned by the displacement.
+# two of its points. The slider of a guide turns about the pole of its circle against what carries the guide,
+# and its axes are those of that body, turned by the displacement.
 
 TURNING_ORDERS = ("axes", "spin", "spin_rate", "speed")
 BY_DRIVE = ("velocity_coefficient", "acceleration_coefficient")
@@ -363,9 +361,9 @@ def _rotations_about(axis: Array, angle: Array) -> Array:
 # The motion of one body as another one sees it: derivatives of its pose, and what follows for the pole.
 #
 # Complex numbers z = c + s, s a place of the body turned with it, in the axes of the other body. By the
-# relative
-# angle: pole P = c + i c', where z' = 0; A = c'' - i c' leads from it to the inflection pole; B = c''' + c'
-# (Bottema and Roth, Theoretical Kinematics, 1979, chapter 8, write them as instantaneous invariants).
+# relative angle: pole P = c + i c', where z' = 0; A = c'' - i c' leads from it to the inflection pole; B =
+# c''' + c' (Bottema and Roth, Theoretical Kinematics, 1979, chapter 8, write them as instantaneous
+# invariants).
 
 
 @dataclass(frozen=True)

@@ -243,8 +243,8 @@ class Recogniser:
 # Instantaneous axes of bodies that turn about the centre of a sphere, and how they are located.
 #
 # Where the axis of a relative rotation meets the sphere, two opposite places stand still: they are the
-# instant centres
-# of the sphere. The one about which the body turns counter-clockwise, seen from outside, is given.
+# instant centres of the sphere. The one about which the body turns counter-clockwise, seen from outside, is
+# given.
 
 
 def axis_of(bodies: TurningBodies, pair: Pair) -> Array:

@@ -30,9 +30,8 @@ from centrode.model.motion_parameter import parameter_values
 # Polodes on the sphere: what the end of the instantaneous axis describes in the axes of either body.
 #
 # Both bodies see the axis move alike: with W the relative angular velocity, its derivatives in the axes of
-# the one and of
-# the other differ by (w1 - w2) x W = 0. So the cones that the polodes belong to roll on each other without
-# slip.
+# the one and of the other differ by (w1 - w2) x W = 0. So the cones that the polodes belong to roll on each
+# other without slip.
 
 
 @dataclass(frozen=True)

@@ -113,8 +113,8 @@ class Construction:
 # Places and lines of the plane with its points at infinity, each with a bound on its rounding error.
 #
 # A place is a unit vector (x, y, w) in coordinates of the order of one, a line one with the places on it
-# square to
-# it. Errors are angles between unit vectors [rad]: the same for near places and for those at infinity.
+# square to it. Errors are angles between unit vectors [rad]: the same for near places and for those at
+# infinity.
 
 Triple: TypeAlias = tuple[float, float, float]
 EPS = sys.float_info.epsilon
@@ -184,10 +184,9 @@ def best_crossing(
 # Where a construction of instant centres has its places: in the plane, or on the sphere.
 #
 # Both are places of the projective plane (see `projective`): a place of the plane with a weight, an axis
-# through the
-# centre of the sphere. Places of the sphere are seen along the direction of their middle and enlarged by the
-# size of
-# the mechanism, which keeps great circles lines, so that small linkages keep their accuracy.
+# through the centre of the sphere. Places of the sphere are seen along the direction of their middle and
+# enlarged by the size of the mechanism, which keeps great circles lines, so that small linkages keep their
+# accuracy.
 
 Where: TypeAlias = tuple[float, ...]
 SMALLEST = 16.0 * EPS

@@ -38,8 +38,7 @@ from centrode.structure.groups import Aim, Group, Meet, Newton
 # How well the dyads of many mechanisms close over one turn: squared sines of their transmission angles.
 #
 # The squared sine is a group's radicand over its own greatest value. It falls through zero where the group
-# begins to
-# be open, so it tells as well by how much a mechanism fails to turn.
+# begins to be open, so it tells as well by how much a mechanism fails to turn.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

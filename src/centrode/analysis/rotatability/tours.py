@@ -192,8 +192,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
 # back.
 #
 # A number is watched as an angle's cosine and sine (of any common length), or plainly. Where its rate changes
-# its
-# sign between nodes, the root of the rate is found with the second derivative of the motion itself.
+# its sign between nodes, the root of the rate is found with the second derivative of the motion itself.
 
 Pair: TypeAlias = tuple[Number, Number]
 Watching: TypeAlias = Callable[[Positions], "Pair | Number"]

@@ -280,9 +280,8 @@ def add_inertia(link: Link, own: Mass | None, inertia: float) -> Link:
 # Which links hinges alone join to the frame, and where counterweights on them are measured from.
 #
 # By the theorem of contours a linkage can be balanced fully by counterweights only if every link is reached
-# from the
-# frame by a way through hinges alone (F. R. Tepper, G. G. Lowen, Journal of Engineering for Industry 94,
-# 1972, 789-796).
+# from the frame by a way through hinges alone (F. R. Tepper, G. G. Lowen, Journal of Engineering for Industry
+# 94, 1972, 789-796).
 
 
 def hinged_from(mechanism: Mechanism) -> Mapping[str, str]:

@@ -43,12 +43,9 @@ from centrode.model.mechanism import Link, Mechanism
 # Full balance of the shaking force: the common centre of mass is brought to rest.
 #
 # The sum of mass times place of all links is to be constant. Places of bases and rotors of links with
-# counterweights
-# are functions of the drive; where the sum lies in their span (with constants) the counterweights follow from
-# linear
-# equations: the method of linearly independent vectors (R. S. Berkof, G. G. Lowen, Journal of Engineering for
-# Industry
-# 91, 1969, 21-26) by numbers in place of the closure of loops.
+# counterweights are functions of the drive; where the sum lies in their span (with constants) the
+# counterweights follow from linear equations: the method of linearly independent vectors (R. S. Berkof, G. G.
+# Lowen, Journal of Engineering for Industry 91, 1969, 21-26) by numbers in place of the closure of loops.
 
 INSTANTS = 90
 """Values of the drive in a turn at which the sum is looked at."""
@@ -139,9 +136,8 @@ def enough_spots(
 # counterweights.
 #
 # A link's mass with its centre on the line of two joints is replaced by two masses there with the same
-# centre; as complex
-# numbers also one beside the line: m z_S = m (1 - c) z_P + m c z_Q with c = (S - P)/(Q - P) in the link's
-# axes.
+# centre; as complex numbers also one beside the line: m z_S = m (1 - c) z_P + m c z_Q with c = (S - P)/(Q -
+# P) in the link's axes.
 
 
 @dataclass(frozen=True)
@@ -254,13 +250,10 @@ def fraction_of_slider_crank(
 # others.
 #
 # Once the force is balanced, the moment of momentum does not depend on the place it is taken about. Where it
-# is a sum
-# of constants times the angular velocities of the links, discs geared one to one against the links on the
-# frame cancel
-# their shares. Of an in-line four-bar the coupler has no share if it is a physical pendulum, k^2 = r r' with
-# r, r' the
-# distances of its centre of mass from its joints (R. S. Berkof, Mechanism and Machine Theory 8, 1973,
-# 397-410).
+# is a sum of constants times the angular velocities of the links, discs geared one to one against the links
+# on the frame cancel their shares. Of an in-line four-bar the coupler has no share if it is a physical
+# pendulum, k^2 = r r' with r, r' the distances of its centre of mass from its joints (R. S. Berkof, Mechanism
+# and Machine Theory 8, 1973, 397-410).
 
 
 @dataclass(frozen=True)
@@ -521,12 +514,10 @@ class BalanceProblem:
 # weighted.
 #
 # With bases in the frame the force depends linearly on the products of mass and radius, and the least
-# greatest force is
-# found with a proof (`minimax`). Masses and inertias go with the length of the products, which may be an
-# unknown of its
-# own, not below them: a convex problem that bounds the answer. Where its lengths are those of its products it
-# is the
-# answer. Else, and with discs, linear problems are solved one after the other within a region of trust.
+# greatest force is found with a proof (`minimax`). Masses and inertias go with the length of the products,
+# which may be an unknown of its own, not below them: a convex problem that bounds the answer. Where its
+# lengths are those of its products it is the answer. Else, and with discs, linear problems are solved one
+# after the other within a region of trust.
 
 MINIMAX_INSTANTS = 180
 WIDE = 20.0

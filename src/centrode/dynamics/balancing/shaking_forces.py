@@ -37,8 +37,7 @@ from centrode.numerics.search import tops
 # Inertial effects of bodies on the frame and on the drive, as sums over bodies in plane motion.
 #
 # Vectors of the plane are complex numbers x + i y. With momentum P and moment of momentum K of all bodies the
-# force on
-# the frame is -dP/dt and the moment on it -dK/dt: the joints only hand on what the inertia asks for.
+# force on the frame is -dP/dt and the moment on it -dK/dt: the joints only hand on what the inertia asks for.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Complex: TypeAlias = npt.NDArray[np.complex128]
@@ -409,10 +408,8 @@ def top(curve: Curve, nodes: Array) -> Top:
 # Harmonics of what inertia does to the frame: Fourier coefficients over a whole cycle of the drive.
 #
 # At constant speed by the trapezoidal rule on a whole period, which converges faster than any power of the
-# number of
-# nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014, 385-458);
-# where loads
-# make the acceleration jump by Gauss's rule between the jumps.
+# number of nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014,
+# 385-458); where loads make the acceleration jump by Gauss's rule between the jumps.
 
 MOST_DOUBLINGS = 5
 SETTLED = 1e-13

@@ -211,12 +211,10 @@ def _carrier(mechanism: Mechanism, point: str) -> str | None:
 # How great friction is where it depends on reactions that depend on it: f = c |R(f)|, at many positions.
 #
 # The reactions are straight in the sizes f of friction, R(f) = R_0 + G f. The solution that counts is the one
-# that
-# grows out of no friction at all while every coefficient grows from 0 to its value: f = s c |R(f)|, s from 0
-# to 1.
-# Where all of c G is small there is no other; elsewhere it is followed. A branch that ends before s = 1,
-# because it
-# goes to infinity or turns back, has no solution that motion without friction leads to: self-locking.
+# that grows out of no friction at all while every coefficient grows from 0 to its value: f = s c |R(f)|, s
+# from 0 to 1. Where all of c G is small there is no other; elsewhere it is followed. A branch that ends
+# before s = 1, because it goes to infinity or turns back, has no solution that motion without friction leads
+# to: self-locking.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

@@ -248,10 +248,8 @@ def _moment(one: Sorted, state: State, known: Known) -> Array:
 # A mechanism by its drive's value, fast and with a known error: series on panels, stretch by stretch.
 #
 # Panels are those of `quadrature`: Legendre series through Gauss nodes, halved until their last terms have
-# died
-# away; they end at the jumps of loads. Of a drive that turns all the way round the stretches of one period
-# serve all
-# others.
+# died away; they end at the jumps of loads. Of a drive that turns all the way round the stretches of one
+# period serve all others.
 
 TOLERANCE = 1e-13
 """What a panel's series may leave out of an integral over a stretch, over the greatest value."""

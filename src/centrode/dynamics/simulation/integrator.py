@@ -157,8 +157,8 @@ def _rates(field: Field, t: float, y: States) -> States:
 # The fixed-step scheme as one scan over expressions: machine code where llvmlite is there.
 #
 # Positions are those of the closed forms, traced at each of the four stages: nothing is represented, so
-# nothing is
-# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.machine_code`).
+# nothing is approximated but by the scheme. That needs a mechanism without events, as sweeps do
+# (`kinematics.machine_code`).
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -26,9 +26,8 @@ from centrode.numerics.text_formula import TextFormula
 #
 # Functions are given at Gauss nodes of panels, which end at the jumps. Each panel holds the Legendre series
 # through its nodes, so that values and integrals exist everywhere, not at the nodes alone. Panels whose
-# series
-# has not died away are halved. Source: Gauss-Legendre quadrature and the recurrence of its polynomials, NIST
-# Handbook of Mathematical Functions, sections 3.5(v) and 18.9.
+# series has not died away are halved. Source: Gauss-Legendre quadrature and the recurrence of its
+# polynomials, NIST Handbook of Mathematical Functions, sections 3.5(v) and 18.9.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Function: TypeAlias = Callable[[Array], Array]

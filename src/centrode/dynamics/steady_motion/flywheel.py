@@ -16,8 +16,7 @@ from centrode.model.settings import FlywheelShape
 # Sizes of flywheels of a given moment of inertia: a rim on thin spokes, a disc.
 #
 # With D the outer diameter, d = psi_h D the inner one (0 of a disc), b = psi_b D the width and rho the
-# density,
-# J = pi rho b (D^4 - d^4) / 32 and m = pi rho b (D^2 - d^2) / 4; spokes and hub are left out.
+# density, J = pi rho b (D^4 - d^4) / 32 and m = pi rho b (D^2 - d^2) / 4; spokes and hub are left out.
 
 SOURCE_DENSITY, SOURCE_WIDTH, SOURCE_INNER = 7800.0, 0.2, 0.8
 """Density [kg/m^3], width and inner diameter over the outer one, of the coursework (docs: flywheel)."""

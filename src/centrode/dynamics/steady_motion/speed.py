@@ -111,13 +111,10 @@ def balance_of(cycle: Cycle, shape: MomentShape | None, speed: Array) -> EnergyB
 # The speed of a machine over its cycle by the energy equation, without approximation.
 #
 # (J_I + J_II) omega^2 / 2 = E + W, with E the energy at the beginning and W the work of drive and loads. So
-# at a
-# speed omega the line with slope omega^2 / 2 through the point (J_II, W) cuts off -E + omega^2 J_I / 2: of
-# all
-# lines with the slope of the greatest speed the uppermost one touches the diagram of (J_II, W) there, of
-# those
-# of the least speed the lowermost one. Source: F. Wittenbauer, Graphische Dynamik, Berlin 1923; energies and
-# inertia of a machine as in I. I. Artobolevskii, Theory of Mechanisms and Machines.
+# at a speed omega the line with slope omega^2 / 2 through the point (J_II, W) cuts off -E + omega^2 J_I / 2:
+# of all lines with the slope of the greatest speed the uppermost one touches the diagram of (J_II, W) there,
+# of those of the least speed the lowermost one. Source: F. Wittenbauer, Graphische Dynamik, Berlin 1923;
+# energies and inertia of a machine as in I. I. Artobolevskii, Theory of Mechanisms and Machines.
 
 
 @dataclass(frozen=True)

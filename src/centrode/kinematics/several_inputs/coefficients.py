@@ -40,13 +40,10 @@ from centrode.structure.constraints import Positions
 # Partial derivatives by each drive: the motion differentiated along directions in the space of the drives.
 #
 # Along a direction the jets of the closed forms give exact first and second derivatives. Mixed terms follow
-# by
-# polarisation, D_ij = (D(e_i + e_j) - D(e_i) - D(e_j))/2 with D the second derivative along a direction,
-# which is
-# exact up to rounding. Next to change points there are no power series: there the motion is smooth along its
-# own path
-# only, while partial derivatives of the group, the second ones at least, grow without bound as towards a
-# limit.
+# by polarisation, D_ij = (D(e_i + e_j) - D(e_i) - D(e_j))/2 with D the second derivative along a direction,
+# which is exact up to rounding. Next to change points there are no power series: there the motion is smooth
+# along its own path only, while partial derivatives of the group, the second ones at least, grow without
+# bound as towards a limit.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

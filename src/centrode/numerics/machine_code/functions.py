@@ -45,8 +45,7 @@ def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
         # cos x = sin(x + quarter turn): one quarter further
         _flip_sign(code, code.select(odd, sine, cosine), code.whole("add", quarter, 1)),
     )
-    # r of -0 comes out of the sums as +0
-    # a zero keeps its sign
+    # r of -0 comes out of the sums as +0 a zero keeps its sign
     at_zero = code.compare("oeq", x, code.constant(0.0))
     near = code.select(at_zero, x, near[0]), near[1]
     # k would need more bits than a product with the first part has left
@@ -68,7 +67,7 @@ def _reduced_by_fma(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
 
 
 def _reduce_by_short_parts(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
-    """The same where the machine rounds products: parts so short that products with k are exact."""
+    """The rest x - k pi/2 as a sum of two, without FMA: parts of pi/2 so short that products with k are exact."""
     r, low = x, code.constant(0.0)
     for part in QUARTER_TURN_SHORT:
         r, lost = _difference(code, r, code.multiply(k, code.constant(part)))
@@ -133,9 +132,8 @@ def angle(code: Code, y: Value, x: Value) -> Value:
     turned = code.compare("ugt", least, bound)
     t = _arctangent(code, _slope(code, least, most, turned))
     left = _is_negative(code, x)
-    # in the upper half plane the angle is +-t from a multiple of pi/4
-    # multiples of a quarter of pi from which t counts: 4 or 0 on the axis of x, 2 on that of y, 3 and 1
-    # between
+    # in the upper half plane the angle is +-t from a multiple of pi/4 multiples of a quarter of pi from which
+    # t counts: 4 or 0 on the axis of x, 2 on that of y, 3 and 1 between
     of_axis = code.select(steep, code.constant(2.0), _either(code, left, 4.0, 0.0))
     eighths = code.select(turned, _either(code, left, 3.0, 1.0), of_axis)
     backwards = code.logical("xor", steep, left)

@@ -272,7 +272,7 @@ class Stream:
         return out
 
     def _check(self, rows: npt.NDArray[Any], out: Array) -> None:
-        """Machine code writes where it is told to: nothing else looks at sizes."""
+        """Check shapes, as machine code writes to addresses and knows no sizes."""
         scan, number = self.kernel.scan, self.kernel.number
         if rows.ndim != 2 or len(rows) != len(scan.inputs) or rows.strides[1] != number.itemsize:
             raise ValueError(f"expected ({len(scan.inputs)}, n) values, row by row, got {rows.shape}")

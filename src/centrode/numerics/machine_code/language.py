@@ -110,7 +110,7 @@ class Code:
     has_fma: bool
 
     def of_doubles(self) -> Code:
-        """The same block, on as many doubles."""
+        """Code for the same block and number of lanes, in double precision."""
         return Code(self.block, Vector("double", self.vector.width), self.has_fma)
 
     def constant(self, x: float) -> Value:
@@ -188,7 +188,7 @@ class Code:
         return value
 
     def polynomial_in_halves(self, coefficients: Sequence[float], z: Value) -> Value:
-        """The same with even and odd powers apart: of two shorter chains none waits for the other."""
+        """Value of a polynomial, even and odd powers apart: two chains of half the length run side by side."""
         squared = self.multiply(z, z)
         even, odd = (self.polynomial(coefficients[k::2], squared) for k in (0, 1))
         return self.multiply_add(odd, z, even)
