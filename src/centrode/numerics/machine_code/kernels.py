@@ -204,8 +204,7 @@ def _pool_of(threads: int, process: int) -> ThreadPoolExecutor:
 def _pad_lanes(call: Call, width: int) -> Call:
     """Fewer lanes than a vector has: the last one is repeated."""
 
-    # the last lane's own numbers: nothing strange is computed, and no exception flag is raised that the lane
-    # would not raise
+    # repeated numbers send no lane to the C library that the call would not send there itself
     def pad(rows: Array) -> Array:
         return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, width - call.lanes)), mode="edge"))
 
