@@ -27,7 +27,7 @@ class LinkMotion:
     velocity, acceleration : complex
         First and second derivative of the centre's place by the drive's value [m per unit of it, and its square].
     turning, bending : float
-        The same of the link's angle.
+        First [-] and second derivative of the link's angle by the drive's value.
     """
 
     link: str
@@ -66,6 +66,7 @@ def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]
         turning = float(here["angular_velocity_coefficient"].sel(link=one.link))
         bending = float(here["angular_acceleration_coefficient"].sel(link=one.link))
         angle = float(here["angle"].sel(link=one.link))
+        # the centre's arm in the frame's axes; its derivatives are i phi' and i phi'' - phi'^2 times it
         arm = complex(centre.along, centre.across) * cmath.exp(1j * angle)
         found.append(
             LinkMotion(

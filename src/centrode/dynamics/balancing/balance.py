@@ -176,12 +176,15 @@ def balance(
     weighed = tuple(
         counterweight(mechanism, spot, s) for spot, s in zip(chosen.spots, chosen.products, strict=True)
     )
+    # after the choice: a full balance says what is needed, and may need more mass than is allowed
     check_masses(chosen.spots, weighed)
     balanced = with_counterweights(mechanism, turning.masses, weighed)
     discs: tuple[CounterweightDisc, ...] = ()
     if moment:
+        # discs balance what the counterweights' own inertia adds as well
         discs = discs_for(ShakingTurning.of(balanced, complex(*centre), speed), balanced)
         balanced = with_discs(balanced, discs)
+    # over one whole cycle, so that greatest values before and after are of the same motion
     ends = (turning.first, turning.first + turning.period) if speed == "mean" else (None, None)
     before, after = (
         shaking(one, samples, *ends, about=centre, speed=speed, orders=orders)
