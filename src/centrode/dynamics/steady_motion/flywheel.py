@@ -79,10 +79,12 @@ def wheel(
     rim_speed : float [m/s], optional
         Greatest admissible one: bounds the diameter; then the width follows from the inertia.
     """
+    # from J = pi rho psi_b (1 - psi_h^4) D^5 / 32
     outer = (32 * inertia / (math.pi * density * width * (1 - inner**4))) ** 0.2
     broad, bounded = width * outer, False
     if rim_speed is not None and 0.5 * speed * outer > rim_speed:
         outer, bounded = 2 * rim_speed / speed, True
+        # inertia is proportional to the width, so that of unit width gives it by division
         broad = inertia / inertia_of(outer, inner * outer, 1.0, density)
     hole = inner * outer
     mass = mass_of(outer, hole, broad, density)
@@ -237,10 +239,13 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
     if machine.fluctuation is None or found.needed is None or found.tangents is None:
         return common
     by_source = needed_by_source(energies, machine.mean_speed, machine.fluctuation)
+    # both meanings of the mean speed are reported, whichever was asked for
     in_time = found if found.kind == "time" else in_other_mean(found, "time")
     shape = machine.flywheel
     added, added_first_order = (
-        max(0.0, (inertia - found.present) / shape.ratio**2) for inertia in (found.needed, by_source)
+        # on a shaft of another speed inertia counts by the square of the ratio
+        max(0.0, (inertia - found.present) / shape.ratio**2)
+        for inertia in (found.needed, by_source)
     )
     speed = abs(shape.ratio) * ends.greatest
     rim, disc = (_size_wheel(added, shape, inner, speed) for inner in (shape.inner, 0.0))
