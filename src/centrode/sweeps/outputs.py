@@ -102,6 +102,7 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
 
 def quantities_of(motion: xr.Dataset) -> list[str]:
     """Names of the quantities that a motion has at every sample, in reading order."""
+    # statuses have a column of their own
     told = [name for name in QUANTITIES if name in motion.data_vars and "sample" in motion[name].dims]
     return [name for name in told if name != "status"]
 
@@ -154,6 +155,7 @@ def output_of_quantity(motion: xr.Dataset, name: str, quantity: str, rest: str) 
 
 def _label(name: str, rest: str, labels: list[str]) -> tuple[str, str]:
     """The longest label that `rest` begins with (labels may hold dots), and what stands behind it."""
+    # the longest first: a label may begin another one
     for label in sorted(labels, key=len, reverse=True):
         if rest == label or rest.startswith(label + "."):
             return label, rest[len(label) + 1 :]
@@ -185,6 +187,7 @@ def fold_samples(name: str, values: Array, ok: Mask) -> Array:
     Rounding of a mean stays below n eps times the mean of the absolute values. A NaN at an ok sample makes the
     whole NaN.
     """
+    # the mask against all further axes
     counted = ok.reshape(*ok.shape, *[1] * (values.ndim - 2))
     counts = counted.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -196,6 +199,7 @@ def _fold(name: str, values: Array, counted: Mask, counts: Any) -> Any:
     if name in ("mean", "sum"):
         total = values.sum(axis=1, where=counted)
         return total / counts if name == "mean" else total
+    # of `max` only the greatest is wanted; from zero it is what is taken off
     least = values.min(axis=1, where=counted, initial=np.inf) if name != "max" else 0.0
     if name == "min":
         return least
@@ -259,6 +263,7 @@ class OutputFormula:
         given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
         with np.errstate(all="ignore"):
             found = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
+        # one number a mechanism stands in a column of one
         flat = np.broadcast_to(found, (len(ok), 1))[:, 0]
         return np.where(ok.any(axis=1), flat, np.nan)
 
@@ -303,12 +308,14 @@ def _formula(
     motion: xr.Dataset, name: object, text: object, known: Mapping[str, tuple[str, ...]]
 ) -> OutputFormula:
     taken = isinstance(name, str) and (name in RESERVED or name in motion.dims)
+    # a name that means something else in the result would hide it
     if not isinstance(name, str) or not _NAME.fullmatch(name) or taken:
         what = _("{name} cannot be the name of a result").format(name=value_text(name))
         raise InputError("reduce", what, _("use letters, digits and underscores"))
     where = "reduce" if name == VALUE else f"reduce {name}"
     if not isinstance(text, str):
         raise InputError(where, _("a formula is a text"), _('such as "range(position_C_x)"'))
+    # only words of the motion become variables: a formula may have hundreds to choose from
     words = dict.fromkeys(_WORD.findall(text[:TEXT_LENGTH]))
     used = tuple(word for word in words if word in known)
     _refuse_unknown(where, words, known)
@@ -339,6 +346,7 @@ def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
 
 def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
     """The value must be one number a mechanism: two samples tell."""
+    # of two samples: what still has two values varies from sample to sample
     two = {name: np.ones((1, 1 if variable.kind == "varied" else 2)) for name, variable in variables.items()}
     with np.errstate(all="ignore"):
         found = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
@@ -423,7 +431,7 @@ def slope_of(name: str) -> str:
 
 
 def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
-    """The same with the derivatives of every reduced column by the values that vary.
+    """Sweep outputs with the derivatives of every reduced column by the values that vary.
 
     Raises InputError where nothing is reduced.
     """
