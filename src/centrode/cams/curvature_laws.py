@@ -272,7 +272,7 @@ class TextCurvature:
         return self.along([phi, 1.0, *([0.0] * (order - 1))][: order + 1], side)
 
     def along(self, angles: list[Number], side: int = 1) -> list[Number]:
-        # at a break the stretch on the side that is asked for
+        # at a break the stretch on the side that is requested
         stretch = np.searchsorted(self.breaks, np.real(angles[0]), side="right" if side > 0 else "left")
         functions = _Signed(list(np.moveaxis(self.signs[stretch], -1, 0)))
         with np.errstate(all="ignore"):
@@ -285,7 +285,7 @@ class TextCurvature:
             return math.inf
 
     def _condition_values(self, places: Array) -> Array:
-        """Values (functions, n) whose signs are asked for."""
+        """Values (functions, n) whose signs are requested."""
         watched = _Watched()
         with np.errstate(all="ignore"):
             self._value(watched, Jet([places]))

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 _integrate = partial(import_module, "scipy.integrate")  # off the cold path
 
 LEAST_TOLERANCE = 2.3e-14
-"""The least relative error that the integrator can be asked for."""
+"""The least relative error that may be requested of the integrator."""
 
 LONGEST_STEP = 0.02
 """Greatest step of the integrator's variable: between the steps its polynomials are of a lower order."""

@@ -171,7 +171,7 @@ def series_path(
     if isinstance(terms, bool) or not 2 <= terms <= MOST_TERMS:
         what = _("{terms} terms were asked for").format(terms=terms)
         raise InputError("terms", what, _("ask for 2 to {most}").format(most=MOST_TERMS))
-    # a few more terms than asked for: they tell what the polynomial leaves out
+    # a few more terms than asked for: they measure what the polynomial leaves out
     every, cosines = (np.asarray(c) for c in coefficients(law, rho0, gamma0, terms + FOLLOWING))
     a, b, following = every[: terms + 1], cosines[:terms], every[terms + 1 :]
     # beyond a break the law is another function, and so is the path
@@ -704,7 +704,7 @@ def path_of(cam: AnyCam, tolerance: float = TOLERANCE) -> RollerPath:
     Raises
     ------
     InputError
-        A curvature that is not positive and finite where the path goes, its angle is told.
+        A curvature that is not positive and finite where the path goes; the error gives its angle.
     """
     cam = require_curvature_cam(cam)
     half = half_path(cam, tolerance)

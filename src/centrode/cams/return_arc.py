@@ -60,7 +60,7 @@ class Arc:
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Its ends and breaks, growing: it is smooth between them."""
+        """Angles of the ends and breaks, growing: the arc is smooth between them."""
         return self.start, *self.breaks, self.stop
 
 
@@ -437,7 +437,7 @@ class ArcBounds:
         slant, slanting = rho[1] / rho[0], (moving[:, 1] - moving[:, 0] * rho[1] / rho[0]) / rho[0]
         found, gradients = [], []
         for value, gradient, low, high in (
-            # a polar radius has to stay positive whatever is asked for
+            # a polar radius has to stay positive whatever is requested
             (rho[0], moving[:, 0], max(self.least_radius / scale, 1e-3), self.greatest_radius / scale),
             (bend, slopes, self.least_curvature * scale, self.greatest_curvature * scale),
             (slant, slanting, -steep, steep),

@@ -351,7 +351,7 @@ def frames(curve: PolarCurve, phi: Array) -> Frames:
     )
 
 
-# What is asked of a path: its start, its range, that it stays near and smooth.
+# Conditions on a path: its start, its range, that it stays near and smooth.
 
 GREATEST_RANGE = 20 * math.pi
 """Ten turns either way."""

@@ -40,18 +40,18 @@ class LinkMotion:
 
     @property
     def reduced(self) -> float:
-        """Its share in the reduced inertia."""
+        """Share of the link in the reduced inertia [kg m^2; of a displacement kg]."""
         return self.mass * abs(self.velocity) ** 2 + self.inertia * self.turning**2
 
     @property
     def slope(self) -> float:
-        """Its share in the derivative of the reduced inertia."""
+        """Share of the link in the derivative of the reduced inertia by the drive's value."""
         along = (self.velocity.conjugate() * self.acceleration).real
         return 2.0 * (self.mass * along + self.inertia * self.turning * self.bending)
 
     @property
     def slope_terms(self) -> float:
-        """The greatest that the terms of that share could be."""
+        """Bound on the terms of `slope`: their size if nothing cancelled, by which rounding is measured."""
         moved = self.mass * abs(self.velocity) * abs(self.acceleration)
         return 2.0 * (moved + self.inertia * abs(self.turning * self.bending))
 

@@ -27,7 +27,7 @@ class Coordinate(Protocol):
         """The number itself [m or rad]."""
 
     def slope(self, state: State) -> Jet:
-        """Its derivative by the parameter, at held directions, and the derivative of that."""
+        """Derivative of the number by the parameter, at held directions, as a jet with its own derivative."""
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
         """What a load of one unit along it does to points and links: its derivatives by their coordinates."""
@@ -247,7 +247,7 @@ class Travel:
 def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:
     """The turning of a load's link against another; `measured` where the load asks for the angle itself.
 
-    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is asked for.
+    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is requested.
     """
     assert load.link is not None
     if mechanism.space != "sphere":

@@ -197,7 +197,7 @@ class Reducer:
     def _along(self, values: Array) -> MotionOnPath:
         """Places on a stretch of the path with all these values, whose events are known."""
         places = self._places
-        # the new stretch holds the old one, so that places asked for before stay known
+        # the new stretch holds the old one, so that places requested before stay known
         if places is None or not (places.mesh[0] <= np.min(values) and np.max(values) <= places.mesh[-1]):
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
             places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)

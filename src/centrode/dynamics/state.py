@@ -145,7 +145,7 @@ class State:
     side : -1, 0 or 1
         At a jump: the side of the parameter that counts; 0 where a one-sided load counts as acting.
     scale : float [m]
-        The greatest length, by which velocities of zero are told from rounding.
+        The greatest length, by which velocities of zero are distinguished from rounding.
     columns : kind -> what gives value and two derivatives of its k-th number
     m : functions of jets, over arrays or over expressions
     """

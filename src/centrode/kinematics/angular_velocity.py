@@ -52,7 +52,7 @@ def spins_of(layout: PlanLayout, columns: Array) -> Array | None:
 
 # Angles of links that run on over turns, from their rotors.
 #
-# An angle belongs to the value of the drive, not to the samples asked for: turns are counted along the mesh
+# An angle belongs to the value of the drive, not to the samples requested: turns are counted along the mesh
 # of the path, outwards from the initial position, and a sample takes its turn from the nearest node.
 
 Side: TypeAlias = npt.NDArray[np.int8]
@@ -106,7 +106,7 @@ def node_turns(
     cosine, sine = _fill_gaps(cosine, sine, start)
     below = _below(sine)
     turns = np.zeros(cosine.shape, dtype=np.int32)
-    # as with angles: half a turn between two nodes is told by the rotors alone
+    # as with angles: half a turn between two nodes is decided by the rotors alone
     steps = _turns_between(cosine[:, :-1], below[:, :-1], cosine[:, 1:], below[:, 1:])
     with_quick_steps(steps, quick)
     if steps.any():

@@ -278,7 +278,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
     Raises
     ------
     InputError
-        It does not close (by how much is told), or the description does not say on which side a group is
+        It does not close (the error says by how much), or the description does not say on which side a group is
         assembled.
     """
     initial = kinematics.path.initial

@@ -126,7 +126,7 @@ def turned_apart(space: Space, link: str, one: Positions, other: Positions) -> f
 
 
 def check_sides(kinematics: Kinematics) -> None:
-    """Refuse sides of what no group is asked about, which would be passed over in silence."""
+    """Refuse sides of what is no group with two sides, which would be passed over in silence."""
     groups = [group for group in kinematics.structure.groups if group.signed]
     known = [name for group in groups for name in side_names(group)]
     for name in kinematics.structure.mechanism.assembly.sides:
@@ -335,7 +335,7 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
     found = residuals_at(structure.constraints, kinematics.numbers, at)
     residuals = {c.label: (value, c.angular) for c, value in found.items()}
     residuals |= {label: (value, False) for label, value in length_misfits(kinematics, at).items()}
-    # of all constraints the worst one is told
+    # of all constraints the worst one is reported
     label = max(residuals, key=lambda name: residuals[name][0])
     value, angular = residuals[label]
     if value > RESIDUAL_TOLERANCE:

@@ -29,7 +29,7 @@ PARTS = 4
 HALVINGS = 26
 """How often the way to a place where something happens is halved: from a cell of half a degree to `FINEST`."""
 COARSE = 1e-6
-"""The same for mechanisms that have many unknown cells: next to poles rounding alone may leave thousands."""
+"""Half width like `FINEST`, of a mechanism with many unknown cells: beside poles rounding alone may leave thousands."""
 MANY, MOST = 1_000, 10_000
 """Unknown cells of a mechanism from which on they are taken no further than that, and no further at all."""
 

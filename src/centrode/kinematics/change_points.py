@@ -450,7 +450,7 @@ class Smooth(EvaluationPolicy):
         """Look at where a group of higher class is not what it should be."""
 
     def continue_angle(self, group: int, key: str, angle: Number) -> Number:
-        # not counted yet: the group itself is still being searched, and nothing behind it is asked for
+        # not counted yet: the group itself is still being searched, and nothing behind it is requested
         turns = self.continuation.branches.turns.get(key)
         return angle if turns is None else turns.continue_angle(angle, self.parameter, self.lanes)
 

@@ -1,6 +1,6 @@
 """Limits and change points: where a group's radicand reaches zero along the path.
 
-The radicand is looked at on a mesh that belongs to the mechanism, not to the samples asked for, with its derivative at
+The radicand is looked at on a mesh that belongs to the mechanism, not to the samples requested, with its derivative at
 each node and a bound of its second derivative in the cell about it. Cells in which it may have more than one zero are
 divided (`cells`). A minimum of the radicand is refined by the root of its derivative: zero within the rounding error of
 the formulas is a change point, below zero a pair of limits. Other sign changes are limits. A divisor's sign change is a
@@ -527,7 +527,7 @@ class EventScan:
             limits, touches = self.zeros.found(group, value, slope, bend, self.branches.largest[group])
             events = self._limits(group, *limits)
             events += [Event("change point", group, int(k), float(x)) for k, x in zip(*touches, strict=True)]
-        # recorded before the group's sign is asked for
+        # recorded before the group's sign is requested
         self.branches.add(group, events)
 
     def find_poles(self, group: int, divisor: Number) -> None:
@@ -633,7 +633,7 @@ class EventScan:
 
 
 class _Counting(Rough):
-    """Counts the turns of angles along the mesh, for all that is asked for afterwards."""
+    """Counts the turns of angles along the mesh, for all that is requested afterwards."""
 
     def __init__(self, scan: EventScan, m: Namespace) -> None:
         super().__init__(scan.continuation, m, scan.mesh[None, :], None)

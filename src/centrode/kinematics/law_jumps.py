@@ -142,7 +142,7 @@ def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
         return np.broadcast_to(np.sign(_watched_jets(law, x, 0)[number].value), x.shape)
 
     at = sign(nodes)
-    # the earliest places suffice: only the first jump is told
+    # the earliest places suffice: only the first jump is reported
     cells = np.flatnonzero(at[:-1] != at[1:])[:MOST]
     return bisect(lambda x: sign(x) == at[cells], nodes[cells], nodes[cells + 1])[1]
 

@@ -27,7 +27,7 @@ from centrode.numerics.jets import Jet, JetFunctions
 
 # How fast several drives move together: the unit of time on which events are looked for, stretch by stretch.
 #
-# Stretches of time are counted from zero and double in length (dyadic), whatever range is asked for, so that
+# Stretches of time are counted from zero and double in length (dyadic), whatever range is requested, so that
 # the mesh belongs to the mechanism: a longer range adds nodes, and moves none.
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -234,7 +234,7 @@ class Path:
         return self.unit if self.pace is None else self.pace.unit_at(parameter)
 
     def within(self, low: float, high: float) -> Path:
-        """The same path with the unit that is fit for all of a range."""
+        """Path with one unit for all of a range of the parameter: the finest that counts in it."""
         return self if self.pace is None else replace(self, unit=self.pace.finest(low, high))
 
     def take(self, take: Callable[[Number], Number]) -> Path:
@@ -376,14 +376,14 @@ def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:
         )
 
 
-# Which samples a motion is asked at: values of the drive, or times where the drive is a law.
+# Which samples a motion has: values of the drive, or times where the drive is a law.
 
 MAX_TURNS = 500.0
 INSIDE = 0.005
-"""Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
+"""Share of the reachable range left out at both ends if none is requested: there speeds are infinite."""
 
 LEAST_JUMP = 1e-9
-"""Jumps of a law are told down to this share of 1 rad, or of the greatest length."""
+"""Jumps of a law are reported down to this share of 1 rad, or of the greatest length."""
 
 
 @dataclass(frozen=True)
@@ -411,7 +411,7 @@ def even_grid(
 ) -> SampleGrid:
     """Evenly spaced samples from start to stop: values of the drive [rad or m], or times [s] where the drive is a law.
 
-    `reach` are the nearest limits: the range of a displacement drive where none is asked for, and that of any drive
+    `reach` are the nearest limits: the range of a displacement drive where none is requested, and that of any drive
     where the `reachable` range is.
     """
     if isinstance(samples, bool) or not 1 <= samples <= reading.SAMPLES:
@@ -450,7 +450,7 @@ def _check_extent(path: Path, span: SampleGrid) -> None:
     """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
     for one in path.driven:
         jump = _jump(path, one, span.time)
-        # a jump to a finite value is told before missing values: it says more of what to correct
+        # a jump to a finite value is reported before missing values: it says more of what to correct
         if jump is not None and np.isfinite(jump.after):
             what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
             raise InputError(
@@ -464,7 +464,7 @@ def _check_extent(path: Path, span: SampleGrid) -> None:
                 _("its law has no finite value with two derivatives everywhere in the range"),
                 _("correct the law, or ask for another range"),
             )
-        # a jump to no value is told last, as the samples themselves may have hit it
+        # a jump to no value is reported last, as the samples themselves may have hit it
         if jump is not None:
             raise InputError(
                 f"[[drives]] {one.drive.id}",
@@ -512,7 +512,7 @@ def _at_values(path: Path, values: Array) -> SampleGrid:
 def _range(
     path: Path, start: float | None, stop: float | None, reach: tuple[float, float], reachable: bool
 ) -> tuple[float, float]:
-    """First and last value of the drive; what is not asked for is one turn, or the reachable range."""
+    """First and last value of the drive; what is not requested is one turn, or the reachable range."""
     if path.turns and not reachable:
         first = path.initial if start is None else start
         return first, first + path.forward * 2.0 * np.pi if stop is None else stop

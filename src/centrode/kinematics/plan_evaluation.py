@@ -191,7 +191,7 @@ class _UpTo(EvaluationPolicy):
 
 # Angles that groups depend on with their turns: counted on the mesh of the path, outwards from its start.
 #
-# A value anywhere takes its turns from the nearest node, so it does not depend on the samples asked for.
+# A value anywhere takes its turns from the nearest node, so it does not depend on the samples requested.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -319,7 +319,7 @@ class Branches:
     largest: dict[int, Array] = field(default_factory=dict)
 
     def add(self, group: int, events: Sequence[Event]) -> None:
-        """Record the events of a group; its sign is asked for only afterwards."""
+        """Record the events of a group; its sign is requested only afterwards."""
         if not events:
             return
         self.events += sorted(events, key=lambda event: (event.lane, event.at))

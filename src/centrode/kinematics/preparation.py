@@ -73,7 +73,7 @@ def ready(mechanism: Mechanism) -> Ready:
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)
     if any(isinstance(group, Newton) for group in structure.groups):
-        # before assembling, as groups of higher class would fail first and be told instead
+        # before assembling, as groups of higher class would fail first and be reported instead
         _refuse_surplus_drives(structure)
     assembled = assemble(kinematics)
     kinematics = replace(kinematics, numbers=assembled.numbers)

@@ -150,7 +150,7 @@ class SampleJudging(Smooth):
         """Where a radicand is zero within its rounding error; None if nowhere."""
         greatest = self.continuation.branches.largest[group]
         greatest = greatest[:, None] if self.lanes is None else greatest[self.lanes]
-        # rounding bounds cost some ten times the value, so only radicands near zero are asked for them
+        # rounding bounds cost some ten times the value, so they are computed for radicands near zero alone
         suspects = np.nonzero(np.abs(value) <= SUSPECT * greatest)
         if not len(suspects[0]):
             return None

@@ -220,7 +220,7 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples:
 
 
 def _join_branches(parts: Sequence[Branches]) -> Branches:
-    """The branches of a batch from those of its parts: signs and events, which is what is asked for afterwards."""
+    """The branches of a batch from those of its parts: signs and events, which is what is requested afterwards."""
     if len(parts) == 1:
         return parts[0]
     lane = 0

@@ -65,7 +65,7 @@ def with_quick_steps(steps: Counts, turned: Sequence[TurnedStretch]) -> None:
     for part in turned:
         lane = part.stretch.lane if len(steps) > 1 else 0
         first = part.stretch.first
-        # what neighbouring nodes alone told is replaced
+        # what was concluded from neighbouring nodes alone is replaced
         steps[lane, first : first + len(part.steps)] = part.steps
 
 

@@ -71,7 +71,7 @@ class Piece:
         )
 
     def row(self, degree: int) -> Row:
-        """Its numbers, with powers up to a degree."""
+        """The numbers of this formula as a row of a table, its powers filled up with zeros to a degree."""
         missing = (0.0,) * (degree - len(self.powers))
         numbers = (self.origin, self.unit, self.wave, self.cycloid, self.square)
         return (*numbers, self.value, *self.powers, *missing)

@@ -132,7 +132,7 @@ def b_spline(conditions: Sequence[Condition], degree: int) -> list[tuple[float, 
     Returns
     -------
     Polynomials, each with the time up to which it holds. That of the last stretch is given about its beginning
-    and about its end, so that what is asked for at the ends holds there exactly.
+    and about its end, so that the conditions at the ends hold there exactly.
 
     Raises
     ------
@@ -367,7 +367,7 @@ class LawSegment:
         return INNER_JUMPS.get(self.curve)
 
     def pieces(self, start: float, before: float) -> list[tuple[float, Piece]]:
-        """Its formulas, each with the time [s] at which it ends, from a time and a value of the law."""
+        """Formulas of the segment, each with the time [s] of its end; `before` is the law's value at `start` [s]."""
         if self.curve in THROUGH_POINTS:
             asked = self._conditions(before)
             found = polynomial(asked) if self.curve == POLYNOMIAL else b_spline(asked, self.degree)
@@ -379,7 +379,7 @@ class LawSegment:
         return list(zip(ends, placed, strict=True))
 
     def _conditions(self, before: float) -> list[Condition]:
-        """What is asked of the polynomial or the B-spline, at times from the segment's start."""
+        """Derivatives that are requested of the polynomial or the B-spline, at times from the segment's start."""
         way: list[Condition] = [(time, (value,)) for time, value in self.through]
         return [(0.0, (before, *self.at_start)), *way, (self.time, (self.to or 0.0, *self.at_end))]
 

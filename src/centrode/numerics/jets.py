@@ -54,7 +54,7 @@ class Jet:
         return Jet([k * c for k, c in enumerate(self.coefficients)][1:])
 
     def lower_order(self) -> Jet:
-        """The same jet one order lower, to meet a slope."""
+        """Jet without its highest coefficient, of the order that `slope` has."""
         return Jet(self.coefficients[:-1])
 
     def __repr__(self) -> str:

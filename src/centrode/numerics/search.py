@@ -120,7 +120,7 @@ def newton_roots(function: WithSlope, low: Array, high: Array) -> Array:
     if not len(low):
         return np.empty(0)
     low, high = low.copy(), high.copy()
-    # which side of the root a place is on is told by the sign at the lower end: the function may fall or grow
+    # which side of the root a place is on follows from the sign at the lower end: the function may fall or grow
     sign_low = np.sign(function(low)[0])
     x = 0.5 * (low + high)
     active = np.ones(x.shape, dtype=bool)

@@ -73,7 +73,7 @@ class Positions:
         return cls(fixed, {FRAME: space.at_rest}, drives)
 
     def map_numbers(self, function: Callable[[Number], Number]) -> Positions:
-        """The same positions with every number replaced by function(number)."""
+        """Positions whose every number is function(number) of these: places, poses, values of drives, angles."""
         return Positions(
             {name: tuple(map(function, at)) for name, at in self.points.items()},
             {name: mapped_pose(pose, function) for name, pose in self.poses.items()},
@@ -87,7 +87,7 @@ class Positions:
 
 
 def mapped_pose(pose: Pose, function: Callable[[Number], Number]) -> Pose:
-    """The same pose with every number replaced by function(number), in their order."""
+    """A pose whose every number is function(number) of this one, taken in their order: origin, then rotor or axes."""
     return type(pose)(*(tuple(map(function, vector)) for vector in pose))
 
 

@@ -103,7 +103,7 @@ class Dimensions:
     gearing: Gearing = field(default_factory=Gearing)
 
     def map_numbers(self, function: Callable[[Number], Number]) -> Dimensions:
-        """The same dimensions with every number replaced by function(number)."""
+        """Dimensions whose every number is function(number) of these."""
 
         def vectors(pairs: Mapping[str, Vector]) -> dict[str, Vector]:
             return {name: tuple(map(function, v)) for name, v in pairs.items()}

@@ -25,7 +25,7 @@ from centrode.model.units import to_si
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 
-# What a sweep may take of memory and ask for at most; named here, told in docs/sweeps.md.
+# What a sweep may take of memory and ask for at most; named here, explained in docs/sweeps.md.
 
 WORKING_SET = 256_000_000
 """Bytes that the mechanisms solved together may take, results aside (one mechanism alone may take more)."""
@@ -388,7 +388,7 @@ def _axis(mechanism: Mechanism, path: str, given: Any) -> Array:
 
 
 def path_digests(design: Design) -> dict[str, str]:
-    """The values by which two designs are told apart: path -> a digest of its values along the design."""
+    """The values by which two designs are distinguished: path -> a digest of its values along the design."""
     # a digest of the bytes: two designs are the same if every bit is
     told = {}
     for path, (dimension, values) in design.coordinates.items():

@@ -2,7 +2,7 @@
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
 and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`machine_code.events`; with
-groups of higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does.
+groups of higher class they are computed by arrays), and what is requested is taken from them as `ArraysExecutor` does.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Fold:
 
     @property
     def state(self) -> Reduction:
-        """Its state in a scan over samples; NaN at a sample makes the whole NaN."""
+        """The fold as a state that a scan over samples carries on; NaN at a sample makes the result NaN."""
         m, so_far = EXPRESSIONS, variable(self.name)
         if self.kind == "sum":
             return Reduction({self.name: as_node(so_far + self.value)}, {self.name: 0.0})
@@ -146,7 +146,7 @@ class Slopes:
     standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
     folds : whose results have derivatives of their own
     moving : variables that differ from sample to sample
-    known : fold -> its states, once they have been asked for
+    known : fold -> its states, once they have been requested
     """
 
     through: Mapping[str, Through]
@@ -287,7 +287,7 @@ def _through(path: str, varied: Varied) -> Through:
     return [(cosine, -sine), (sine, cosine)]
 
 
-# What a sweep is asked for as expressions: columns of a sample, or of folds over samples, and derivatives.
+# Outputs of a sweep as expressions: columns of a sample, or of folds over samples, and derivatives.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = dict[str, Array]
@@ -367,7 +367,7 @@ class Expressed:
         nodes = [node for column in self.columns.values() for node in column]
         nodes += [fold.value for fold in self.folds.found.values()]
         used = frozenset(Graph({str(k): node for k, node in enumerate([*nodes, residual])}).variables)
-        # turns are told by the place before on a walk, else by a centre
+        # turns follow from the place before on a walk, else by a centre
         told_by = before_of if self.traced.steps else centre_of
         links = tuple(link for link in self.traced.turning if told_by(link) in used)
         names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
@@ -565,7 +565,7 @@ class EverySample:
     samples: int
 
     def rooms(self) -> Iterator[tuple[slice, Array]]:
-        """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is asked for."""
+        """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is requested."""
         streams = self.results.streams if isinstance(self.results, StreamedColumns) else None
         # a whole slice has its place in the result, and is written straight there
         if streams is not None and isinstance(self.at, slice):
@@ -605,7 +605,7 @@ class MachineCodeExecutor:
     Attributes
     ----------
     task : what is computed
-    asked : the same as expressions
+    asked : the outputs as expressions
     threads : that share the mechanisms
     kernels : "machine code"; "arrays" runs the same scans on NumPy
     """
@@ -627,9 +627,9 @@ class MachineCodeExecutor:
     ) -> MachineCodeExecutor:
         """The executor of a task; the numbers of one mechanism or more say what varies.
 
-        Raises Untraceable, with a reason that is told.
+        Raises Untraceable, with a reason for the user.
         """
-        # told before anything is traced
+        # reported before anything is traced
         if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
         varied = varied_of(numbers, values)

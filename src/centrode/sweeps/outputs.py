@@ -38,7 +38,7 @@ class Output:
     Attributes
     ----------
     name : str
-        As it is asked for: "velocity", "position.C", "position.C.x".
+        As it is requested: "velocity", "position.C", "position.C.x".
     quantity : str
         Its name in the vocabulary.
     where : for each dimension behind the sample an index, or all of it
@@ -54,7 +54,7 @@ class Output:
     attributes: Mapping[str, Any]
 
     def of(self, solved: Solved, values: Values) -> Array:
-        """Its values (lanes, samples, ...): the same bits as in the motion's dataset.
+        """Values of the output (lanes, samples, ...), bit by bit those of the motion's dataset.
 
         `values` are those that vary, by their paths.
         """
@@ -238,7 +238,7 @@ class Variable:
     output: Output | None = None
 
     def of(self, solved: Solved, values: Rows) -> Array:
-        """Its values, (lanes, n) or what broadcasts to it."""
+        """Values of the variable, (lanes, n) or what broadcasts to it."""
         if self.output is not None:
             return self.output.of(solved, values)
         if self.kind == "varied":
@@ -259,7 +259,7 @@ class OutputFormula:
     variables: Mapping[str, Variable]
 
     def of(self, solved: Solved, values: Rows, ok: Mask) -> Array:
-        """Its value for each mechanism (lanes,); NaN where no sample is ok."""
+        """Value of the formula for each mechanism (lanes,); NaN where no sample is ok."""
         given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
         with np.errstate(all="ignore"):
             found = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
@@ -268,7 +268,7 @@ class OutputFormula:
         return np.where(ok.any(axis=1), flat, np.nan)
 
     def traced(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
-        """Its value where numbers are expressions: `solved` is of one sample, `m` folds."""
+        """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
         given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
         return self.text(m, **given)
 
@@ -326,7 +326,7 @@ def _formula(
 
 
 def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[str, ...]]) -> None:
-    """A misspelt name is told with the nearest one: there may be hundreds."""
+    """A misspelt name is reported with the nearest one: there may be hundreds."""
     for word in words:
         if word not in known and word not in CONSTANTS and word not in FUNCTIONS | FOLDS:
             what = _("unknown name {name}").format(name=value_text(word))
@@ -357,7 +357,7 @@ def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Va
         )
 
 
-# What a sweep is asked for: outputs at every sample, outputs reduced, or formulas.
+# What a sweep computes: outputs at every sample, outputs reduced, or formulas.
 
 AnyArray: TypeAlias = npt.NDArray[Any]
 Reduce: TypeAlias = str | Mapping[str, str] | None
@@ -404,7 +404,7 @@ class SweepOutputs:
 
     @property
     def slopes(self) -> dict[str, str]:
-        """Column -> the column of its derivatives, where these are asked for."""
+        """Column -> the column of its derivatives, where these are requested."""
         names = {column.name for column in self.columns}
         return {name: slope_of(name) for name in names if slope_of(name) in names}
 

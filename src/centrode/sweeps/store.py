@@ -143,7 +143,7 @@ class Tally:
             )
 
     def as_dict(self) -> dict[str, Any]:
-        """As a marker holds it; numbers survive to the last bit."""
+        """The totals as JSON that a marker holds; numbers survive to the last bit."""
         # JSON has no NaN
         worst = None if math.isnan(self.worst_residual) else self.worst_residual
         return {
@@ -194,7 +194,7 @@ def tally_of(asked: SweepOutputs, samples: int, results: Mapping[str, npt.NDArra
     extremes: Extremes = {}
     if asked.reduced:
         for column in asked.columns:
-            # derivatives have no extremes of interest, and what is said of each mechanism has its own
+            # derivatives have no extremes of interest, and the variables of whole mechanisms have theirs
             if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):
                 flat = results[column.name].reshape(len(ok), math.prod(column.shape))
                 extremes[column.name] = [_extremes(flat[:, k]) for k in range(flat.shape[1])]

@@ -89,7 +89,7 @@ def sweep(
     Raises
     ------
     InputError
-        Anything asked for that there is not, a result too great, a store of another sweep, machine code for
+        Anything requested that there is not, a result too great, a store of another sweep, machine code for
         what it cannot compute.
     """
     name = check_executor(executor)
@@ -116,7 +116,7 @@ def sweep(
 
 
 def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
-    """The description's own motion, with its reduction where that is asked for."""
+    """The description's own motion, with its reduction where that is requested."""
     motion = dataset_of(solved)
     # reductions are computed only where they are named: masses need not be complete otherwise
     if "reduced_" not in f"{outputs} {reduce}":
@@ -179,7 +179,7 @@ def _compute(
         kept.put(block, results, tally_of(task.asked, len(task.span.parameter), results))
 
 
-# Sweeps in files: which mechanism, what varies, what is asked for.
+# Sweeps in files: which mechanism, what varies, what is requested.
 
 WAYS = ("vary", "grid", "sample")
 KEYS = ("mechanism", *WAYS, "outputs", "samples", "from", "to", "reduce", "gradient", "executor")

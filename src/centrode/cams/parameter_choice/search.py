@@ -44,7 +44,7 @@ EXCHANGES = 6
 ROUNDS = 40
 TOLERANCE = 1e-12
 KEPT = 1e-9
-"""Of a bound: it is asked for tighter by this, so that rounding does not break it."""
+"""A bound is tightened by this part, so that rounding does not break it."""
 ACTIVE = 1e-6
 """A constraint binds where less than this part of its bound is left."""
 
@@ -707,7 +707,7 @@ class CamChoice:
     proof : Proof
         Its bounds and its neighbours along the path itself.
     front : TradeOff or None
-        What the bound of another measure costs; None where none is asked for.
+        What the bound of another measure costs; None where none is requested.
     """
 
     cam: Cam

@@ -1,4 +1,4 @@
-"""Counterweights for a mechanism: what was asked for, what was found, and the mechanism before and after."""
+"""Counterweights for a mechanism: what was requested, what was found, and the mechanism before and after."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ class Balance:
     to : "full", "least" or "fraction"
     counterweights : tuple of Counterweight
     discs : tuple of CounterweightDisc
-        Inertia that balances the shaking moment; none where it was not asked for.
+        Inertia that balances the shaking moment; none where it was not requested.
     before, after : Dataset
         Of `shaking`, of both mechanisms; their attributes hold the greatest values over the cycle.
     fraction : float or None
-        Of what moves to and fro, where that was asked for.
+        Of what moves to and fro, where that was requested.
     weights : three numbers or None
         Of force, moment and drive in the least greatest effects.
     left : float or None

@@ -324,7 +324,7 @@ def on_frame(mechanism: Mechanism) -> list[str]:
     return [name for name, base in hinged_from(mechanism).items() if base in mechanism.frame.points]
 
 
-# The counterweights that are asked for: on which links, measured from where, how made.
+# The counterweights that are requested: on which links, measured from where, how made.
 
 Lengths: TypeAlias = float | str | Mapping[str, float | str] | None
 Masses: TypeAlias = float | str | Mapping[str, float | str] | None

@@ -1,4 +1,4 @@
-"""The products of mass and radius that were asked for: force zero, least greatest effects, a fraction."""
+"""The products of mass and radius that were requested: force zero, least greatest effects, a fraction."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _remove_mean(places: Complex) -> Complex:
 def enough_spots(
     turning: ShakingTurning, candidates: Sequence[CounterweightPlace]
 ) -> list[CounterweightPlace]:
-    """As few of the candidates, the first ones before the others, as balance the mechanism; all if none do."""
+    """Candidates that suffice for balance, as few as possible and early ones first; all where no choice suffices."""
     hung = [spot for spot in candidates if spot.fixed]
     chosen = list(hung)
     # first those hinged to the frame, as their mass alone does nothing; then others until the balance is

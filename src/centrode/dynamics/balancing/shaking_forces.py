@@ -603,7 +603,7 @@ def _sampled_range(
     at: npt.ArrayLike | None,
     speed: Speed,
 ) -> tuple[Ready, SampleGrid]:
-    """The samples, passed at the speed that is asked for."""
+    """The samples, passed at the speed that is requested."""
     if speed == "steady":
         if start is not None or stop is not None:
             what = _("steady motion is shown over its cycle")

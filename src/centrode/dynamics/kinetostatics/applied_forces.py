@@ -149,7 +149,7 @@ class _Inertial:
         return straight if self.acceleration is None else straight + jet.value * self.acceleration
 
 
-# How the drive moves while reactions are asked for.
+# How the drive moves while reactions are requested.
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ class InputMotion:
 
 
 def input_motion_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
-    """As `reduce` takes it: the mean speed of a machine, where the drive has a constant speed; else the drive's own."""
+    """Motion of the input as in `reduce`: a machine's mean speed if the drive's is constant, else the drive's."""
     span, prepared = solved.span, solved.ready
     path = prepared.kinematics.path
     if path.by_time:

@@ -51,7 +51,7 @@ class HingeBearing:
 
     @property
     def label(self) -> str:
-        """Its name in results, that of the side."""
+        """Name of the joint in results, "point/link" as that of the side."""
         return f"{self.point}/{self.link}"
 
     @property
@@ -85,7 +85,7 @@ class Sliding:
 
     @property
     def label(self) -> str:
-        """Its name in results."""
+        """Name of the joint in results, "guide C"."""
         return f"guide {self.guide}"
 
     @property
@@ -441,7 +441,7 @@ class Rubbed:
     slopes : (n, contacts)
         Derivative of what rubs by the path's parameter; 0 where it turns round.
     turns : (n, contacts)
-        Where a contact stands for an instant: what is told holds just after it.
+        Where a contact stands for an instant: what is returned holds just after it.
     standing : labels of contacts that do not move
     """
 
@@ -656,7 +656,7 @@ class Powers:
 def works_over(parameter: Array, rate: Array, moments: Array) -> Array:
     """Works (m) of moments (n, m) along a parameter, by the trapezoidal rule, in the sense in which `rate` goes.
 
-    The samples may be told backwards.
+    The samples may be in reverse order.
     """
     # samples may run backwards: the way is counted as positive, in the sense of the rate
     way = np.abs(np.diff(parameter))[:, None]

@@ -39,7 +39,7 @@ class JointSide:
 
     @property
     def label(self) -> str:
-        """Its name in results."""
+        """Name of the side in results, "point/body"."""
         return f"{self.point}/{self.body}"
 
 

@@ -60,7 +60,7 @@ from centrode.numerics.search import bisect, root
 # The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates.
 
 TOLD = 256
-"""Steps after which it is told how far it is."""
+"""Steps between two reports of progress."""
 
 
 def fixed_steps(
@@ -298,7 +298,7 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
         # angles are taken to turn with the drive as often as they do over one turn
         winding = round(float(angle[-1] - angle[0]) / tau)
         rest = angle - winding * values
-        # around a fixed centre only less than half a turn either way is told without doubt
+        # around a fixed centre only less than half a turn either way is unambiguous
         if np.ptp(rest) >= tau / 2:
             raise Untraceable(mark("links that swing by half a turn or more"))
         found |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
@@ -310,7 +310,7 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
 State: TypeAlias = npt.NDArray[np.float64]
 
 REST_SCANS = 2000
-"""Instants at which a mechanism at rest is asked whether it breaks loose, where something depends on time."""
+"""Instants at which a mechanism at rest is checked for breaking loose, where something depends on time."""
 
 
 def break_loose_time(field: Field, value: float, first: float, last: float) -> float | None:

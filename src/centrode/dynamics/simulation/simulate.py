@@ -375,7 +375,7 @@ def simulate(
 
 
 def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
-    """Integrate by the scheme that is asked for."""
+    """Integrate by the scheme that is requested."""
     settings, until = setting.settings, setting.until
     if settings.scheme != "runge-kutta-4":
         stepper = Stepper(setting.field, until, settings.tolerance, settings.scheme == "stiff", progress)

@@ -161,7 +161,7 @@ def _slope(before: float, here: float, missed_before: float, missed: float) -> f
 NEUTRAL = 1e-5
 """A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
 INDIFFERENT = 1e-4
-"""The same of a regime that is found: nothing tells its speed from another."""
+"""A multiplier of a found regime as near to 1 says that any other speed would come back as well."""
 PARTS = 2000
 
 

@@ -205,7 +205,7 @@ class MomentShape:
     formula: TextFormula
 
     def at(self, values: Array, speed: Array | float) -> Array:
-        """Its values (n) at values and speeds of the drive; raises InputError where it has none."""
+        """Moment (n,) up to the factor, at values (n,) [rad] and speeds [rad/s]; InputError where it is not finite."""
         # one speed as an array too: plain numbers would raise where arrays have infinities
         speeds = np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape)
         with np.errstate(all="ignore"):
@@ -257,7 +257,7 @@ class Cycle:
     inertia, slope : PanelSeries [kg m^2], [kg m^2/rad]
         Inertia of the links (group II), reduced to the drive, and its derivative.
     moment : PanelSeries [N m]
-        Of all loads and weights, at the speed the cycle was asked at.
+        Of all loads and weights, at the speed the cycle was computed at.
     """
 
     reduction: CycleReduction

@@ -21,7 +21,7 @@ from centrode.model.settings import FlywheelShape
 SOURCE_DENSITY, SOURCE_WIDTH, SOURCE_INNER = 7800.0, 0.2, 0.8
 """Density [kg/m^3], width and inner diameter over the outer one, of the coursework (docs: flywheel)."""
 SOURCE_RIM, SOURCE_DISC = 0.437, 0.366
-"""Its coefficients of J^(1/5); the one of the rim does not fit its own data."""
+"""Coefficients of J^(1/5) in the coursework; the one of the rim does not fit the data given there."""
 SOURCE_RIM_MASS, SOURCE_DISC_MASS = 6123.0, 1230.0
 
 
@@ -239,7 +239,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
     if machine.fluctuation is None or found.needed is None or found.tangents is None:
         return common
     by_source = needed_by_source(energies, machine.mean_speed, machine.fluctuation)
-    # both meanings of the mean speed are reported, whichever was asked for
+    # both meanings of the mean speed are reported, whichever was requested
     in_time = found if found.kind == "time" else in_other_mean(found, "time")
     shape = machine.flywheel
     added, added_first_order = (

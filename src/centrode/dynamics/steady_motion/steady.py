@@ -96,9 +96,9 @@ class SteadySolution:
         Inertia of the shafts, reduced to the drive.
     by_source : SpeedBySource
     tangents : Tangents or None
-        Wittenbauer's, with loads at the mean speed; None where no fluctuation is asked for.
+        Wittenbauer's, with loads at the mean speed; None where no fluctuation is requested.
     needed : float or None [kg m^2]
-        J_I for the fluctuation asked for, exactly; negative where the links alone are enough.
+        J_I for the fluctuation requested, exactly; negative where the links alone are enough.
     speed : Speed
         Exact, with the greater one of `needed` and `present`.
     iterations : int

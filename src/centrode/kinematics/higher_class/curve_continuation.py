@@ -33,7 +33,7 @@ from centrode.structure.constraints import Positions
 # The track of a group of higher class: its curve over the path in pieces, and where Newton's method starts.
 #
 # Pieces belong to the mechanism and its path, not to the samples: a place starts from the piece on which it
-# lies. So what is found does not depend on what else is asked for. A curve that closes after whole turns is
+# lies. So what is found does not depend on what else is requested. A curve that closes after whole turns is
 # followed once: behind that every place starts from the one as many turns before.
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -255,7 +255,7 @@ def _horner(coefficients: Array, share: Array) -> Array:
 
 BEHIND = 0.1
 """How far [rad] behind the beginning of a turn a group is compared with itself: at the very start both assemblies of
-a dyad may meet. The mesh reaches further beyond what is asked for, so it does not decide whether a curve is closed."""
+a dyad may meet. The mesh reaches further beyond what is requested, so it does not decide whether a curve is closed."""
 
 
 @dataclass

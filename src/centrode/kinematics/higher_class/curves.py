@@ -309,7 +309,7 @@ def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:
     return np.asarray(np.fmax(SAFETY * shift, spacing), dtype=np.float64)
 
 
-# Where two curves of a group of higher class meet: a change point, told from a near miss.
+# Where two curves of a group of higher class meet: a change point, distinguished from a near miss.
 #
 # At a change point the equations are dependent, parameter included. Seen along the two directions in which
 # they tell least, the worst equation has a saddle there; its value at the saddle is to a group of higher

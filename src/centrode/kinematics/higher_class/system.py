@@ -177,7 +177,7 @@ class Linear:
         return self.rows[self.number[by, 0]], self.rows[self.number[by, 1]]
 
     def _answer(self, entity: Entity, right: Sequence[Number]) -> Shift:
-        """How an unknown moves so that the two rows of its hinge give what is asked."""
+        """How an unknown moves so that the two rows of its hinge give the requested displacements."""
         (a, b), (c, d) = self._inverses[entity]
         pair = _dot((a, b), right), _dot((c, d), right)
         if entity.kind == "point":
@@ -218,7 +218,7 @@ class Linear:
         return moved, rest
 
     def whole(self, moved: Mapping[Entity, Shift], free: Sequence[Number]) -> dict[Entity, Shift]:
-        """How all unknowns move: as asked for at no free motion, and with free coordinates."""
+        """How all unknowns move: as requested at no free motion, and with free coordinates."""
         found: dict[Entity, Shift] = {}
         for entity, tangents in self.tangents.items():
             total = moved.get(entity, (0.0,) * entity.unknowns)
@@ -300,7 +300,7 @@ class GroupSystem:
     places: int
 
     def take(self, which: npt.NDArray[np.intp]) -> GroupSystem:
-        """The same equations at some of the places."""
+        """The system of equations at the places with these numbers (n,)."""
 
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
@@ -497,7 +497,7 @@ def times(matrix: Array, vector: Array) -> Array:
 # A group of higher class by its free coordinates alone: everything else follows, link by link, from what is
 # known.
 #
-# A link that hangs on a point that is known is told by its rotor; its points follow, and from these the links
+# A link that hangs on a point that is known is given by its rotor; its points follow, and from these the links
 # that hang on them. So the equations that `reduction` eliminates hold by construction, and only those left
 # over are solved. In the plane.
 

@@ -164,7 +164,7 @@ class ScreenedEvents:
 
 @dataclass(frozen=True)
 class EventScreening:
-    """How mechanisms of a traced plan are judged; `links` are those whose turns are asked for."""
+    """How mechanisms of a traced plan are judged; `links` are those whose turns are requested."""
 
     traced: Traced
     samples: Array

@@ -334,7 +334,7 @@ FARTHEST = 0.3
 WRONG = 0.01
 """By how much a foretold place may be wrong, likewise."""
 SHRINKING, FAINT = 0.1, 1e-9
-"""What part of a step the next one with the same matrix may be, and a step below which nothing is asked."""
+"""What part of a step the next one with the same matrix may be, and a step below which nothing is checked."""
 LAST = 1e-9
 """Greatest last step: by the square of it, but for rounding, a place is wrong, and so are its derivatives."""
 
@@ -369,7 +369,7 @@ def _relative_change(names: Names, matrix: Matrix) -> Operand:
     # where all numbers of a row are small its equation is no better known than its terms
     own = [plus(total(row), size) for row, size in zip(sizes(matrix.core), matrix.terms, strict=True)]
     condition = [scalar_product(row, own) for row in sizes(matrix.inverse)]
-    # as if the step were the longest: so it does not matter which samples are asked for; none before the first
+    # as if the step were the longest: so it does not matter which samples are requested; none before the first
     share = m.where(m.equal(variable(FIRST), 1.0), 0.0, variable(SHARE))
     return plus(times(share, m.sqrt(_greatest(twice))), times(CONDITION, _greatest(condition)))
 

@@ -113,7 +113,7 @@ class Writer:
         return np.empty((len(self.flat), lanes, len(self.places[PARAMETER])))
 
     def same_room(self, lanes: int) -> Array:
-        """The same memory at every call, which is faster: what stood there is gone."""
+        """Memory (numbers, lanes, n) that every call uses again, which is faster: the last call's numbers are lost."""
         shape = (len(self.flat), lanes, len(self.places[PARAMETER]))
         size = math.prod(shape)
         # it grows and never shrinks: the longest batch comes first as a rule

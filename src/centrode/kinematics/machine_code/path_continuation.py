@@ -172,7 +172,7 @@ class Way:
 
 
 def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
-    """The way past all that is asked for, name -> (samples,)."""
+    """The way past all that is requested, name -> (samples,)."""
     off = inputs[PARAMETER] - path.initial
     order = np.argsort(off, kind="stable")
     # both legs lead away from the initial position, where the state is known
@@ -199,7 +199,7 @@ def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Pla
 
 
 def _fill_places(initial: float, longest: float, asked: Array) -> tuple[Array, Places]:
-    """Places with no longer steps than that, and which of them are those asked for."""
+    """Places with no longer steps than that, and which of them are those requested."""
     if not len(asked):
         return np.array([initial]), np.zeros(0, dtype=np.intp)
     stops = np.concatenate([[initial], asked])

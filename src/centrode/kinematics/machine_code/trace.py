@@ -65,7 +65,7 @@ MOST_FREE = 9
 
 
 class Untraceable(Exception):
-    """The plan does something that expressions cannot say; `reason` is told to the user."""
+    """The plan does something that expressions cannot say; `reason` is shown to the user."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason

@@ -207,7 +207,7 @@ def _name(drive: str, k: int) -> str:
     return f"drive {drive}, {k}"
 
 
-# Turns of angles as expressions: told by a centre that may run on with the drive, or by the place before.
+# Turns of angles as expressions: found from a centre that may run on with the drive, or by the place before.
 
 TURN = 2.0 * math.pi
 WHOLE = 1.5 * 2.0**52

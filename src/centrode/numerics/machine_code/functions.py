@@ -20,7 +20,7 @@ from centrode.numerics.operations import CONSTANT
 # Sine, cosine and the angle of a vector on vectors of doubles: the greatest errors stand in docs/engine.md.
 #
 # The argument is brought to |r| <= pi/4 by Cody and Waite's reduction: r = x - k pi/2 with pi/2 in several
-# parts, kept as r + low. Beyond `REDUCED` the C library is asked, lane by lane.
+# parts, kept as r + low. Beyond `REDUCED` the C library is called, lane by lane.
 
 REDUCED = 1e5
 """Greatest magnitude that is reduced here: k stays below 2^17, so that its products with parts are exact."""

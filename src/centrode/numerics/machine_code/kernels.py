@@ -31,7 +31,7 @@ from centrode.numerics.scans import Array, Call, Scan, Scanned, call_of
 
 NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
 REMEMBERED = 256
-"""Kernels kept in memory; the one that was longest not asked for goes first."""
+"""Kernels kept in memory; the one that was longest not requested goes first."""
 PARTS = 4
 """Parts of the work for each thread, so that none waits long for another."""
 

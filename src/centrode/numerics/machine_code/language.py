@@ -166,11 +166,11 @@ class Code:
         return self.block.put(f"select {v.truth} {condition}, {v.name} {a}, {v.name} {b}")
 
     def bits_of(self, a: Value) -> Value:
-        """The same bits as whole numbers."""
+        """The bits of numbers, read as whole numbers."""
         return self.block.put(f"bitcast {self.vector.name} {a} to {self.vector.whole}")
 
     def from_bits(self, a: Value) -> Value:
-        """The same bits as numbers."""
+        """The bits of whole numbers, read as numbers."""
         return self.block.put(f"bitcast {self.vector.whole} {a} to {self.vector.name}")
 
     def whole(self, instruction: str, a: Value, constant: int) -> Value:
