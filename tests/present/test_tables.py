@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray
 
+import centrode as ct
 from centrode import present
 from centrode.errors import Status
 
@@ -122,7 +123,7 @@ def test_netcdf_reads_back_equal(make, tmp_path):
     for name, options in (("worked", {"locked": True}), ("slotted", {}), ("press", {"samples": 1})):
         _mechanism, dataset = make(name, **options)
         path = tmp_path / f"{name}.nc"
-        present.write_motion_netcdf(dataset, path)
+        ct.write_motion_netcdf(dataset, path)
         back = xarray.load_dataset(path, engine="scipy")
         kept = dataset.drop_dims([dim for dim, size in dataset.sizes.items() if size == 0])
         xarray.testing.assert_identical(back, kept)
@@ -133,7 +134,7 @@ def test_netcdf_reads_back_equal(make, tmp_path):
 def test_netcdf_repeats_its_bytes(make, tmp_path):
     _mechanism, dataset = make("worked")
     for path in ("a.nc", "b.nc"):
-        present.write_motion_netcdf(dataset, tmp_path / path)
+        ct.write_motion_netcdf(dataset, tmp_path / path)
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 

@@ -13,7 +13,7 @@ import xarray as xr
 import centrode as ct
 from centrode import notebook
 from centrode.cams.followers.motion_results import follower_motion_results, motion_law_results
-from centrode.files.netcdf import WITHOUT_ENTRIES, read_dataset, write_dataset
+from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset, write_dataset
 from centrode.sheets.sheet import Column
 from centrode.topics.presentation import RESTORED, is_result, restored_result
 

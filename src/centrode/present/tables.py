@@ -15,7 +15,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import InputError, Status
-from centrode.files.netcdf import write_dataset
 from centrode.locale import _
 from centrode.present.displayed_units import shown_as
 from centrode.views.columns import drive_units, numeric_columns, unit_of
@@ -88,9 +87,6 @@ def field(value: float | str) -> str:
     if isinstance(value, str):
         return value
     return "" if value != value else repr(value)
-
-
-write_motion_netcdf = write_dataset
 
 
 def write_columns(

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from centrode.files.netcdf import write_dataset
 from centrode.locale import speaking
 from centrode.present.displayed_units import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
+from centrode.render.netcdf import write_dataset
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:

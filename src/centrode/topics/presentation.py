@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, cast
 from centrode import render
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
-from centrode.files.netcdf import read_dataset
 from centrode.locale import _, mark
 from centrode.model.cam_files import parse_cam
 from centrode.model.files import parse_mechanism
+from centrode.render.netcdf import read_dataset
 from centrode.topics.registry import TOPICS
 
 if TYPE_CHECKING:
