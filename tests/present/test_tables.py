@@ -13,6 +13,7 @@ import xarray
 import centrode as ct
 from centrode import present
 from centrode.errors import Status
+from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset
 
 
 def read(path: Path) -> tuple[list[str], list[list[str]]]:
@@ -126,7 +127,15 @@ def test_netcdf_reads_back_equal(make, tmp_path):
         ct.write_motion_netcdf(dataset, path)
         back = xarray.load_dataset(path, engine="scipy")
         kept = dataset.drop_dims([dim for dim, size in dataset.sizes.items() if size == 0])
+        # variables without entries are in an attribute
+        absent = back.attrs.pop(WITHOUT_ENTRIES, None)
+        assert (absent is None) == (set(kept.variables) == set(dataset.variables))
         xarray.testing.assert_identical(back, kept)
+        again = read_dataset(path)
+        xarray.testing.assert_identical(again.drop_dims(set(again.sizes) - set(kept.sizes)), kept)
+        assert {variable: again[variable].dims for variable in again.variables} == {
+            variable: dataset[variable].dims for variable in dataset.variables
+        }
         assert {str(back[variable].dtype) for variable in back.data_vars} <= {"int8", "float64", "object"}
         assert all(str(variable).isascii() for variable in back.variables)
 
