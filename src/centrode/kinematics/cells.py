@@ -85,7 +85,7 @@ class CellPieces:
         return self.take(np.lexsort((self.centre, self.lane)))
 
     @classmethod
-    def joined(cls, *parts: CellPieces) -> CellPieces:
+    def join(cls, *parts: CellPieces) -> CellPieces:
         """The cells of several together."""
         return cls(*(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(cls)))
 
@@ -117,7 +117,7 @@ def divide_cells(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
         every = CellPieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
         found.append(every.take(there & done))
         rest = parts_of(every.take(there & ~done))
-    return CellPieces.joined(*found) if found else pieces
+    return CellPieces.join(*found) if found else pieces
 
 
 def _finest(lane: Lanes, unknown: Mask) -> Array | float:

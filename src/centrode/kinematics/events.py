@@ -407,7 +407,7 @@ class Zeros:
         plain = rough.copy()
         plain[lanes, nodes] = False
         rows, cells = np.nonzero(plain)
-        parts = CellPieces.joined(
+        parts = CellPieces.join(
             parts_of(CellPieces.of(rows, self.mesh[cells], half[cells])), towards(lanes, low, high, at)
         )
         found = divide_cells(parts, lambda *cell: self.guards.bend_bound(group, *cell), self.branches.unit)
@@ -416,7 +416,7 @@ class Zeros:
         beside[:, 1:] |= rough[:, :-1]
         beside[:, :-1] |= rough[:, 1:]
         rows, cells = np.nonzero(beside & ~rough & np.isfinite(value))
-        return CellPieces.joined(
+        return CellPieces.join(
             found, CellPieces.of(rows, self.mesh[cells], half[cells], value[rows, cells], nodes=True)
         )
 
@@ -439,7 +439,7 @@ class Zeros:
         cores = CellPieces.of(minima.lane, minima.at, self._finest, minima.least)
         walls = CellPieces.of(stops.lane, stops.at, self._finest, np.inf).take(stops.walls)
         cores = cores.take(np.isfinite(minima.least))
-        return CellPieces.joined(replace(pieces, value=value), cores, walls).sort_by_path()
+        return CellPieces.join(replace(pieces, value=value), cores, walls).sort_by_path()
 
     def _unforeseen(self, group: int, pieces: CellPieces, minima: _Minima) -> _Minima:
         """The least sizes between cells of one sign, where no node foretold one.

@@ -80,7 +80,7 @@ class QuickTurns:
             hooks = self.continuation.hooks(ARRAYS, self._parameter, self._lanes)
             return kinematics.positions(ARRAYS, self._parameter, hooks), kinematics.numbers
 
-    def measured(self, angle: Callable[[Dimensions, Positions], Number]) -> list[TurnedStretch]:
+    def measure(self, angle: Callable[[Dimensions, Positions], Number]) -> list[TurnedStretch]:
         """How an angle turns on the stretches, by what gives it in (-pi, pi] from dimensions and positions."""
         if not self.stretches:
             return []

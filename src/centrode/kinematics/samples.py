@@ -269,7 +269,7 @@ class ResultArrays:
         return np.moveaxis(points.reshape(ORDERS, -1, self.layout.axes, *self.status.shape), (1, 2), (3, 4))
 
     @property
-    def turned(self) -> Array:
+    def all_angles(self) -> Array:
         """Angles (3, lanes, n, angles)."""
         return np.moveaxis(self.angles, 1, 3)
 
@@ -310,7 +310,7 @@ class UnwoundAngle:
     ) -> NodeTurns:
         """Turns along the mesh of what a rotor shows; `initial` [rad] is its angle in the initial position."""
         start = int(np.argmin(np.abs(self.mesh - self.ready.kinematics.path.initial)))
-        quick = self.quick.measured(lambda numbers, at: _angle_of(rotor(numbers, at)))
+        quick = self.quick.measure(lambda numbers, at: _angle_of(rotor(numbers, at)))
         return node_turns(rotor(self.numbers, self.on_mesh), initial, start, len(self.mesh), quick)
 
     def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:

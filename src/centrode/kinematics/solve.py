@@ -119,7 +119,7 @@ def solve(
         _join_branches([part.branches for part in parts]),
         points,
         points[:, :, :, len(kinematics.numbers.frame) :],
-        room.turned,
+        room.all_angles,
         room.slides,
         room.spins,
         room.attitudes,

@@ -375,7 +375,7 @@ class LawSegment:
         after = before if self.to is None else self.to
         curve = CURVES["uniform" if self.curve == DWELL else self.curve]
         ends = [start + end * self.time for end in curve.breaks[1:]]
-        placed = [piece.placed(start, self.time, before, after) for piece in curve.pieces]
+        placed = [piece.place(start, self.time, before, after) for piece in curve.pieces]
         return list(zip(ends, placed, strict=True))
 
     def _conditions(self, before: float) -> list[Condition]:

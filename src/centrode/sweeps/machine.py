@@ -325,7 +325,7 @@ class Expressed:
         given = {path: box_array([variable(path)]) for path in self.task.paths}
         if asked.formulas:
             return {
-                formula.name: [as_node(formula.traced(self.folds, solved, given))]
+                formula.name: [as_node(formula.trace(self.folds, solved, given))]
                 for formula in asked.formulas
             }
         found = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
@@ -419,7 +419,7 @@ Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 class Passing(Protocol):
     """One way to pass the samples of mechanisms without events."""
 
-    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         """The states when all samples are passed."""
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
@@ -437,7 +437,7 @@ class EachForItself:
 
     asked: Expressed
 
-    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         asked = self.asked
         over_samples = Pass(reduction, tuple(rows), asked.inputs)
         # where nothing moves the samples are counted all the same
@@ -449,7 +449,7 @@ class EachForItself:
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
         for part, room in rooms:
             take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self.reduced(judging_states(self.asked), rows)
+        return self.reduce(judging_states(self.asked), rows)
 
     @cached_property
     def _scan(self) -> Scan:
@@ -467,9 +467,9 @@ class Along:
 
     asked: Expressed
 
-    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         asked = self.asked
-        return Walking(asked.judging.walk, reduction).reduced(asked.way, rows, asked.kernels, asked.threads)
+        return Walking(asked.judging.walk, reduction).reduce(asked.way, rows, asked.kernels, asked.threads)
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
@@ -647,7 +647,7 @@ class MachineCodeExecutor:
     def lanes(self, task: SweepTask) -> int:
         """How many mechanisms are computed together."""
         # a mechanism that is written takes the room of its columns beside its states
-        written = 0 if task.asked.reduced else sum(column.bytes for column in task.asked.columns)
+        written = 0 if task.asked.is_reduced else sum(column.bytes for column in task.asked.columns)
         return max(
             1,
             min(designs.KERNEL_LANES, designs.WORKING_SET // (COPIES * NUMBER * self.asked.states + written)),
@@ -686,7 +686,7 @@ class MachineCodeExecutor:
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
         """Fill in the mechanisms that have events: their motions as machine code, columns as by arrays."""
-        for lanes, solved in self._eventful.solved(numbers, left):
+        for lanes, solved in self._eventful.solve_lanes(numbers, left):
             parts = self._room(len(lanes))
             fill_columns(self.task, solved, _rows_at(values, lanes), parts)
             _put_columns(parts, lanes, results)
@@ -716,7 +716,7 @@ class MachineCodeExecutor:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         found = (
             self._fill_reductions(rows, at, results)
-            if self.task.asked.reduced
+            if self.task.asked.is_reduced
             else self._fill_samples(rows, at, results)
         )
         results["samples_ok"][at] = self.asked.samples
@@ -734,7 +734,7 @@ class MachineCodeExecutor:
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows |= self._passing.reduced(self._states(depth), rows)
+            rows |= self._passing.reduce(self._states(depth), rows)
         nodes = {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
         found = evaluate(Graph(nodes), rows)
         for name, numbers in columns.items():

@@ -267,7 +267,7 @@ class OutputFormula:
         flat = np.broadcast_to(found, (len(ok), 1))[:, 0]
         return np.where(ok.any(axis=1), flat, np.nan)
 
-    def traced(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
+    def trace(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
         """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
         given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
         return self.text(m, **given)
@@ -409,7 +409,7 @@ class SweepOutputs:
         return {name: slope_of(name) for name in names if slope_of(name) in names}
 
     @property
-    def reduced(self) -> bool:
+    def is_reduced(self) -> bool:
         """Whether a mechanism has one number of its samples."""
         return bool(self.reduction or self.formulas)
 
@@ -435,7 +435,7 @@ def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
 
     Raises InputError where nothing is reduced.
     """
-    if not asked.reduced:
+    if not asked.is_reduced:
         what = _("derivatives are those of reduced outputs")
         raise InputError("gradient", what, _("say how to reduce them"))
     reduced = [column for column in asked.columns if column not in JUDGED]

@@ -192,7 +192,7 @@ def tally_of(asked: SweepOutputs, samples: int, results: Mapping[str, npt.NDArra
     ok = results["samples_ok"]
     worst = float(np.fmax.reduce(results["worst_residual"]))
     extremes: Extremes = {}
-    if asked.reduced:
+    if asked.is_reduced:
         for column in asked.columns:
             # derivatives have no extremes of interest, and the variables of whole mechanisms have theirs
             if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):

@@ -111,7 +111,7 @@ class BodyMotions(Named):
         """One sample of a motion that is no batch."""
         return replace(self, **{name: getattr(self, name)[number] for name in ORDERS})
 
-    def carried(self, body: int, local: Sequence[float]) -> complex:
+    def place_in_frame(self, body: int, local: Sequence[float]) -> complex:
         """Where a place in a body's axes is, at one sample."""
         name = self.names[body]
         # place is that of the body's first named point, so the arm is measured from it

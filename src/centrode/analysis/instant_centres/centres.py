@@ -132,7 +132,7 @@ def point_at(bodies: BodyMotions, point: str) -> complex:
         if guide.point == point:
             return complex(bodies.place[bodies.number(name)])
     owner = next(name for name, link in mechanism.links.items() if point in link.coordinates)
-    return bodies.carried(bodies.number(owner), mechanism.links[owner].coordinates[point])
+    return bodies.place_in_frame(bodies.number(owner), mechanism.links[owner].coordinates[point])
 
 
 def contact_of(wheel: Rolling, bodies: BodyMotions) -> complex:
@@ -141,11 +141,11 @@ def contact_of(wheel: Rolling, bodies: BodyMotions) -> complex:
     centre, track = point_at(bodies, wheel.centre), wheel.along
     if track.through is not None:
         along = complex(*track.unit) * np.exp(1j * bodies.turn[on])
-        start = bodies.carried(on, track.through)
+        start = bodies.place_in_frame(on, track.through)
         return start + complex(((centre - start) * np.conj(along)).real * along)
     own = track.centre
     local = mechanism.points_of(wheel.on)[own] if isinstance(own, str) else own
-    middle = bodies.carried(on, local or (0.0, 0.0))
+    middle = bodies.place_in_frame(on, local or (0.0, 0.0))
     radius = track.radius or 0.0
     # a ring around its pin touches on the far side of the pin
     far = -1.0 if track.inside and wheel.radius > radius else 1.0

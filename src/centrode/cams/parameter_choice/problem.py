@@ -373,7 +373,7 @@ class ChoiceProblem:
         bound = abs(self.limits[name][1]) if name in self.limits else 0.0
         return bound or self._references.get(name, 1.0)
 
-    def measured(self, share: Array) -> tuple[dict[str, Array], dict[str, Array]]:
+    def measure(self, share: Array) -> tuple[dict[str, Array], dict[str, Array]]:
         """Measures (m,) with their signs, over their scales, and slopes (m, n) by the places in the box."""
         key = share.tobytes() + bytes(str(len(self.more)), "ascii")
         if self._known is None or self._known[0] != key:

@@ -92,7 +92,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
     bind and of the sides of the box (Karush, Kuhn and Tucker). The residual is a part of the slope's own size; the
     multiplier of a bound tells by which part the value changes when the bound is moved by a part of itself.
     """
-    values, slopes = problem.measured(share)
+    values, slopes = problem.measure(share)
     count = len(share)
     columns, names = [], []
     top = values[problem.best].max()
@@ -131,7 +131,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
 def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
     """One run: of the value made best, or (`elastic`) of the excess over the bounds."""
     count = len(start)
-    values, _slopes = problem.measured(start)
+    values, _slopes = problem.measure(start)
     limits = _targets(problem)
     if elastic:
         # the worst excess at the start, as the variable that is made least
@@ -140,12 +140,12 @@ def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
         top = float(values[problem.best].max())
 
     def room(z: Array) -> Array:
-        values, _slopes = problem.measured(z[:count])
+        values, _slopes = problem.measure(z[:count])
         kept = [limit - values[name] + (z[-1] if elastic else 0.0) for name, limit in limits.items()]
         return np.concatenate(kept if elastic else [z[-1] - values[problem.best], *kept])
 
     def room_slope(z: Array) -> Array:
-        _values, slopes = problem.measured(z[:count])
+        _values, slopes = problem.measure(z[:count])
         kept = [_with(-slopes[name], 1.0 if elastic else 0.0) for name in limits]
         return np.concatenate(kept if elastic else [_with(-slopes[problem.best], 1.0), *kept])
 

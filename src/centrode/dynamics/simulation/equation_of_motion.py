@@ -56,7 +56,7 @@ class Sorted:
     sort: str
 
     @property
-    def placed(self) -> bool:
+    def is_positional(self) -> bool:
         """Whether it can be represented by the drive's value, once for each sense."""
         return isinstance(self.effort.amount, (Constant, StraightSpring, LoadDiagram))
 
@@ -106,7 +106,7 @@ def _sort(kind: str, effort: LoadTerm) -> str:
 
 def formulas_of(efforts: tuple[Sorted, ...]) -> tuple[Sorted, ...]:
     """Those whose amount is computed anew at every time."""
-    return tuple(one for one in efforts if not one.placed)
+    return tuple(one for one in efforts if not one.is_positional)
 
 
 def of_time(efforts: tuple[Sorted, ...]) -> bool:
@@ -175,7 +175,7 @@ class ReducedFunctions:
         for first, sense in ((BACKWARDS, -1.0), (FORWARDS, 1.0)):
             state, known = self.state(values, sense)
             for k, sort in enumerate(SORTS):
-                placed = [one for one in self.efforts if one.placed and one.sort == sort]
+                placed = [one for one in self.efforts if one.is_positional and one.sort == sort]
                 found[first + k] = sum((_moment(one, state, known) for one in placed), np.zeros(len(values)))
         inertia, slope = shares(state, self.reducer.burden.masses, (1, len(values)))
         found[INERTIA], found[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]

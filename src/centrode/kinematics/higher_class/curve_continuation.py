@@ -281,7 +281,7 @@ class Rounds:
         begun = np.full((len(lane), width), np.nan)
         return cls(around, lane, forward, initial, begun, np.zeros(len(lane), dtype=np.intp))
 
-    def closed(
+    def closings(
         self, who: Lanes, origin: Array, pieces: Array, reached: Array
     ) -> list[tuple[np.intp, Period]]:
         """Walkers that have come round, of those whose last pieces brought them from an origin to what is reached."""
@@ -553,7 +553,7 @@ def _go_on(
         # hence the fifth root
         longer = np.clip((TARGET * walkers.step[who] / there.wrong) ** (1.0 / 5.0), 0.3, 2.0)
     walkers.step[who] = np.minimum(walkers.step[who] * longer, GREATEST)
-    for walker, period in walkers.rounds.closed(who, here.parameter, pieces, there.places.parameter):
+    for walker, period in walkers.rounds.closings(who, here.parameter, pieces, there.places.parameter):
         if walkers.trails[walker].end == "on":
             walkers.trails[walker].period = period
             walkers.stop(walker)

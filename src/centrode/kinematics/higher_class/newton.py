@@ -76,7 +76,7 @@ def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> 
     """A Newton step from a state, and its size."""
     at = system.at(ARRAYS, system.known, state)
     linear = system.linear(at) if linear is None else linear
-    moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
+    moved, rest = linear.reduce([-x for x in system.residual(ARRAYS, at)])
     free = solve_places(linear.matrix, system.stack(rest)[:, :, None])[:, :, 0]
     return GroupMotion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
 
@@ -122,10 +122,10 @@ def bordered_equations(
     values = system.residual(JETS, system.at(JETS, known, state))
     # jets of first order: values are the residual, slopes how the equations move with the parameter
     jets = [x if isinstance(x, Jet) else Jet((x, 0.0)) for x in values]
-    moved, rest = linear.reduced([-x.coefficients[0] for x in jets])
+    moved, rest = linear.reduce([-x.coefficients[0] for x in jets])
     # how unknowns and right sides move with one unit of the parameter in units of the path, so that the
     # parameter's column is of the size of the others
-    follow, pushed = linear.reduced([_times(x.coefficients[1], -around.unit) for x in jets])
+    follow, pushed = linear.reduce([_times(x.coefficients[1], -around.unit) for x in jets])
     count, free = len(parameter), linear.pattern.free
     rows = free if along is None else free + 1
     matrix = np.empty((count, rows, free + 1))

@@ -196,7 +196,7 @@ class Linear:
                     matrix[:, i, j] += _dot(slopes, shift) * unit
         return matrix
 
-    def reduced(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
+    def reduce(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
         """What right sides of all equations ask for at no free motion, and the right sides left over."""
         moved: dict[Entity, Shift] = {}
         for entity, by, _first in self.pattern.follows:
@@ -435,7 +435,7 @@ class GroupSystem:
             motion = _as_jets(shifts, free, k)
             below = known.map_numbers(lambda x, k=k: truncate_jet(x, k))  # type: ignore[misc]
             values = self.residual(JETS, self.at(JETS, below, state, motion))
-            moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
+            moved, rest = linear.reduce([_minus_coefficient(x, k) for x in values])
             freely = list(times(inverse, self.stack(rest)).T)
             for entity, shift in linear.whole(moved, freely).items():
                 for c, x in zip(shifts[entity], shift, strict=True):
@@ -449,7 +449,7 @@ class GroupSystem:
         values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
         zero = np.zeros(self.places)
         # a converged state leaves a residual: that is part of the error as well
-        moved, rest = linear.reduced([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
+        moved, rest = linear.reduce([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         bound = times(np.abs(inverse), self.stack([Rounded.of(x).bound for x in rest]))
         free = [Rounded(zero, column) for column in bound.T]
@@ -699,7 +699,7 @@ class Surroundings:
             used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
         return at
 
-    def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
+    def with_bounds(self, parameter: Array, lanes: Lanes) -> Positions:
         """Positions that the group's equations need, with bounds of their rounding errors, at parameters (k,)."""
         used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):

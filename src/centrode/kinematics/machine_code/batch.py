@@ -86,7 +86,7 @@ def solve_many(
     judged = judging.judge(values)
     if plan.steps and np.mean(judged.clear) < WORTH_WALKING:
         return solve(ready, span, numbers, lanes, progress)
-    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solved(
+    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solve(
         progress
     )
 
@@ -103,11 +103,11 @@ class _Many:
     judging: EventScreening
     judged: ScreenedEvents
 
-    def solved(self, progress: Progress | None) -> Solved:
+    def solve(self, progress: Progress | None) -> Solved:
         writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
         room = writer.room(self.lanes)
         sure = self._write(writer, room, progress)
-        found = writer.placed(room)
+        found = writer.views(room)
         residual = found["residual"]
         # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes to
         # the arrays
@@ -207,7 +207,7 @@ class _Many:
             self._events.unclosed.update(left[opened].tolist())  # nobody has looked
             yield left, some
         else:
-            yield from self._events.solved(self.numbers, left)
+            yield from self._events.solve_lanes(self.numbers, left)
 
     @cached_property
     def _events(self) -> Eventful:

@@ -221,7 +221,7 @@ class EventScreening:
         # need no walk
         if walk.moves(list(self._of_events.state.values())):
             way = way_of(self._path, {PARAMETER: self._near})
-            return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
+            return Walking(walk, self._of_events).reduce(way, values, self.executor, self.threads)
         return self._over_nodes.run(values, self.executor, self.threads)
 
     @property

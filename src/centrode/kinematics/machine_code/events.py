@@ -130,7 +130,7 @@ class Patches:
         room.fill_frame(kinematics.numbers)
         arrays = {
             "all_points": room.all_points,
-            "angles": room.turned,
+            "angles": room.all_angles,
             "slides": room.slides,
             "contacts": contacts,
             "residual": residual,
@@ -281,7 +281,7 @@ class EventSearch:
             # right one
             cosine[self._repaired_nodes], sine[self._repaired_nodes] = self._rotors_mended[link]
         start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
-        quick = self._quick.measured(partial(_angle_of, link))
+        quick = self._quick.measure(partial(_angle_of, link))
         return node_turns((cosine, sine), initial, start, len(self.mesh), quick)
 
     @cached_property
@@ -377,7 +377,7 @@ class Eventful:
     _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer, Writer]] = field(default_factory=dict)
     _memory: tuple[list[Array], list[Array]] = field(default_factory=lambda: ([], []))
 
-    def solved(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
+    def solve_lanes(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
         """The motions of some mechanisms of a batch, part by part; arrays stay as they are until the next part."""
         ready = fit_for(self.ready, self.span)
         kinematics = of_batch(ready.kinematics, numbers)
@@ -416,7 +416,7 @@ class Eventful:
         values = {**search.values, **values_of(branches, counts)}
         values |= {largest_of(group): largest for group, largest in branches.largest.items()}
         writer.write(values, room)
-        found = writer.placed(room)
+        found = writer.views(room)
         turns = self._turns(plan, search, found)
         status, doubtful = self._judge_samples(continuation, found[JUDGED], found["residual"])
         # samples that do not close although no radicand says so: their numbers go, as the arrays take theirs

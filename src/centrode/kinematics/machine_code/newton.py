@@ -301,7 +301,7 @@ class Matrix:
             *(x for arm in self.arms for x in arm),
         ]
 
-    def solved(self, right: Sequence[Operand]) -> list[Operand]:
+    def solve(self, right: Sequence[Operand]) -> list[Operand]:
         """The free coordinates that answer right sides."""
         found: list[Operand] = [0.0] * len(right)
         core = product(self.inverse, [right[i] for i in self.rows])
@@ -424,14 +424,14 @@ class _Stepping:
         foretold = move_posture(chain, start, ahead, far=True)
         # a matrix at the foretold place; it is kept for a second step, which shows whether steps shrink
         matrix = self._matrix(foretold)
-        one = matrix.solved(self._gaps(foretold, matrix.arms))
+        one = matrix.solve(self._gaps(foretold, matrix.arms))
         near = move_posture(chain, foretold, one)
-        two = matrix.solved(self._gaps(near, matrix.arms))
+        two = matrix.solve(self._gaps(near, matrix.arms))
         nearer = move_posture(chain, near, two)
         # the third step has the matrix of where it starts, so that what is left is of the square of a small
         # number
         matrix = self._matrix(nearer)
-        three = matrix.solved(self._gaps(nearer, matrix.arms))
+        three = matrix.solve(self._gaps(nearer, matrix.arms))
         found = move_posture(chain, nearer, three)
         # derivatives first near the place, then righted at the place found: one pass of each suffices, as
         # they are linear
@@ -482,7 +482,7 @@ class _Stepping:
         motion = [0.0 if all(map(is_literal_zero, c)) else Jet(c) for c in coefficients]
         at = self.chain.positions(known, with_turns(posture), motion)
         equations = self.chain.equations(NODE_JETS, at, matrix.arms)
-        off = matrix.solved(
+        off = matrix.solve(
             [minus(0.0, x.coefficients[order]) if isinstance(x, Jet) else 0.0 for x in equations]
         )
         return [plus(c[order], x) for c, x in zip(coefficients, off, strict=True)]
@@ -514,5 +514,5 @@ class _Stepping:
         """Posture and coefficients after one more step of Newton's method: equal values, which depend on dimensions."""
         at = self.chain.positions(self.values, found, self.rests)
         gaps = [minus(0.0, x) for x in self.chain.equations(m, at, matrix.arms)]
-        posture = move_posture(self.chain, found, matrix.solved(gaps))
+        posture = move_posture(self.chain, found, matrix.solve(gaps))
         return posture, *self._rates(posture, matrix, rates, bends)

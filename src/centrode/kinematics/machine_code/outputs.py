@@ -136,7 +136,7 @@ class Writer:
             first += nodes.size
         return found
 
-    def placed(self, room: Array) -> dict[str, Array]:
+    def views(self, room: Array) -> dict[str, Array]:
         """What is written by name, as views of the room with the shapes of a `Solved`: (..., lanes, samples, ...)."""
         return {
             name: _shape_numbers(name, stream, self.outputs[name].shape)

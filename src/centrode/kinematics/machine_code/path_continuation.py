@@ -311,7 +311,7 @@ class Walking:
             states,
         )
 
-    def reduced(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
+    def reduce(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
         """What is left of all samples at the end, and how sure that is: name -> (lanes,)."""
         state: dict[str, Array] = {}
         for leg in way.legs:

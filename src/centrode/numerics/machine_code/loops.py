@@ -82,7 +82,7 @@ class ColumnRows:
         more = self.block.put(f"icmp slt i64 {axis}.next, {end}")
         self.block.line(f"br i1 {more}, label %{again}, label %{done}")
 
-    def carried(self, axis: str, first: Value, before: str, after: str) -> str:
+    def counter_line(self, axis: str, first: Value, before: str, after: str) -> str:
         """The line at a loop's head that says where it stands."""
         return f"  {axis} = phi i64 [ {first}, %{before} ], [ {axis}.next, %{after} ]"
 
@@ -293,7 +293,7 @@ class _Writer:
         block.begin("end")
         block.line("ret void")
         # what a loop carries is known only at its end
-        block.lines[head:head] = [self.rows.carried(outer, "0", "entry", "outer_end")]
+        block.lines[head:head] = [self.rows.counter_line(outer, "0", "entry", "outer_end")]
 
     def _begin_rows(self) -> list[Value]:
         """Where rows begin, known before the loops; returns that of the outputs."""
@@ -319,7 +319,7 @@ class _Writer:
         after = block.label
         self.rows.advance(axis, "%lanes" if axis == "%lane" else "%steps", "inner", "outer_end")
         block.lines[head:head] = [
-            self.rows.carried(axis, "0", before, after), *self._carried_state(before, after)
+            self.rows.counter_line(axis, "0", before, after), *self._carried_state(before, after)
         ]  # fmt: skip
 
     def _room(self, stages: list[LoopStage]) -> dict[Node, int]:
@@ -386,7 +386,7 @@ class _Writer:
         after = block.label
         self.rows.advance(lane, end, f"stage{i}", f"behind{i}")
         block.begin(f"behind{i}")
-        block.lines[head:head] = [self.rows.carried(lane, "%first", before, after)]
+        block.lines[head:head] = [self.rows.counter_line(lane, "%first", before, after)]
 
     def _waiting(self, place: int, from_first: Value) -> Value:
         index = self.block.put(f"add i64 {from_first}, {place}")
@@ -526,7 +526,7 @@ class Tables:
         rest = scan.with_graph(graph, (*scan.parameters, *lanes.outputs), (*scan.inputs, *steps.outputs))
         return cls(ConstantTable(scan.inputs, steps), ConstantTable(scan.parameters, lanes), rest)
 
-    def added(self, call: Call) -> Call:
+    def split_call(self, call: Call) -> Call:
         """The arrays of a call of the scan as those of the rest."""
         parameters, inputs = self.of_lanes.below(call.parameters), self.of_steps.below(call.inputs)
         return Call(parameters, inputs, call.state, call.outputs)
