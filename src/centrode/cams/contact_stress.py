@@ -247,8 +247,8 @@ def greatest_along(ends: tuple[float, float], value: Callable[[Array], Array]) -
     phi = np.unique(np.append(np.linspace(*ends, ANGLES), np.clip(0.0, *ends)))
 
     def known(at: Array) -> Array:
-        found = value(at)
-        return np.where(np.isfinite(found), found, np.nan)
+        stresses = value(at)
+        return np.where(np.isfinite(stresses), stresses, np.nan)
 
     places, values = tops(known, phi, most=NEAR)
     if not places.size:

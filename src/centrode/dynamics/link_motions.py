@@ -58,7 +58,7 @@ class LinkMotion:
 
 def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]:
     """Every link with mass at one sample of a motion."""
-    found = []
+    motions = []
     for one in masses_of(mechanism):
         centre = one.planar_centre
         first = _vector(here["velocity_coefficient"], centre.base)
@@ -68,7 +68,7 @@ def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]
         angle = float(here["angle"].sel(link=one.link))
         # the centre's arm in the frame's axes; its derivatives are i phi' and i phi'' - phi'^2 times it
         arm = complex(centre.along, centre.across) * cmath.exp(1j * angle)
-        found.append(
+        motions.append(
             LinkMotion(
                 one.link,
                 float(one.mass),
@@ -79,7 +79,7 @@ def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]
                 bending,
             )
         )
-    return found
+    return motions
 
 
 def _vector(values: xr.DataArray, point: str) -> complex:

@@ -94,7 +94,7 @@ class TimeScale:
 
     def nodes(self, low: float, high: float) -> Array:
         """Mesh nodes from the last one below `low` to the first one above `high`."""
-        found = []
+        stretches = []
         # a tenth of a unit on both sides: nodes of the next stretch may be those just beyond the ends
         for k in self._stretches(self._advance(low, -0.1), self._advance(high, 0.1)):
             first, last = _ends(k, self.base)
@@ -104,8 +104,8 @@ class TimeScale:
             least = max(0, int(np.floor((low - first) / step)) - 2)
             most = int(np.ceil((min(high, last) - first) / step)) + 2
             nodes = first + (np.arange(least, most + 1, dtype=np.float64) + OFF_GRID) * step
-            found.append(nodes[nodes < last])
-        return np.concatenate(found)
+            stretches.append(nodes[nodes < last])
+        return np.concatenate(stretches)
 
     def _advance(self, time: float, units: float) -> float:
         here = self._stretch(time)
@@ -251,13 +251,13 @@ class Path:
 
     def impossible(self, parameter: Any) -> Any:
         """Where a cylinder would be shorter than zero: the mechanism is open there, whatever its formulas say."""
-        found = np.zeros(np.shape(parameter), dtype=bool)
+        negative = np.zeros(np.shape(parameter), dtype=bool)
         if any(one.drive.kind == "distance" for one in self.driven):
             values = self.drive_values(ARRAYS, parameter)
             for one in self.driven:
                 if one.drive.kind == "distance":
-                    found |= values[one.drive.id] <= 0.0
-        return found
+                    negative |= values[one.drive.id] <= 0.0
+        return negative
 
 
 def path_of(mechanism: Mechanism, scale: float) -> Path:

@@ -143,11 +143,11 @@ def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> li
             before = pieces.pop()
             first, last, inner = before[0], max(last, before[1]), before[2] + inner
         pieces.append((first, last, inner))
-    found = []
+    stretches = []
     # nodes of the mesh are kept, as turns are put in between them
     for first, last, inner in pieces:
         nodes = mesh[first : last + 1]
         between = [x for x in inner if nodes[0] < x < nodes[-1]]
         places = np.unique(np.concatenate([nodes, between]))
-        found.append(ParameterStretch(lane, places, first, np.searchsorted(places, nodes)))
-    return found
+        stretches.append(ParameterStretch(lane, places, first, np.searchsorted(places, nodes)))
+    return stretches

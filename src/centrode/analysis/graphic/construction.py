@@ -236,11 +236,11 @@ def triangle_of(
         return None
     names = (_side(first, second), first.text.split(" ")[0], second.text.split(" ")[0])
     # angles opposite to the sides, in the order of the sides
-    found = tuple(
+    angles = tuple(
         _angle(corners[a] - corners[k], corners[b] - corners[k])
         for k, a, b in ((2, 0, 1), (1, 0, 2), (0, 1, 2))
     )
-    return Triangle(names, sides, (found[0], found[1], found[2]))
+    return Triangle(names, sides, (angles[0], angles[1], angles[2]))
 
 
 def _side(first: Ray, second: Ray) -> str:

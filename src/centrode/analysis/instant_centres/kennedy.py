@@ -427,8 +427,8 @@ def construct_centres(
             "at", _("the mechanism has no position with velocities there"), _("ask for another one")
         )
     residual = float(motion["residual"][sample])
-    found = _Constructing(spots_of(everything.sample(sample)), residual).run()
-    return found if wanted is None else found.needed(wanted)
+    construction = _Constructing(spots_of(everything.sample(sample)), residual).run()
+    return construction if wanted is None else construction.needed(wanted)
 
 
 class _Constructing:
@@ -453,9 +453,9 @@ class _Constructing:
         while unknown:
             # all of a round before any is noted: no step leans on one of its own round, as in the circle
             # diagram
-            found = [step for step in map(self._derive_centre, unknown) if step is not None]
+            derived = [step for step in map(self._derive_centre, unknown) if step is not None]
             # one centre of the velocity field at a time: it may be all that Kennedy's theorem lacked
-            for pair, where, how, name, by in found or [self._centre_of_velocities(unknown)]:
+            for pair, where, how, name, by in derived or [self._centre_of_velocities(unknown)]:
                 if where is None:
                     self._rest(pair, by)
                 else:

@@ -115,9 +115,9 @@ def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | Non
         raise InputError(path, error.what, error.repair) from None
     unit = _unit(mechanism, path)
     scale = _scale(prepared, path, before, unit)
-    found = Varying(path, before, 0.0, 0.0, unit, scale)
-    _check_varies(prepared, found)
-    low, high = _default_bounds(found) if bounds is None else _given_bounds(found, bounds)
+    unbounded = Varying(path, before, 0.0, 0.0, unit, scale)
+    _check_varies(prepared, unbounded)
+    low, high = _default_bounds(unbounded) if bounds is None else _given_bounds(unbounded, bounds)
     return Varying(path, before, low, high, unit, scale)
 
 
@@ -248,13 +248,13 @@ class Candidates:
 
     def mechanism(self, change: Array) -> Mechanism:
         """The description of one candidate at scaled changes (p,)."""
-        found = self.prepared.mechanism
+        mechanism = self.prepared.mechanism
         for one, value in zip(self.varying, self.values(change[None, :])[0], strict=True):
-            found = with_value(found, one.path, float(value))
-        if places_anew(found):
+            mechanism = with_value(mechanism, one.path, float(value))
+        if places_anew(mechanism):
             # where angles place, they also decide the assembly; elsewhere the sides have to be written down
-            return replace_placed(found)
-        return _assembled_as(self.prepared, found, self.batch(change[None, :]))
+            return replace_placed(mechanism)
+        return _assembled_as(self.prepared, mechanism, self.batch(change[None, :]))
 
 
 def placed_numbers(
@@ -272,16 +272,20 @@ def placed_numbers(
             break
         waiting = [name for name in waiting if name not in posed]
     # paths are those of plain coordinates, so that dimensions_of takes them as given
-    found: dict[str, Number] = {}
+    coordinates: dict[str, Number] = {}
     for name, at in mechanism.frame.points.items():
         if isinstance(at, Placed):
-            found |= {f"frame.points.{name}.{axis}": x for axis, x in zip("xy", points[name], strict=True)}
+            coordinates |= {
+                f"frame.points.{name}.{axis}": x for axis, x in zip("xy", points[name], strict=True)
+            }
     for guide in mechanism.guides:
         if isinstance(guide.through, Placed):
             origin, rotor = poses[guide.on]
             inside = rotate_vector(subtract(points[guide.point], origin), reversed_rotor(rotor))
-            found |= {f"guides.{guide.id}.through.{axis}": x for axis, x in zip("xy", inside, strict=True)}
-    return found
+            coordinates |= {
+                f"guides.{guide.id}.through.{axis}": x for axis, x in zip("xy", inside, strict=True)
+            }
+    return coordinates
 
 
 def _pose(
@@ -330,14 +334,14 @@ def signs_at_start(
 
 
 def _hints(mechanism: Mechanism, group: Group, angles: Mapping[str, Number]) -> dict[str, Number]:
-    found: dict[str, Number] = {}
+    hints: dict[str, Number] = {}
     for link in links_of(group):
         angle = mechanism.links[link].angle
         if link in angles:
-            found[link] = np.asarray(angles[link])[:, None]
+            hints[link] = np.asarray(angles[link])[:, None]
         elif angle is not None:
-            found[link] = angle
-    return found
+            hints[link] = angle
+    return hints
 
 
 def _nearer(
@@ -378,15 +382,15 @@ def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechan
                 0 if prepared.assembled.signs[index] > 0 else 1
             ]
     assembly = mechanism.assembly.model_copy(update={"sides": FrozenMap(sides)})
-    found = mechanism.model_copy(update={"assembly": assembly})
+    redesigned = mechanism.model_copy(update={"assembly": assembly})
     at = _positions(batch)
     guided = {guide.link for guide in mechanism.guides} | {guide.on for guide in mechanism.guides}
     driven = {drive.link for drive in mechanism.drives}
     for link in _links_with_angles(mechanism, groups):
         if link not in guided and link not in driven and mechanism.space == "plane":
             cosine, sine = (float(np.reshape(x, -1)[0]) for x in at.poses[link].rotor)
-            found = with_value(found, f"links.{link}.angle", float(np.arctan2(sine, cosine)))
-    return found
+            redesigned = with_value(redesigned, f"links.{link}.angle", float(np.arctan2(sine, cosine)))
+    return redesigned
 
 
 def _positions(batch: Batch) -> Positions:

@@ -170,25 +170,25 @@ class ReducedFunctions:
 
     def at(self, values: Array) -> Array:
         """All rows (rows, n); NaN where the motion or its derivatives do not exist."""
-        found = np.empty((self.count, len(values)))
+        rows = np.empty((self.count, len(values)))
         # backwards first: the state of the forward sense is used for all that does not depend on it
         for first, sense in ((BACKWARDS, -1.0), (FORWARDS, 1.0)):
             state, known = self.state(values, sense)
             for k, sort in enumerate(SORTS):
                 placed = [one for one in self.efforts if one.is_positional and one.sort == sort]
-                found[first + k] = sum((_moment(one, state, known) for one in placed), np.zeros(len(values)))
+                rows[first + k] = sum((_moment(one, state, known) for one in placed), np.zeros(len(values)))
         inertia, slope = shares(state, self.reducer.burden.masses, (1, len(values)))
-        found[INERTIA], found[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]
+        rows[INERTIA], rows[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]
         for j, one in enumerate(self.formulas):
             row, effort = FORMULAS + EACH * j, one.effort
             # some turnings on the sphere have no value, and nothing that asks for it
-            found[row + COORDINATE] = effort.coordinate.value(state) if "x" in effort.amount.uses else 0.0
-            found[row + SPEED] = effort.coordinate.slope(state).value
-            found[row + ALONG] = effort.along(state)
-            found[row + GATE] = 1.0 if effort.gate is None else effort.gate.slope(state).value
+            rows[row + COORDINATE] = effort.coordinate.value(state) if "x" in effort.amount.uses else 0.0
+            rows[row + SPEED] = effort.coordinate.slope(state).value
+            rows[row + ALONG] = effort.along(state)
+            rows[row + GATE] = 1.0 if effort.gate is None else effort.gate.slope(state).value
         # of both senses the positions are the same, so one mask serves
-        found[:, ~known] = np.nan
-        return found
+        rows[:, ~known] = np.nan
+        return rows
 
     def state(self, values: Array, sense: float = 1.0) -> tuple[State, Known]:
         """Positions at values of the drive, and where they exist with their derivatives."""
@@ -219,14 +219,14 @@ class ReducedFunctions:
 
     def scales(self, peaks: Array) -> Array:
         """What counts as the greatest value of each row, where one may be nothing but rounding beside others."""
-        found = peaks.copy()
+        scales = peaks.copy()
         # J' may be rounding beside J, whose derivative it is
-        found[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
+        scales[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
         moments = slice(FORWARDS, FORMULAS)
-        found[moments] = np.maximum(peaks[moments], FLOOR * np.max(peaks[moments]))
+        scales[moments] = np.maximum(peaks[moments], FLOOR * np.max(peaks[moments]))
         along = FLOOR * max(1.0, self.reducer.ready.kinematics.path.scale)
-        found[FORMULAS:] = np.maximum(peaks[FORMULAS:], along)
-        return np.where(found > 0.0, found, 1.0)
+        scales[FORMULAS:] = np.maximum(peaks[FORMULAS:], along)
+        return np.where(scales > 0.0, scales, 1.0)
 
     def energy(self, values: Array) -> Array:
         """Potential energy [J] of weights and springs (n), zero where their coordinates are."""
@@ -326,10 +326,10 @@ class PanelTracks:
 
     def stretch(self, number: int) -> TrackStretch:
         """The stretch that begins that many lengths from the initial value."""
-        found = self._stretches.get(number)
-        if found is None:
-            found = self._stretches[number] = self._new(number)
-        return found
+        stretch = self._stretches.get(number)
+        if stretch is None:
+            stretch = self._stretches[number] = self._new(number)
+        return stretch
 
     def place(self, value: float, upwards: bool) -> tuple[int, int]:
         # a value on an edge belongs to the stretch that the motion enters
@@ -608,8 +608,8 @@ class FieldLeg:
         low, high = edges[panel], edges[panel + 1]
         # a stretch that begins where the motion ends is empty
         share = (2.0 * inside - low - high) / (high - low) if high > low else 0.0
-        found: Array = self.powers[panel] @ share**_ORDERS
-        return found if self.grown is None else found + self.grown
+        rows: Array = self.powers[panel] @ share**_ORDERS
+        return rows if self.grown is None else rows + self.grown
 
 
 class Field:
@@ -794,10 +794,10 @@ class Trajectory:
 
     def at(self, times: Array) -> tuple[Array, Array]:
         """States (STATES, n) at growing times, and the sense of the motion (n): 0.0 where it rests."""
-        found, senses = np.empty((STATES, len(times))), np.empty(len(times))
+        states, senses = np.empty((STATES, len(times))), np.empty(len(times))
         ends = [piece.last for piece in self.pieces]
         which = np.array([min(bisect_left(ends, t), len(ends) - 1) for t in times], dtype=np.intp)
         for k in np.unique(which):
             some = which == k
-            found[:, some], senses[some] = self.pieces[k].at(times[some]), self.pieces[k].sense
-        return found, senses
+            states[:, some], senses[some] = self.pieces[k].at(times[some]), self.pieces[k].sense
+        return states, senses

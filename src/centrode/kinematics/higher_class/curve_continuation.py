@@ -307,9 +307,9 @@ class Rounds:
         self.passed[who] += 1
         before = self.around.before(places, lane)
         system = self.around.system(needed_positions(self.around.equations, before), lane)
-        found = newton(system, system.normalise(foretold))
+        converged = newton(system, system.normalise(foretold))
         # a place that is not found compares with nothing, and closes nothing
-        state = np.where(found.found[:, None], found.state, np.nan)
+        state = np.where(converged.found[:, None], converged.state, np.nan)
         first = turns == 0
         self.begun[who[first]] = state[first]
         grown = state - self.begun[who]
@@ -445,15 +445,15 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     weight = np.full(numbers.shape, 1.0 / around.unit)
     weight[:, :-1] = around.blank(both).weights()
     base = CurvePlaces(numbers, direction, direction, along, forward, weight)
-    found = reach(around, both, base, along, parameter, state)
-    here = found.places
+    first_places = reach(around, both, base, along, parameter, state)
+    here = first_places.places
     width = start.shape[1] + 1
     walkers = Walkers(
         both, forward, np.where(forward < 0.0, *extent), here, np.full(2 * lanes, FIRST),
         np.sign(here.size), np.full((2 * lanes, 6, width), np.nan), np.zeros((2 * lanes, 2)),
-        [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1]), found.found.copy(),
+        [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1]), first_places.found.copy(),
     )  # fmt: skip
-    for walker in np.nonzero(~found.found)[0]:
+    for walker in np.nonzero(~first_places.found)[0]:
         walkers.stop(walker, lost=True)
     return walkers
 

@@ -117,7 +117,7 @@ def reach(
     They are as good as it takes to foretell others at such strides; without these, to the last digit.
     """
     count, free = len(parameter), along.shape[1] - 1
-    found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
+    arrived, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, FAR), np.full(count, np.nan)
     for k in range(STEPS):
         system, linear, moved, rest, follow, matrix = bordered_equations(
@@ -143,7 +143,7 @@ def reach(
             )
         # steps have to shrink, or the place belongs to another curve; tiny ones are rounding and need not
         done = good & enough
-        found |= done
+        arrived |= done
         active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
         last = size
         if not active.any():
@@ -164,8 +164,8 @@ def reach(
         )
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
-    found &= np.isfinite(inward[1]).all(axis=1)
-    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, found)
+    arrived &= np.isfinite(inward[1]).all(axis=1)
+    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, arrived)
 
 
 def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:
@@ -282,13 +282,13 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
 def _first_turn(coefficients: Array) -> Array:
     """The first share in [0, 1] at which polynomials (k, 6) turn back."""
     # where the polynomial has no turn, its middle: Newton's method goes on from there
-    found = np.full(len(coefficients), 0.5)
+    earliest = np.full(len(coefficients), 0.5)
     for k, c in enumerate(coefficients):
         roots = np.polynomial.Polynomial(c).deriv().roots()
         real = np.sort(roots.real[np.abs(roots.imag) < 1e-6])
         inside = real[(real >= -1e-6) & (real <= 1.0 + 1e-6)]
-        found[k] = inside[0] if len(inside) else 0.5
-    return found
+        earliest[k] = inside[0] if len(inside) else 0.5
+    return earliest
 
 
 def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:

@@ -49,7 +49,7 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
     state = start.copy()
     going = np.nonzero(np.isfinite(start).all(axis=1))[0]
-    found = np.zeros(len(start), dtype=bool)
+    converged = np.zeros(len(start), dtype=bool)
     sizes = np.full((steps, len(start)), np.nan)
     last = np.full(len(start), np.inf)
     for k in range(steps):
@@ -67,9 +67,9 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
             | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
         )
         last[going] = size
-        found[going[done]] = True
+        converged[going[done]] = True
         going = going[good & ~done]
-    return Converged(state, found, sizes)
+    return Converged(state, converged, sizes)
 
 
 def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> tuple[GroupMotion, Array]:

@@ -122,11 +122,11 @@ def stages_of(order: Sequence[Node]) -> list[LoopStage]:
     # what waits is written as a number, and a condition is none
     if count == 1 or len(waiting) > MOST_LEFT or any(x.is_condition for x in waiting):
         return [LoopStage(tuple(order), ())]
-    found = []
+    stages = []
     for number in range(count):
         nodes = tuple(node for node in order if numbers[node] == number)
-        found.append(LoopStage(nodes, tuple(x for x in waiting if numbers[x] == number)))
-    return found
+        stages.append(LoopStage(nodes, tuple(x for x in waiting if numbers[x] == number)))
+    return stages
 
 
 def _numbers(order: Sequence[Node]) -> dict[Node, int]:
@@ -197,11 +197,11 @@ def with_reciprocals(scan: Scan, inner: Sequence[str]) -> Scan:
 
 def _inner_loop_nodes(graph: Graph, names: set[str]) -> set[Node]:
     """Nodes that depend on variables of the inner loop."""
-    found: set[Node] = set()
+    inner: set[Node] = set()
     for node in graph.order:
-        if (node.operation == VARIABLE and node.detail in names) or any(x in found for x in node.arguments):
-            found.add(node)
-    return found
+        if (node.operation == VARIABLE and node.detail in names) or any(x in inner for x in node.arguments):
+            inner.add(node)
+    return inner
 
 
 FUNCTION = "centrode_scan"
@@ -395,11 +395,11 @@ class _Writer:
     def _independent_of(self, names: tuple[str, ...]) -> set[Node]:
         """Nodes that depend on none of the variables of the inner loop."""
         inner = {variable(name) for name in names}
-        found: set[Node] = set()
+        independent: set[Node] = set()
         for node in self.scan.graph.order:
-            if node not in inner and all(x in found for x in node.arguments):
-                found.add(node)
-        return found
+            if node not in inner and all(x in independent for x in node.arguments):
+                independent.add(node)
+        return independent
 
     def _compute(self, nodes: list[Node], places: dict[Node, list[Value]] | None = None) -> None:
         """Nodes in order; outputs are written at once: a number that waits to be written takes a register."""
@@ -427,14 +427,14 @@ class _Writer:
 
     def _places(self, bases: list[Value]) -> dict[Node, list[Value]]:
         """Where outputs are written."""
-        found: dict[Node, list[Value]] = {}
+        places: dict[Node, list[Value]] = {}
         if bases:
             of_step = self.block.put("mul i64 %step, %output_row")
             index = self.block.put(f"add i64 {of_step}, {self.rows.at}")
             # one node may be several outputs, each with a place of its own
             for base, node in zip(bases, self.scan.outputs.values(), strict=True):
-                found.setdefault(node, []).append(self.rows.place(base, index))
-        return found
+                places.setdefault(node, []).append(self.rows.place(base, index))
+        return places
 
     def _write(self, nodes: list[Node], places: dict[Node, list[Value]]) -> None:
         for node in nodes:
@@ -489,8 +489,8 @@ class ConstantTable:
     def _compute_rows(self, rows: Array) -> Array:
         whole = room_of(len(rows) + len(self.graph.outputs), 1, rows.shape[1], rows.dtype)[:, 0]
         whole[: len(rows)] = rows
-        found = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
-        for i, values in enumerate(found.values(), len(rows)):
+        constants = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
+        for i, values in enumerate(constants.values(), len(rows)):
             whole[i] = values
         return whole
 
