@@ -151,7 +151,7 @@ def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tup
         if not first <= last:
             # nothing of the span is reached
             return {group: (nan, nan) for _one, group in dyads}
-        course = monitored_function(stretch, [one for one, _group in dyads])
+        course = monitored_function(stretch, [watched for watched, _group in dyads])
         return {group: _extremes(course, k, group) for k, (_one, group) in enumerate(dyads)}
 
 

@@ -289,7 +289,7 @@ class TextCurvature:
         watched = _Watched()
         with np.errstate(all="ignore"):
             self._value(watched, Jet([places]))
-        return np.asarray([np.broadcast_to(one, places.shape) for one in watched.asked]).reshape(
+        return np.asarray([np.broadcast_to(value, places.shape) for value in watched.asked]).reshape(
             -1, len(places)
         )
 

@@ -169,8 +169,8 @@ def breaks_of(path: RollerPath, start: float, stop: float) -> tuple[float, ...]:
     breaks = set(path.law.breaks)
     if isinstance(path, SymmetricPath):
         # a symmetric path has the breaks of its half on both sides, and one in the middle
-        breaks = {0.0, *breaks, *(-one for one in breaks)}
-    return tuple(sorted(one for one in breaks if start < one < stop))
+        breaks = {0.0, *breaks, *(-place for place in breaks)}
+    return tuple(sorted(place for place in breaks if start < place < stop))
 
 
 def working_arc(path: RollerPath, legs: int | None = None, half: float | None = None) -> Arc:
@@ -246,8 +246,8 @@ def _image(working: Arc, start: float, width: float, number: int) -> Arc:
     # an odd image is mirrored about its beginning, an even one is only turned
     by = 2 * start + (number + 1) * width if odd else number * width
     curve = Turned(working.curve, start, working.stop, by, odd)
-    inner = [one for one in working.breaks if start < one < working.stop]
-    images = sorted((by - one if odd else by + one) for one in inner)
+    inner = [place for place in working.breaks if start < place < working.stop]
+    images = sorted((by - place if odd else by + place) for place in inner)
     return Arc("return", curve, first, stop, tuple(images))
 
 
@@ -355,7 +355,7 @@ def _additions(shares: Jet, contact: int, count: int) -> list[Jet]:
     for n in range(1, count):
         # the recurrence (n + 1) P_(n+1) = (2 n + 1) x P_n - n P_(n-1)
         legendre.append((shares * legendre[n] * (2 * n + 1.0) - legendre[n - 1] * float(n)) / (n + 1.0))
-    return [window * one for one in legendre[:count]]
+    return [window * polynomial for polynomial in legendre[:count]]
 
 
 # Bounds of a return arc: its size and its curvature, and by how much a curve keeps them.
@@ -394,7 +394,7 @@ class ArcBounds:
 
     def __post_init__(self) -> None:
         lengths = (self.least_radius, self.greatest_radius, self.least_bend, self.least_hollow)
-        if any(math.isnan(one) or one < 0 for one in lengths) or math.isinf(self.least_radius):
+        if any(math.isnan(length) or length < 0 for length in lengths) or math.isinf(self.least_radius):
             raise InputError("[return]", _("bounds are positive lengths"), _("correct them"))
         if not 0 < self.pressure_angle <= math.pi / 2:
             what = _("a greatest pressure angle lies between 0 and 90 deg")
@@ -475,7 +475,9 @@ class Margins:
     def along(curve: ReturnCurve, bounds: ArcBounds) -> Margins:
         """The extremes of a whole arc."""
         size, bend, slant = sizes(curve), bends(curve), slants(curve)
-        places = tuple(at for one in (size, bend, slant) for at in (one.at_least, one.at_greatest))
+        places = tuple(
+            at for extreme in (size, bend, slant) for at in (extreme.at_least, extreme.at_greatest)
+        )
         steepest = max(-slant.least, slant.greatest)
         # the angle counts without its sign
         return Margins(bounds, (size.least, size.greatest), (bend.least, bend.greatest), steepest, places)

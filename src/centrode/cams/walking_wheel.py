@@ -131,7 +131,7 @@ class Shoe:
         last, first = abs(self._share[-1]), abs(self._share[0]) or 1.0
         # the last term over the first is the share left out at the distance where it reaches rounding
         reach = (np.finfo(float).eps * first / last) ** (1.0 / TERMS) if last else NEAR
-        return float(min(NEAR, reach, *(abs(one) for one in self.arc.breaks if one)))
+        return float(min(NEAR, reach, *(abs(place) for place in self.arc.breaks if place)))
 
 
 def shoe(arc: Arc, height: float) -> Shoe:
@@ -380,7 +380,7 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> WheelMov
             asked=math.degrees(working.stop), half=math.degrees(half)
         )
         raise InputError("[mover] legs", what, _("take a longer working arc or more legs"))
-    breaks = tuple(one for one in working.breaks if -half < one < half)
+    breaks = tuple(place for place in working.breaks if -half < place < half)
     arc = Arc("working", working.curve, -half, half, breaks)
     height = float(working.curve.radius(np.zeros(1))[0, 0]) + post
     return WheelMover(closed, legs, shoe(arc, height), roller)

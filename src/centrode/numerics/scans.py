@@ -266,9 +266,11 @@ def greatest_with_gradient(name: str, value: Node, by: Sequence[Node]) -> Reduct
 
 def together(*reductions: Reduction) -> Reduction:
     """Several reductions in one pass."""
-    state = {name: node for one in reductions for name, node in one.state.items()}
-    start = {name: value for one in reductions for name, value in one.start.items()}
-    return Reduction(state, start, {name: node for one in reductions for name, node in one.at_end.items()})
+    state = {name: node for reduction in reductions for name, node in reduction.state.items()}
+    start = {name: value for reduction in reductions for name, value in reduction.start.items()}
+    return Reduction(
+        state, start, {name: node for reduction in reductions for name, node in reduction.at_end.items()}
+    )
 
 
 def end_of(reduction: Reduction, parameters: Sequence[str]) -> Scan:

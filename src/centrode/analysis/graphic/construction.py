@@ -260,7 +260,7 @@ def _angle(a: complex, b: complex) -> float:
 def _train(stage: ConstructionStage, group: Train) -> list[str]:
     """Links that gears turn together: angular velocities by their equations, then images one after the other."""
     stage.turns.update(train_rates(stage, group))
-    equations = [line for one in group.equations for line in wheel_equations(stage, one)]
+    equations = [line for equation in group.equations for line in wheel_equations(stage, equation)]
     for link, pivot in group.places:
         stage.bases[link] = pivot
         for point, bringing in group.brought:

@@ -118,10 +118,10 @@ def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], d
         drive = path.driven[0].drive.id
         return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
     first, second = {}, {}
-    for one in path.driven:
-        value = one.value(JETS, Jet.variable(span.time, 2))
+    for driven in path.driven:
+        value = driven.value(JETS, Jet.variable(span.time, 2))
         value = value if isinstance(value, Jet) else Jet((value, 0.0, 0.0))
-        first[one.drive.id], second[one.drive.id] = (
+        first[driven.drive.id], second[driven.drive.id] = (
             float(np.broadcast_to(value.derivative(k), (1,))[0]) for k in (1, 2)
         )
     return first, second
@@ -273,7 +273,8 @@ def diagrams(
     # a step on paper [m] in millimetres, times what a millimetre stands for
     coarse = replace(board, length_step=1e3 * board.paper_step * exact_drawing.scale)
     grains = tuple(
-        1e3 * board.paper_step * one.scale for one in (exact_drawing.velocity, exact_drawing.acceleration)
+        1e3 * board.paper_step * diagram.scale
+        for diagram in (exact_drawing.velocity, exact_drawing.acceleration)
     )
     # with the reading step all is drawn again, at the scales already chosen
     again = _construct_diagrams(prepared, exact, span, coarse, {}, (grains[0], grains[1]))

@@ -215,19 +215,19 @@ class Candidates:
 
     def values(self, changes: Array) -> Array:
         """Values (n, p) in SI at scaled changes (n, p)."""
-        before = np.array([one.before for one in self.varying])
-        return np.asarray(before + changes * np.array([one.scale for one in self.varying]))
+        before = np.array([number.before for number in self.varying])
+        return np.asarray(before + changes * np.array([number.scale for number in self.varying]))
 
     def box(self) -> tuple[Array, Array]:
         """Least and greatest scaled change of each number."""
-        low = np.array([(one.low - one.before) / one.scale for one in self.varying])
-        high = np.array([(one.high - one.before) / one.scale for one in self.varying])
+        low = np.array([(number.low - number.before) / number.scale for number in self.varying])
+        high = np.array([(number.high - number.before) / number.scale for number in self.varying])
         return low, high
 
     def batch(self, changes: Array) -> Batch:
         """The mechanisms at scaled changes (n, p); what the initial angles place is placed anew."""
         mechanism = self.prepared.mechanism
-        columns = dict(zip((one.path for one in self.varying), self.values(changes).T, strict=True))
+        columns = dict(zip((number.path for number in self.varying), self.values(changes).T, strict=True))
         angles = {p.split(".")[1]: x for p, x in columns.items() if self._turns(p)}
         varied = {path: x for path, x in columns.items() if not self._turns(path)}
         # twice: what is placed depends on the numbers that vary, and the dimensions on what is placed
@@ -244,13 +244,13 @@ class Candidates:
         return Batch(kinematics, signs, len(changes))
 
     def _turns(self, path: str) -> bool:
-        return any(one.path == path and one.is_initial_angle for one in self.varying)
+        return any(number.path == path and number.is_initial_angle for number in self.varying)
 
     def mechanism(self, change: Array) -> Mechanism:
         """The description of one candidate at scaled changes (p,)."""
         mechanism = self.prepared.mechanism
-        for one, value in zip(self.varying, self.values(change[None, :])[0], strict=True):
-            mechanism = with_value(mechanism, one.path, float(value))
+        for number, value in zip(self.varying, self.values(change[None, :])[0], strict=True):
+            mechanism = with_value(mechanism, number.path, float(value))
         if places_anew(mechanism):
             # where angles place, they also decide the assembly; elsewhere the sides have to be written down
             return replace_placed(mechanism)
@@ -474,7 +474,7 @@ class _Lengths:
     def __init__(self, candidates: Candidates) -> None:
         self.candidates = candidates
         self.mechanism = candidates.prepared.mechanism
-        self.bounds = {one.path: VariedRange(one.low, one.high) for one in candidates.varying}
+        self.bounds = {number.path: VariedRange(number.low, number.high) for number in candidates.varying}
 
     def of(self, link: str) -> VariedRange | None:
         length = self.mechanism.links[link].length

@@ -450,7 +450,7 @@ def turns_well(found: Rotatability, least_angle: float) -> bool:
 
 
 def _least_angle(found: Rotatability) -> float:
-    return min((one.least for one in found.one.transmissions), default=pi / 2)
+    return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
 
 
 def _angle(given: Value | None) -> float:
@@ -541,6 +541,6 @@ def _confirm_change(
 
 def _changes(varying: Sequence[Varying], change: Any) -> tuple[Change, ...]:
     return tuple(
-        Change(one.path, one.before, one.before + float(x) * one.scale, one.unit, float(x))
-        for one, x in zip(varying, change, strict=True)
+        Change(number.path, number.before, number.before + float(x) * number.scale, number.unit, float(x))
+        for number, x in zip(varying, change, strict=True)
     )

@@ -196,7 +196,9 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
 def _link_turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
     members, dyads = watched_members(tour), watched_dyads(tour)
     # members and dyads in one course: each evaluation of the motion serves them all
-    course = monitored_function(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
+    course = monitored_function(
+        tour, [*(watched for watched, _kind in members), *(watched for watched, _group in dyads)]
+    )
     swings = strokes_of(course, [kind for _one, kind in members])
     circuits, missing = circuits_of(tour)
     return LinkTurning(

@@ -182,7 +182,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
         initial = float(prepared.assembled.positions.drives[drive])
         continuation = starting_at(prepared, held_path(prepared, drive, initial, held))
     path = continuation.kinematics.path
-    chosen = next(one.drive for one in path.driven if one.drive.id == drive)
+    chosen = next(driven.drive for driven in path.driven if driven.drive.id == drive)
     extent = tau * TURNS if chosen.kind == "angle" else SEARCH * path.unit
     ends = np.array([path.initial - extent, path.initial + extent])
     EventScan(continuation, mesh_of(path, ends)).run()
@@ -269,12 +269,13 @@ def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> Monitore
     nodes = tour.nodes()
     # one derivative for the signs of the rates; the second is needed only at the few cells with a root
     at = tour.at(nodes, 1)
-    values = np.array([_unwrap(one, one.value(at, len(nodes))) for one in watched])
-    rates = np.array([one.rate(at, len(nodes))[0] for one in watched])
+    values = np.array([_unwrap(member, member.value(at, len(nodes))) for member in watched])
+    rates = np.array([member.rate(at, len(nodes))[0] for member in watched])
     if not len(watched):
         return MonitoredFunction(tour, (), nodes, np.zeros((0, len(nodes))), ())
     scale = [
-        1.0 if one.unit == "rad" else float(tour.continuation.kinematics.numbers.scale) for one in watched
+        1.0 if member.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
+        for member in watched
     ]
     moving = np.ptp(values, axis=1) > STILL * np.array(scale)
     # of what stands still the rate is rounding, and changes its sign everywhere
@@ -282,9 +283,9 @@ def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> Monitore
     places = _roots(tour, watched, which, nodes[cells], nodes[cells + 1])
     reached = _values_at(tour, watched, which, places)
     turned = []
-    for k, one in enumerate(watched):
+    for k, member in enumerate(watched):
         mine = which == k
-        extremes = _near(one, reached[mine], values[k][cells[mine]])
+        extremes = _near(member, reached[mine], values[k][cells[mine]])
         turned.append(_in_order(tour, places[mine], extremes))
     return MonitoredFunction(tour, tuple(watched), nodes, values, tuple(turned))
 
@@ -577,7 +578,7 @@ def watched_members(tour: DriveSweep) -> list[tuple[Watched, Literal["link", "gu
     # an angle that a drive gives from the frame is no result: it is the question
     links = [angle(link) for link in numbers.ends if link not in driven]
     guides = [slide(g.id, g.point) for g in kinematics.structure.mechanism.guides if g.id not in sliding]
-    return [*((one, "link") for one in links), *((one, "guide") for one in guides)]
+    return [*((member, "link") for member in links), *((member, "guide") for member in guides)]
 
 
 def strokes_of(
@@ -596,18 +597,18 @@ def strokes_of(
 def _stroke_of(
     course: MonitoredFunction, k: int, member: Literal["link", "guide"], lined: Sequence[Pairs]
 ) -> LinkStroke:
-    tour, one = course.tour, course.watched[k]
+    tour, watched = course.tour, course.watched[k]
     values = course.values[k]
     shift = _shift(course, k, member)
     finite = np.isfinite(values)
     moved = float(np.ptp(values[finite])) if finite.any() else 0.0
-    scale = 1.0 if one.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
+    scale = 1.0 if watched.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
     # only a tour that ends where it began has whole turns
-    turns = round((values[-1] - values[0]) / tau) if tour.comes_round and one.unit == "rad" else None
-    if tour.comes_round and one.unit != "rad":
+    turns = round((values[-1] - values[0]) / tau) if tour.comes_round and watched.unit == "rad" else None
+    if tour.comes_round and watched.unit != "rad":
         turns = 0
     if moved <= STILL * scale:
-        return LinkStroke(one.name, member, "still", one.unit, turns, None, None, 0.0, None, (), ())
+        return LinkStroke(watched.name, member, "still", watched.unit, turns, None, None, 0.0, None, (), ())
     extremes = [
         StrokeExtreme(float(value) + shift, float(place), pairs)
         for place, value, pairs in zip(*course.turned[k], lined, strict=True)
@@ -618,15 +619,25 @@ def _stroke_of(
     if turns or None in ends or not extremes:
         kind: Literal["turns", "swings"] = "swings" if None in ends else "turns"
         return LinkStroke(
-            one.name, member, kind, one.unit, turns, None, None, None, None, tuple(extremes), ()
+            watched.name,
+            member,
+            kind,
+            watched.unit,
+            turns,
+            None,
+            None,
+            None,
+            None,
+            tuple(extremes),
+            (),
         )
     least, greatest = (pick(extremes, key=lambda e: e.value) for pick in (min, max))
     stroke = greatest.value - least.value
     return LinkStroke(
-        one.name,
+        watched.name,
         member,
         "swings",
-        one.unit,
+        watched.unit,
         turns,
         least,
         greatest,
@@ -651,19 +662,19 @@ def _shift(course: MonitoredFunction, k: int, member: str) -> float:
 
 def _ends(course: MonitoredFunction, k: int, shift: float) -> list[StrokeExtreme | None]:
     """The values at the ends of the drive's range, where the member stops with it; None where they are undetermined."""
-    tour, one = course.tour, course.watched[k]
+    tour, watched = course.tour, course.watched[k]
     ends: list[StrokeExtreme | None] = []
     for limit, node in ((tour.low, 0), (tour.high, -1)):
         if not np.isfinite(limit):
             continue
         # at the limit itself the radicand is rounding and may be negative: it is taken as zero
-        value = float(one.value(tour.positions_at(limit, ARRAYS), 1)[0])
+        value = float(watched.value(tour.positions_at(limit, ARRAYS), 1)[0])
         near = float(course.values[k][node])
         if _goes_to_infinity(tour, limit) or not (np.isfinite(value) and np.isfinite(near)):
             ends.append(None)
             continue
         # the angle at the limit in the turn of the node beside it
-        value += tau * round((near - value) / tau) if one.unit == "rad" else 0.0
+        value += tau * round((near - value) / tau) if watched.unit == "rad" else 0.0
         ends.append(StrokeExtreme(value + shift, limit, (), True))
     return ends
 

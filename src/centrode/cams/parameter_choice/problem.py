@@ -137,7 +137,7 @@ def _limit_curvature(trial: PathTrial, phi: Array) -> Array:
 
 
 def _starts(trials: Sequence[PathTrial]) -> Array:
-    return np.array([[math.log(one.radius) for one in trials], [one.gamma for one in trials]])
+    return np.array([[math.log(trial.radius) for trial in trials], [trial.gamma for trial in trials]])
 
 
 def _solve_panel(start: Array, curvature: Array, length: float) -> tuple[Array, Array]:
@@ -409,7 +409,10 @@ class ChoiceProblem:
 
     @property
     def _measures(self) -> dict[str, Measure]:
-        return {self.best: MEASURES[self.best], **{name: one for name, (one, _bound) in self.limits.items()}}
+        return {
+            self.best: MEASURES[self.best],
+            **{name: measure for name, (measure, _bound) in self.limits.items()},
+        }
 
     @property
     def _references(self) -> dict[str, float]:
@@ -419,8 +422,8 @@ class ChoiceProblem:
             some = np.stack([np.full(count, share) for share in (0.25, 0.5, 0.75)])
             middle = self.family.paths(some, self.phi)
             self._sizes = {
-                name: float(np.max(np.abs(one.of(middle, self.family.contact)))) or 1.0
-                for name, one in self._measures.items()
+                name: float(np.max(np.abs(measure.of(middle, self.family.contact)))) or 1.0
+                for name, measure in self._measures.items()
             }
         return self._sizes
 

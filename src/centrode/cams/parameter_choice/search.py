@@ -188,9 +188,9 @@ def _judge(problem: ChoiceProblem, share: Array) -> SearchResult:
 
 def _rank(found: Sequence[SearchResult]) -> list[SearchResult]:
     best = found[0]
-    for one in found[1:]:
-        best = one if one.better_than(best) else best
-    return [best, *(one for one in found if one is not best)]
+    for result in found[1:]:
+        best = result if result.better_than(best) else best
+    return [best, *(result for result in found if result is not best)]
 
 
 def _exchange_angles(problem: ChoiceProblem, found: SearchResult) -> SearchResult:
@@ -316,7 +316,7 @@ def choose(
     """
     _check(family, best, bounds)
     problem = ChoiceProblem(family, best, bounds)
-    results = search(problem, family.share(start), starts, [family.share(one) for one in warm])
+    results = search(problem, family.share(start), starts, [family.share(cam_near) for cam_near in warm])
     first = results[0]
     admissible = first.excess <= KEPT
     residual, held = kkt_residual(problem, first.share) if admissible else (float("nan"), {})
@@ -347,11 +347,11 @@ def design(family: Family, share: Array, best: str, bounds: Mapping[str, float])
 
 def _count_agreeing(found: Sequence[SearchResult], first: SearchResult, admissible: bool) -> int:
     same = [
-        abs(one.value - first.value) <= SAME * max(abs(first.value), 1.0)
+        abs(result.value - first.value) <= SAME * max(abs(first.value), 1.0)
         if admissible
-        else abs(one.excess - first.excess) <= SAME
-        for one in found
-        if not admissible or one.excess <= ACTIVE
+        else abs(result.excess - first.excess) <= SAME
+        for result in found
+        if not admissible or result.excess <= ACTIVE
     ]
     return sum(same)
 
@@ -398,7 +398,7 @@ class TradeOff:
 
     def values(self, name: str) -> Array:
         """Values in SI of a measure along the front."""
-        return np.array([one.measures[name].value for one in self.designs])
+        return np.array([design.measures[name].value for design in self.designs])
 
 
 def trade_off(
@@ -625,12 +625,12 @@ def prove(cam: Cam, bounds: Mapping[str, float], best: str) -> Proof:
     own = MEASURES[best].sign * values[best]
     near = _neighbours(cam)
     gain, better, admissible = -math.inf, None, 0
-    for one in near:
-        measures = measures_of(one, NEAR_ANGLES)
+    for neighbour in near:
+        measures = measures_of(neighbour, NEAR_ANGLES)
         if excess_of(measures, bounds) <= 0:
             admissible += 1
             by = (own - MEASURES[best].sign * measures[best]) / (abs(own) or 1.0)
-            gain, better = (by, one) if by > gain else (gain, better)
+            gain, better = (by, neighbour) if by > gain else (gain, better)
     kept = better if gain > ROUNDING else None
     return Proof(values, excess_of(values, bounds), len(near), admissible, gain, kept)
 
@@ -649,7 +649,7 @@ def measures_of(cam: Cam, angles: int) -> dict[str, float]:
     phi = np.unique(np.append(np.linspace(0.0 if mirrored else low, high, angles), 0.0))
     radius = cam.roller.radius if cam.roller is not None else 0.0
     rho, gamma, curvature = (
-        one[:, None] for one in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])
+        values[:, None] for values in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])
     )
     tried = BatchPaths(phi, rho, gamma, curvature, np.array([radius]), mirrored)
     if not np.isfinite(rho * gamma * curvature).all():
@@ -666,7 +666,7 @@ def excess_of(values: Mapping[str, float], bounds: Mapping[str, float]) -> float
         for name, (measure, bound) in limits.items()
     ]
     # where a measure is not known nothing is kept
-    return max(math.inf if math.isnan(one) else one for one in missed)
+    return max(math.inf if math.isnan(miss) else miss for miss in missed)
 
 
 def _neighbours(cam: Cam) -> list[Cam]:

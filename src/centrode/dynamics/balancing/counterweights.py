@@ -252,9 +252,11 @@ def with_counterweights(
     """The description with counterweights in the masses, centres and inertias of their links."""
     own = {mass.link: mass for mass in masses}
     links = dict(mechanism.links)
-    for one in counterweights:
-        if one.mass > 0.0:
-            links[one.link] = _heavier(links[one.link], own.get(one.link), one)
+    for counterweight in counterweights:
+        if counterweight.mass > 0.0:
+            links[counterweight.link] = _heavier(
+                links[counterweight.link], own.get(counterweight.link), counterweight
+            )
     return replace_parts(mechanism, links=links)
 
 

@@ -84,7 +84,7 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     """
     values = turning.values(INSTANTS * turning.turns)
     state, tracks = turning.at(values)
-    mass = np.array([one.mass for one in turning.masses])
+    mass = np.array([each.mass for each in turning.masses])
     # constants do not shake: only what differs from the mean counts
     own = _remove_mean(mass @ tracks.places[0])
     pairs = [mass_moments(state, spot) for spot in spots]
@@ -124,7 +124,7 @@ def enough_spots(
     chosen = list(hung)
     # first those hinged to the frame, as their mass alone does nothing; then others until the balance is
     # complete
-    for spot in [one for one in candidates if not one.fixed]:
+    for spot in [each for each in candidates if not each.fixed]:
         if full_balance(turning, chosen).complete:
             break
         chosen.append(spot)
@@ -132,7 +132,7 @@ def enough_spots(
         return list(candidates)
     # from the last one back: what has become superfluous goes
     for spot in reversed(list(chosen)):
-        fewer = [one for one in chosen if one is not spot]
+        fewer = [each for each in chosen if each is not spot]
         if full_balance(turning, fewer).complete:
             chosen = fewer
     return chosen
@@ -322,7 +322,7 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
 
 def _momentum(tracks: MassTracks, masses: Sequence[Mass]) -> tuple[Array, float]:
     """Moment of momentum at unit speed of the drive (n), and the greatest sum of the sizes of its parts."""
-    mass, inertia = (np.array([getattr(one, name) for one in masses]) for name in ("mass", "inertia"))
+    mass, inertia = (np.array([getattr(each, name) for each in masses]) for name in ("mass", "inertia"))
     # about any place, as the force is balanced; near the middle numbers are small
     middle = tracks.places[0].mean()
     parts = [mass[:, None] * cross(tracks.places[0] - middle, tracks.places[1])]
@@ -426,7 +426,7 @@ class BalanceProblem:
     def unit(self) -> float:
         """What products are measured by [kg m]: all masses times the greatest length."""
         scale = self.turning.instants.ready.kinematics.path.scale
-        return scale * (sum(one.mass for one in self.turning.masses) or 1.0)
+        return scale * (sum(each.mass for each in self.turning.masses) or 1.0)
 
     @property
     def linear(self) -> bool:
@@ -572,7 +572,7 @@ def lightest(
     )
     most = [spot.making.greatest for spot in spots]
     # in units of the problem, and never without a bound, as linear programmes need a bounded box
-    limits = np.array([WIDE if one is None else min(WIDE, one / problem.unit) for one in most])
+    limits = np.array([WIDE if limit is None else min(WIDE, limit / problem.unit) for limit in most])
     x, bound = _solve_problem(problem, limits, None)
     for _exchange in range(EXCHANGES):
         finer = problem.with_tops(x)
@@ -739,13 +739,13 @@ def by_fraction(
 
 def check_masses(spots: Sequence[CounterweightPlace], weighed: Sequence[Counterweight]) -> None:
     """Refuse counterweights with more mass than they may have."""
-    for spot, one in zip(spots, weighed, strict=True):
+    for spot, weight in zip(spots, weighed, strict=True):
         most = spot.making.most
-        if most is not None and one.mass > most * (1.0 + 1e-9):
+        if most is not None and weight.mass > most * (1.0 + 1e-9):
             what = _("the counterweight on {link} would have {mass:.6g} kg, more than {most:.6g} kg")
             raise MotionError(
                 "most",
-                what.format(link=one.link, mass=one.mass, most=most),
+                what.format(link=weight.link, mass=weight.mass, most=most),
                 _("allow more, give it a greater radius, or ask for the least greatest force"),
             )
 
@@ -763,7 +763,7 @@ def _cannot(
 ) -> MotionError:
     """Why the force cannot be balanced fully."""
     hinged = hinged_from(mechanism)
-    heavy = [one.link for one in turning.masses if one.weighs and one.link not in hinged]
+    heavy = [mass.link for mass in turning.masses if mass.weighs and mass.link not in hinged]
     links = ", ".join(spot.link for spot in spots) or _("none")
     if heavy:
         what = _("its force cannot be balanced fully: hinges alone do not lead from the frame to {links}")

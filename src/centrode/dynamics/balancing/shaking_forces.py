@@ -105,8 +105,8 @@ def effects_of(tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, ab
 
     With J the inertia reduced to the parameter q, the drive must give J q'' + (dJ/dq) q'^2 / 2.
     """
-    mass = np.array([one.mass for one in masses])
-    inertia = np.array([one.inertia for one in masses])
+    mass = np.array([each.mass for each in masses])
+    inertia = np.array([each.inertia for each in masses])
     (place, first, second), angles = tracks.places, tracks.angles
     acceleration = pace.second(tracks.places)
     turning = pace.second(angles)
@@ -124,8 +124,8 @@ def sizes_of(
     tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, about: complex
 ) -> tuple[float, float]:
     """Greatest force and moment if no link took anything from another: what rounding is a share of."""
-    mass = np.array([one.mass for one in masses])
-    inertia = np.array([one.inertia for one in masses])
+    mass = np.array([each.mass for each in masses])
+    inertia = np.array([each.inertia for each in masses])
     acceleration = np.abs(pace.second(tracks.places))
     moment = mass @ (np.abs(tracks.places[0] - about) * acceleration)
     moment = moment + inertia @ np.abs(pace.second(tracks.angles))

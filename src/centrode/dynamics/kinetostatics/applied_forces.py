@@ -67,7 +67,7 @@ class Outer:
     @property
     def pulls(self) -> tuple[Wrench, ...]:
         """Everything that acts."""
-        return (*self.loads, *(pull for one in self.inertia for pull in one.pulls))
+        return (*self.loads, *(pull for action in self.inertia for pull in action.pulls))
 
 
 def outer_of(state: State, burden: MassesAndLoads, acceleration: Array, known: Any) -> Outer:

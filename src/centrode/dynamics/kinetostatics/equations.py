@@ -315,7 +315,7 @@ class OnSphere:
             if pull.body.kind == "point" and name in mechanism.moving_points:
                 up = at.points[name]
                 outwards = times(dot(pull.force, up), up)
-                links = [link for link, one in mechanism.links.items() if name in one.coordinates]
+                links = [link for link, body in mechanism.links.items() if name in body.coordinates]
                 pressings.append(Pressing(name, links[0] if len(links) == 1 else FRAME, outwards, pull.at))
         return tuple(pressings)
 
@@ -576,7 +576,10 @@ class ForceSystem:
     @cached_property
     def _wrenches_by_unknown(self) -> dict[Unknown, list[Wrench]]:
         pulls = self.system.pulls
-        return {one: [pull.times(value) for pull in pulls[one]] for one, value in self.multipliers.items()}
+        return {
+            unknown: [pull.times(value) for pull in pulls[unknown]]
+            for unknown, value in self.multipliers.items()
+        }
 
     @cached_property
     def pressing(self) -> tuple[Pressing, ...]:
@@ -588,7 +591,7 @@ class ForceSystem:
     def acting(self) -> tuple[Wrench, ...]:
         """Everything that acts on any body but the centre of a sphere."""
         tied = [pull for pulls in self._wrenches_by_unknown.values() for pull in pulls]
-        return (*tied, *self.outer, *(pull for one in self.pressing for pull in one.pulls))
+        return (*tied, *self.outer, *(pull for joint in self.pressing for pull in joint.pulls))
 
     @cached_property
     def centre(self) -> tuple[Wrench, ...]:

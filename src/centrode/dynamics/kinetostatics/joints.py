@@ -78,7 +78,7 @@ def _on_body(forces: ForceSystem, side: JointSide) -> list[Wrench]:
     tie = PointInLink(side.point, side.body)
     known = [(tie, row) for row in range(tie.size) if (tie, row) in forces.multipliers]
     tied = [pull for unknown in known for pull in forces.pulls(unknown) if pull.body.kind == "link"]
-    pressed = [pull for one in forces.pressing if one.point == side.point for pull in one.pulls]
+    pressed = [pull for joint in forces.pressing if joint.point == side.point for pull in joint.pulls]
     return [*tied, *(pull for pull in pressed if pull.body == Entity("link", side.body))]
 
 
@@ -148,10 +148,10 @@ def reactions_of(forces: ForceSystem, sides: Sequence[JointSide]) -> dict[str, A
 def centre_forces(forces: ForceSystem) -> dict[str, Vector]:
     """On the sphere: force of its centre on each link, and on each pin of several links that loads act on."""
     pulls = {pull.body.name: pull.force for pull in forces.centre if pull.body.name != FRAME}
-    for one in forces.pressing:
-        if one.bearer == FRAME:
-            known = pulls.get(f"pin {one.point}", forces.system.equilibrium.origin)
-            pulls[f"pin {one.point}"] = tuple(x - y for x, y in zip(known, one.force, strict=True))
+    for joint in forces.pressing:
+        if joint.bearer == FRAME:
+            known = pulls.get(f"pin {joint.point}", forces.system.equilibrium.origin)
+            pulls[f"pin {joint.point}"] = tuple(x - y for x, y in zip(known, joint.force, strict=True))
     return pulls
 
 

@@ -171,10 +171,10 @@ def totals_of(found: ReactionSolution) -> dict[str, Array]:
     """Inertia forces of the links, forces and moments on the frame, (samples, ...)."""
     inertia, samples = found.outer.inertia, found.forces.system.shape[-1]
     origin = found.forces.system.equilibrium.origin
-    shaking = [pull for one in inertia for pull in one.pulls]
-    moments = [components(one.moment) for one in inertia]
+    shaking = [pull for action in inertia for pull in action.pulls]
+    moments = [components(action.moment) for action in inertia]
     return {
-        "inertia_force": tables([one.force for one in inertia], len(origin), samples),
+        "inertia_force": tables([action.force for action in inertia], len(origin), samples),
         "inertia_moment": _moments(moments, len(origin), samples),
         **_sums("frame", found.forces.on_frame, origin, samples),
         **_sums("shaking", shaking, origin, samples),
@@ -383,7 +383,7 @@ def reactions_dataset(
     }
     if len(set(units)) > 1:
         variables["balancing"][2]["units"] = ", ".join(
-            one.force_unit for one in solved.ready.parameter.drives
+            drive.force_unit for drive in solved.ready.parameter.drives
         )
     if not solved.ready.kinematics.path.by_time:
         variables["drive_rate"] = vocabulary_variable(

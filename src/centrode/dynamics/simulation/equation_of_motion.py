@@ -106,12 +106,12 @@ def _sort(kind: str, effort: LoadTerm) -> str:
 
 def formulas_of(efforts: tuple[Sorted, ...]) -> tuple[Sorted, ...]:
     """Those whose amount is computed anew at every time."""
-    return tuple(one for one in efforts if not one.is_positional)
+    return tuple(term for term in efforts if not term.is_positional)
 
 
 def of_time(efforts: tuple[Sorted, ...]) -> bool:
     """Whether a load depends on time."""
-    return any("t" in one.effort.amount.uses for one in efforts)
+    return any("t" in term.effort.amount.uses for term in efforts)
 
 
 # What a simulation needs to know at a value of the drive, computed by the reduction itself.
@@ -175,12 +175,12 @@ class ReducedFunctions:
         for first, sense in ((BACKWARDS, -1.0), (FORWARDS, 1.0)):
             state, known = self.state(values, sense)
             for k, sort in enumerate(SORTS):
-                placed = [one for one in self.efforts if one.is_positional and one.sort == sort]
-                rows[first + k] = sum((_moment(one, state, known) for one in placed), np.zeros(len(values)))
+                placed = [term for term in self.efforts if term.is_positional and term.sort == sort]
+                rows[first + k] = sum((_moment(term, state, known) for term in placed), np.zeros(len(values)))
         inertia, slope = shares(state, self.reducer.burden.masses, (1, len(values)))
         rows[INERTIA], rows[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]
-        for j, one in enumerate(self.formulas):
-            row, effort = FORMULAS + EACH * j, one.effort
+        for j, term in enumerate(self.formulas):
+            row, effort = FORMULAS + EACH * j, term.effort
             # some turnings on the sphere have no value, and nothing that asks for it
             rows[row + COORDINATE] = effort.coordinate.value(state) if "x" in effort.amount.uses else 0.0
             rows[row + SPEED] = effort.coordinate.slope(state).value
@@ -231,9 +231,10 @@ class ReducedFunctions:
     def energy(self, values: Array) -> Array:
         """Potential energy [J] of weights and springs (n), zero where their coordinates are."""
         state, _known = self.state(values)
-        stored = [one for one in self.efforts if one.sort == SORTS[0]]
+        stored = [term for term in self.efforts if term.sort == SORTS[0]]
         return sum(
-            (np.broadcast_to(one.energy(state), (1, len(values)))[0] for one in stored), np.zeros(len(values))
+            (np.broadcast_to(term.energy(state), (1, len(values)))[0] for term in stored),
+            np.zeros(len(values)),
         )
 
 
@@ -624,7 +625,7 @@ class Field:
     def turns_count(self) -> bool:
         """Whether it matters in which sense the drive moves, so that a standstill is an event."""
         rows = self.tracks.rows
-        return self.driving.of_speed or any(one.one_sided for one in rows.efforts)
+        return self.driving.of_speed or any(term.one_sided for term in rows.efforts)
 
     @cached_property
     def of_time(self) -> bool:
@@ -657,7 +658,7 @@ class Field:
         # in the middle of the leg, where nothing turns round: signs there hold for the whole leg
         grows = [middle[FORMULAS + EACH * j :] * sense >= 0.0 for j in range(len(formulas))]
         gates = tuple(
-            bool(up[GATE]) or one.effort.gate is None for up, one in zip(grows, formulas, strict=True)
+            bool(up[GATE]) or term.effort.gate is None for up, term in zip(grows, formulas, strict=True)
         )
         return replace(leg, gates=gates, senses=tuple(1.0 if up[SPEED] else -1.0 for up in grows))
 
@@ -678,17 +679,17 @@ class Field:
         rows = leg.rows(value)
         first = FORWARDS if leg.sense > 0.0 else BACKWARDS
         moments = dict(zip(SORTS, rows[first : first + len(SORTS)].tolist(), strict=True))
-        for j, one in enumerate(self.tracks.rows.formulas):
+        for j, term in enumerate(self.tracks.rows.formulas):
             if not leg.gates[j]:
                 continue
             x, slope, along = rows[FORMULAS + EACH * j : FORMULAS + EACH * j + GATE].tolist()
-            if one.effort.works is not None:
+            if term.effort.works is not None:
                 along *= leg.sense  # it resists the drive, whichever way
             now = Situation(t, value, x, slope * rate, leg.senses[j], SCALARS)
             try:
-                moments[one.sort] += float(one.effort.amount(now)) * along
+                moments[term.sort] += float(term.effort.amount(now)) * along
             except (ArithmeticError, ValueError):
-                moments[one.sort] = NAN
+                moments[term.sort] = NAN
         return DriveForces(
             float(rows[INERTIA]),
             float(rows[SLOPE]),

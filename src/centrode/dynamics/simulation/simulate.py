@@ -92,7 +92,7 @@ class Setting:
     def is_conservative(self) -> bool:
         """Whether nothing drives it but weights and springs, and nothing takes energy."""
         undriven = not self.driving.formula.used and self.driving.at(0.0, 0.0, 0.0) == 0.0
-        return undriven and all(one.sort == STORED for one in self.rows.efforts)
+        return undriven and all(term.sort == STORED for term in self.rows.efforts)
 
     @property
     def until(self) -> Until:
@@ -291,16 +291,16 @@ def inertia_at(setting: Setting, value: float) -> float:
 
 def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
     occasions = course.occasions
-    kinds = np.array([OCCASIONS.index(one.kind) for one in occasions], dtype=np.int8)
+    kinds = np.array([OCCASIONS.index(occasion.kind) for occasion in occasions], dtype=np.int8)
     dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
     attributes["flag_values"] = np.arange(len(OCCASIONS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in OCCASIONS)
     return {
         "occasion_time": vocabulary_variable(
-            "occasion_time", ("occasion",), np.array([one.time for one in occasions])
+            "occasion_time", ("occasion",), np.array([occasion.time for occasion in occasions])
         ),
         "occasion_value": vocabulary_variable(
-            "occasion_value", ("occasion",), np.array([one.value for one in occasions]), unit
+            "occasion_value", ("occasion",), np.array([occasion.value for occasion in occasions]), unit
         ),
         "occasion_kind": (dimensions, values, attributes),
     }

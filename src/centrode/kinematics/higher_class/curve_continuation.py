@@ -479,8 +479,8 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     events: list[Event] = []
     passed = np.full(len(who), np.nan)
     for k in np.nonzero(crossed & good)[0]:
-        one = np.array([k])
-        at = curve_crossing(around, walkers.lane[who[one]], here.of(one), there.of(one))
+        walker = np.array([k])
+        at = curve_crossing(around, walkers.lane[who[walker]], here.of(walker), there.of(walker))
         if at is None:
             good[k] = False  # the curves only come near each other
         else:

@@ -191,7 +191,9 @@ def winders_of(path: Path) -> dict[str, Operand]:
     if not path.by_time:
         return {path.driven[0].drive.id: variable(PARAMETER)}
     values = path.drive_values(None, variable(PARAMETER))
-    return {one.drive.id: values[one.drive.id] for one in path.driven if one.drive.kind == "angle"}
+    return {
+        driven.drive.id: values[driven.drive.id] for driven in path.driven if driven.drive.kind == "angle"
+    }
 
 
 def _jets(path: Path, parameter: Array, order: int) -> dict[str, Number]:

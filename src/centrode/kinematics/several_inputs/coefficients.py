@@ -68,7 +68,7 @@ class Partials:
 def partials(solved: Solved) -> Partials:
     """Partial derivatives of a single mechanism's motion at its samples."""
     path = solved.ready.kinematics.path
-    drives = [one.drive for one in path.driven]
+    drives = [driven.drive for driven in path.driven]
     if not path.by_time:
         return Partials(solved, {drives[0].id: 1.0}, {(0, 0): solved})
     # the direction's length is the size of the drive's own unit, so that derivatives of all drives are alike

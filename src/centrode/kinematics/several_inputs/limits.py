@@ -84,9 +84,9 @@ def initial_values(ready: Ready) -> dict[str, float]:
 def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float | Array]) -> Path:
     """The path of one drive's value; the values held may be arrays (lanes, 1)."""
     path = ready.kinematics.path
-    one = next(one for one in path.driven if one.drive.id == drive)
-    unit, parameter = unit_of(one.drive, path.scale), path.parameter.along(drive)
-    return Path((one,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
+    driven = next(driven for driven in path.driven if driven.drive.id == drive)
+    unit, parameter = unit_of(driven.drive, path.scale), path.parameter.along(drive)
+    return Path((driven,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
 
 
 def starting_at(ready: Ready, path: Path) -> BranchedPlan:

@@ -209,7 +209,7 @@ def by_library(code: Code, name: str, *arguments: Value) -> Value:
     result = "poison"
     for lane in range(vector.width):
         ones = [block.put(f"extractelement {vector.name} {x}, i32 {lane}") for x in arguments]
-        value = block.put(f"call double @{name}({', '.join(f'double {one}' for one in ones)})")
+        value = block.put(f"call double @{name}({', '.join(f'double {argument}' for argument in ones)})")
         result = block.put(f"insertelement {vector.name} {result}, double {value}, i32 {lane}")
     return result
 

@@ -61,8 +61,8 @@ class ColumnRows:
         """One number in every lane."""
         vector, block = self.vector, self.block
         # one load and a shuffle: the number of a step is the same for all lanes
-        one = block.put(f"load {vector.number}, ptr {place}, align {vector.bits // 8}")
-        first = block.put(f"insertelement {vector.name} poison, {vector.number} {one}, i32 0")
+        scalar = block.put(f"load {vector.number}, ptr {place}, align {vector.bits // 8}")
+        first = block.put(f"insertelement {vector.name} poison, {vector.number} {scalar}, i32 0")
         lanes = f"<{vector.width} x i32> zeroinitializer"
         return block.put(f"shufflevector {vector.name} {first}, {vector.name} poison, {lanes}")
 
