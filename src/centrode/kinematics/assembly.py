@@ -95,21 +95,21 @@ def phases_before(
         return _of_train(kinematics, group, at, choices)
     if not isinstance(group, (TurnedLink, Meet)):
         return {}
-    found: dict[str, float] = {}
+    phases: dict[str, float] = {}
     link = group.link if isinstance(group, TurnedLink) else group.carriage
     if link is not None and group.turning is not None and not isinstance(group.turning, Turning):
         meshing = group.turning.gear if isinstance(group.turning, Meshed) else group.turning.rolling
         trial = at.copy()
         # as if the link stood where the description says: the constant is what the meshing then lacks
         trial.angles[link] = stated_angle(kinematics, link)
-        found[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
+        phases[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
     if isinstance(group, Meet):
         # a wheel that something else turns stands with its centre at the line's own point, by definition
         for locus in group.loci:
             if isinstance(locus, Rolloff):
-                ahead = with_phases(kinematics, found)
-                found[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
-    return found
+                ahead = with_phases(kinematics, phases)
+                phases[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
+    return phases
 
 
 def phases_after(kinematics: Kinematics, at: Positions) -> dict[str, float]:
@@ -150,11 +150,11 @@ def standing_links(kinematics: Kinematics, group: Newton, at: Positions) -> Newt
 
     def row(equation: tuple[Constraint, int]) -> Array:
         constraint, which = equation
-        found = np.zeros(width)
+        offsets = np.zeros(width)
         for entity, slopes in constraint.rows(kinematics.numbers, guess)[which].items():
             if entity in first:
-                found[first[entity] : first[entity] + entity.unknowns] += slopes
-        return found
+                offsets[first[entity] : first[entity] + entity.unknowns] += slopes
+        return offsets
 
     rows = [row(equation) for equation in kept]
     for constraint in meshing:
