@@ -550,6 +550,17 @@ DIAGRAMS = Topic(
     ),
 )
 
+GIVEN_MASSES = Topic(
+    name="masses",
+    compute=Lazily("centrode.dynamics.masses", "link_masses"),
+    result=Lazily("centrode.dynamics.masses", "LinkMasses"),
+    view=Lazily("centrode.views.masses_and_loads", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("masses-and-loads", mark("Masses and loads")),), instants=False
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -570,5 +581,6 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    GIVEN_MASSES,
 )
 """Every topic."""

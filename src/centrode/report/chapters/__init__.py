@@ -27,7 +27,6 @@ from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
-from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
 from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
@@ -76,7 +75,6 @@ OWN: Mapping[str, Kind] = {
     "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
