@@ -32,7 +32,6 @@ from centrode.report.chapters.linkages.equations import constraints_chapter, der
 from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
-from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.spherical_linkages import (
     sphere_data_chapter,
     sphere_equations_chapter,
@@ -69,7 +68,6 @@ OWN: Mapping[str, Kind] = {
         mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
     ),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
-    "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
     "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
