@@ -14,7 +14,7 @@ from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.render.figures import figures_of
 from centrode.render.spelling import PlainSpelling
-from centrode.render.terminal import fact_rows, table_cells
+from centrode.render.terminal import fact_rows, table_rows
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -81,7 +81,7 @@ def _block(block: Block, spelling: PlainSpelling, display: Display) -> str:
         case FactTable(facts):
             return rows_html((), fact_rows(facts, display))
         case Table():
-            heads, rows = table_cells(block, spelling)
+            heads, rows = table_rows(block, spelling)
             return _paragraph(spelling.text(block.caption)) + rows_html(heads, rows)
         case Paragraph(text):
             return _paragraph(spelling.text(text))
