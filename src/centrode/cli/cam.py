@@ -22,6 +22,7 @@ from centrode.locale import _, mark
 from centrode.topics.presentation import sheets_of_cam
 
 if TYPE_CHECKING:
+    from centrode.model.settings import Display
     from centrode.sheets.sheet import Sheet
     from centrode.study.cams.parts import CamPart
     from centrode.study.cams.results import CamResults
@@ -91,8 +92,19 @@ def cam(
         click.echo("\n" + output.files_in(out, names))
         if {"body", "plate"} & results.objects.keys() and not _DXF:
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
-    if results.failures:
-        raise MotionError(cam, "; ".join(results.failures))
+    failures = [
+        *(_failure(sheet, description.display) for sheet in sheets if sheet.failure),
+        *results.failures,
+    ]
+    if failures:
+        raise MotionError(cam, "; ".join(failures))
+
+
+def _failure(sheet: Sheet, display: Display) -> str:
+    """What the cam of a sheet cannot do, and what helps."""
+    assert sheet.failure is not None
+    texts = (render.plain_text(text, display) for text in (sheet.failure.what, sheet.failure.repair))
+    return "; ".join(filter(None, texts))
 
 
 def _check_options(

@@ -550,6 +550,16 @@ DIAGRAMS = Topic(
     ),
 )
 
+FOLLOWER_FORCES = Topic(
+    name="follower-forces",
+    compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
+    result=Lazily("centrode.cams.followers.force_results", "FollowerForceResults"),
+    view=Lazily("centrode.views.follower_forces", "sheet"),
+    concerns=Lazily("centrode.cams.followers.force_results", "has_forces"),
+    document=InDocuments(chapters=(ChapterOfTopic("cam-forces", mark("Forces on cam and follower")),)),
+    subject="cam",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -570,5 +580,6 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    FOLLOWER_FORCES,
 )
 """Every topic."""

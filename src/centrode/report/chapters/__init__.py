@@ -23,7 +23,6 @@ from centrode.report.chapters.curvature_cams import (
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.base_radius import base_radius_chapter
-from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
@@ -81,7 +80,6 @@ OWN: Mapping[str, Kind] = {
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
     "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
-    "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
