@@ -20,6 +20,7 @@ from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.force_pages import group_page
 from centrode.render.instant_pages import instant_figure
 from centrode.render.levers import lever_page
+from centrode.render.outline_drawings import outline_figure
 from centrode.render.panel_grids import grid_figure
 from centrode.render.position_pages import positions_figure
 from centrode.render.scenes import scene_figure
@@ -29,6 +30,7 @@ from centrode.render.vector_diagrams import vector_diagram_figure
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.outlines import OutlineDrawing
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
     Abscissa,
@@ -123,6 +125,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return instant_figure(picture, display)
             case VectorDiagramPage():
                 return vector_diagram_figure(picture, display)
+            case OutlineDrawing():
+                return outline_figure(picture, display)
             case _:
                 assert_never(picture)
 

@@ -85,15 +85,18 @@ OWN: Mapping[str, Kind] = {
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
-CHAPTERS: Mapping[str, Kind] = in_order(
-    {
-        **OWN,
-        **{
-            chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
-            for topic in TOPICS
-            for chapter in topic.document.chapters
-        },
-    },
-    order.CHAPTERS,
-)
+
+def with_topics(own: Mapping[str, Kind]) -> dict[str, Kind]:
+    """Chapters with those of the topics; a chapter that several make is that of the first with something to tell."""
+    kinds = dict(own)
+    for topic in TOPICS:
+        for chapter in topic.document.chapters:
+            make: Make = functools.partial(topic_chapter, topic, chapter)
+            if chapter.name in kinds:
+                make = either(kinds[chapter.name].make, make)
+            kinds[chapter.name] = Kind(chapter.title, make)
+    return kinds
+
+
+CHAPTERS: Mapping[str, Kind] = in_order(with_topics(OWN), order.CHAPTERS)
 """Those of the topics among the others."""

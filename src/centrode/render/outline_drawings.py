@@ -1,0 +1,91 @@
+"""Bodies between their outlines, to one scale, as figures of matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, assert_never
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
+
+from centrode.present.cams.outlines import STROKES, group_by_layer
+from centrode.present.curves import write_legend, write_title
+from centrode.present.displayed_units import label_with_unit, shown_as
+from centrode.present.signs import cross
+from centrode.present.style import INK, MUTED
+from centrode.render.spelling import DrawingSpelling
+from centrode.sheets.outlines import DrawnLines, DrawnRollers, LineUse
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+
+    from centrode.model.settings import Display
+    from centrode.sheets.outlines import OutlineDrawing
+
+SIZE = (8.4, 6.0)
+"""Inches of a figure."""
+LEGEND = 5.0
+"""Inches that a legend may take."""
+ROOM = 0.06
+"""Room around the body, over its size."""
+CROSS = 0.012
+"""Half the size of the centre's sign, over that of the outlines."""
+PENS: Mapping[LineUse, dict[str, Any]] = {
+    LineUse.NORMAL: {"color": MUTED, "linewidth": 0.6, "zorder": 2},
+    LineUse.UNDERCUT: {"color": "#B00020", "linewidth": 2.4, "zorder": 5},
+}
+
+
+def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
+    """A body between its outlines, lengths in the unit of the display."""
+    spelling = DrawingSpelling(display)
+    factor, unit = shown_as("m", display)
+    figure = Figure(figsize=SIZE, layout="constrained")
+    axes = figure.subplots()
+    key: list[tuple[Artist, str]] = []
+    for layer, pieces in group_by_layer(drawing.pieces).items():
+        for piece in pieces:
+            (line,) = axes.plot(*(factor * piece.places.T), **STROKES[layer].drawn, zorder=3)
+        key.append((line, spelling.text(drawing.layers[layer])))
+    for shape in drawing.shapes:
+        match shape:
+            case DrawnLines(use, name, lines):
+                for places in lines:
+                    (line,) = axes.plot(*(factor * places.T), **PENS[use])
+                key.append((line, spelling.text(name)))
+            case DrawnRollers(name):
+                key.append((_rollers(axes, shape, factor, spelling), spelling.text(name)))
+            case _:
+                assert_never(shape)
+    places = np.concatenate([piece.places for piece in drawing.pieces])
+    extent = factor * max(float(np.ptp(places, axis=0).max()), 1e-9)
+    cross(axes, np.zeros(2), CROSS * extent, INK)
+    centre = Line2D([], [], color=INK, marker="x", linestyle="none")
+    key.append((centre, spelling.text(drawing.centre)))
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(ROOM)
+    axes.set_xlabel(label_with_unit("x", unit))
+    axes.set_ylabel(label_with_unit("y", unit))
+    write_legend(axes, key, inches=LEGEND)
+    write_title(figure, spelling.text(drawing.title), spelling.text(drawing.mechanism))
+    return figure
+
+
+def _rollers(axes: Axes, rollers: DrawnRollers, factor: float, spelling: DrawingSpelling) -> Line2D:
+    """Draw rollers with their texts outside of them, seen from the centre; returns the sign of the legend."""
+    radius = factor * rollers.radius
+    for place, text in zip(factor * rollers.places, rollers.texts, strict=True):
+        axes.add_patch(
+            Circle((place[0], place[1]), radius, fill=False, edgecolor=INK, linewidth=0.9, zorder=4)
+        )
+        axes.plot(*place, marker="+", color=INK, markersize=5, markeredgewidth=0.8, zorder=5)
+        away = place * (1.0 + 1.25 * radius / float(np.hypot(*place)))
+        axes.update_datalim([tuple(away * 1.1)])
+        side = "left" if away[0] >= 0 else "right"
+        look: dict[str, Any] = {"fontsize": 8.5, "color": INK, "ha": side, "va": "center", "zorder": 6}
+        axes.text(away[0], away[1], spelling.text(text), **look)
+    return Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", markersize=8)

@@ -1,0 +1,86 @@
+"""Outlines in true size, for machines and viewers, and drawings of a body between its outlines, to one scale.
+
+Coordinates are in metres in the axes of the body. Strokes of layers, signs and places of texts are the renderer's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.sheets.texts import Sentence, Text, Title
+
+if TYPE_CHECKING:
+    from centrode.cams.profiles import CamOutline
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class OutlineSet:
+    """Outlines of one file.
+
+    Attributes
+    ----------
+    title : below them
+    pieces : smooth pieces with their slopes, in layers
+    """
+
+    title: Title
+    pieces: tuple[CamOutline, ...]
+
+
+class LineUse(Enum):
+    """What lines of a drawing stand for."""
+
+    NORMAL = "normals"
+    UNDERCUT = "undercut"
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnLines:
+    """Lines of one kind: their entry in the legend, and each as its places (n, 2)."""
+
+    use: LineUse
+    name: Text
+    lines: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnRollers:
+    """Rollers of one radius about places (n, 2), each with a text beside it; their entry in the legend."""
+
+    name: Text
+    radius: float
+    places: Array
+    texts: tuple[Text, ...]
+
+
+Shape: TypeAlias = DrawnLines | DrawnRollers
+"""What a drawing shows beside the outlines."""
+
+
+@dataclass(frozen=True)
+class OutlineDrawing:
+    """A body between its outlines, to one scale, with what belongs to it; its centre is the origin.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    pieces : outlines in layers
+    layers : names of the layers in the legend
+    shapes : in drawing order, and that of the legend
+    centre : name of the origin, at the end of the legend
+    """
+
+    title: Sentence
+    mechanism: Title
+    pieces: tuple[CamOutline, ...]
+    layers: Mapping[str, Text]
+    shapes: tuple[Shape, ...]
+    centre: Text
