@@ -392,7 +392,12 @@ FOLLOWER_MOTION = Topic(
     result=Lazily("centrode.cams.followers.motion_results", "FollowerMotionResults"),
     view=Lazily("centrode.views.follower_motion", "sheet"),
     concerns=Lazily("centrode.model.cam_files", "has_follower"),
-    document=InDocuments(chapters=(ChapterOfTopic("lift", mark("Motion of the follower")),)),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("lift", mark("Motion of the follower")),
+        )
+    ),
     subject="cam",
 )
 

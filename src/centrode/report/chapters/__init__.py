@@ -23,7 +23,6 @@ from centrode.report.chapters.curvature_cams import (
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.base_radius import base_radius_chapter
-from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
@@ -65,9 +64,7 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
-    "data": Kind(
-        mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
-    ),
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
