@@ -127,6 +127,8 @@ from .cams.followers.base_circle import follower_cam as follower_cam
 from .cams.followers.base_circle import least_cam as least_cam
 from .cams.followers.manufacture import follower_outlines as follower_outlines
 from .cams.followers.manufacture import cam_points as cam_points
+from .cams.followers.base_radius_results import base_radius_results as base_radius_results
+from .cams.followers.profile_results import follower_profile_results as follower_profile_results
 from .cams.followers.force_results import follower_force_results as follower_force_results
 from .cams.followers.forces import cam_forces as cam_forces
 from .cams.followers.forces import follower_forces as follower_forces
@@ -151,8 +153,6 @@ from .present import write_outlines_svg as write_outlines_svg
 from .present import write_outlines_dxf as write_outlines_dxf
 from .present import write_cam_outlines as write_cam_outlines
 from .present import profile_figure as profile_figure
-from .present import follower_cam_figure as follower_cam_figure
-from .present import plate_curves_figure as plate_curves_figure
 from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 

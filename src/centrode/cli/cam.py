@@ -11,6 +11,7 @@ import click
 
 import centrode as ct
 from centrode import render
+from centrode.cams.followers.base_circle import has_profile, has_size
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.announcements import announce_samples
@@ -85,12 +86,13 @@ def cam(
                 names = output.finish_folder(draft)
     click.echo(_(description.title) or cam)
     for sheet in sheets:
-        click.echo("\n" + render.sheet_text(sheet, description.display))
+        if text := render.sheet_text(sheet, description.display):
+            click.echo("\n" + text)
     for part in results.parts.values():
         click.echo("\n" + _text(part))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
-        if {"body", "plate"} & results.objects.keys() and not _DXF:
+        if ("body" in results.objects or any(sheet.outlines for sheet in sheets)) and not _DXF:
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
     failures = [
         *(_failure(sheet, description.display) for sheet in sheets if sheet.failure),
@@ -124,6 +126,9 @@ def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool)
     """An animation needs a cam with its roller or its follower, and a folder."""
     if animate and isinstance(cam, ct.Cam) and cam.roller is None:
         raise InputError("--animate", _("a profile needs a roller"), _("give [roller] radius"))
+    if animate and isinstance(cam, ct.PlateCam) and not has_size(cam):
+        what = _("the cam has no size: neither base_radius nor bounds are given")
+        raise InputError("--animate", what, _("give one of them, or leave it out"))
     if animate and out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
 
@@ -186,10 +191,7 @@ def _animate(results: CamResults, folder: Path, progress: Progress, *, dark: boo
     title, display = _(cam.title), cam.display
     if "wheel" in objects:
         ct.animate_walking(objects["wheel"], folder / name, title, display, dark=dark, said=said)
-    elif "plate" in objects:
-        ct.animate_follower(objects["plate"], folder / name, title, display, dark=dark, said=said)
+    elif isinstance(cam, ct.PlateCam) and has_profile(cam):
+        ct.animate_follower(ct.follower_cam(cam), folder / name, title, display, dark=dark, said=said)
     elif "body" in objects and isinstance(cam, ct.Cam) and cam.mover is None:
         ct.animate_cam_body(objects["body"], folder / name, title, display, dark=dark, said=said)
-    elif isinstance(cam, ct.PlateCam) and not results.failures:
-        what = _("the cam has no size: neither base_radius nor bounds are given")
-        raise InputError("--animate", what, _("give one of them, or leave it out"))

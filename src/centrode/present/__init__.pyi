@@ -39,8 +39,6 @@ from .cams.curves import cam_routes_figure as cam_routes_figure
 from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
 from .cams.outline_files import write_cam_outlines as write_cam_outlines
 from .cams.outlines import write_outlines_svg as write_outlines_svg
-from .cams.curves import plate_curves_figure as plate_curves_figure
-from .cams.profiles import follower_cam_figure as follower_cam_figure
 from .cams.profiles import profile_figure as profile_figure
 from .cams.tables import write_profile_csv as write_profile_csv
 from .cams.tables import write_cam_contact_csv as write_cam_contact_csv

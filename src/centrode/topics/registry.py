@@ -555,6 +555,26 @@ DIAGRAMS = Topic(
     ),
 )
 
+BASE_RADIUS = Topic(
+    name="base-radius",
+    compute=Lazily("centrode.cams.followers.base_radius_results", "base_radius_results"),
+    result=Lazily("centrode.cams.followers.base_radius_results", "BaseRadiusResults"),
+    view=Lazily("centrode.views.base_radius", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_size"),
+    document=InDocuments(chapters=(ChapterOfTopic("base-radius", mark("Choice of the base radius")),)),
+    subject="cam",
+)
+
+FOLLOWER_PROFILE = Topic(
+    name="follower-profile",
+    compute=Lazily("centrode.cams.followers.profile_results", "follower_profile_results"),
+    result=Lazily("centrode.cams.followers.profile_results", "FollowerProfileResults"),
+    view=Lazily("centrode.views.follower_profile", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
+    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),)),
+    subject="cam",
+)
+
 FOLLOWER_FORCES = Topic(
     name="follower-forces",
     compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
@@ -585,6 +605,8 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    BASE_RADIUS,
+    FOLLOWER_PROFILE,
     FOLLOWER_FORCES,
 )
 """Every topic."""

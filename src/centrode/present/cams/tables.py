@@ -118,7 +118,6 @@ CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-routes": write_cam_routes_csv,
     "cam-contact": write_cam_contact_csv,
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
-    "cam-points": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
 }
 """How each dataset of a cam's results is written, by the name of its file."""

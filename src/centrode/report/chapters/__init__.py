@@ -22,9 +22,7 @@ from centrode.report.chapters.curvature_cams import (
     cam_routes_chapter,
     cam_walking_chapter,
 )
-from centrode.report.chapters.followers.base_radius import base_radius_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
@@ -73,10 +71,9 @@ OWN: Mapping[str, Kind] = {
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
-    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
-    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
+    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
