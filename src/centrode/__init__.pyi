@@ -124,6 +124,7 @@ from .cams.followers.base_circle import follower_cam as follower_cam
 from .cams.followers.base_circle import least_cam as least_cam
 from .cams.followers.manufacture import follower_outlines as follower_outlines
 from .cams.followers.manufacture import cam_points as cam_points
+from .cams.followers.force_results import follower_force_results as follower_force_results
 from .cams.followers.forces import cam_forces as cam_forces
 from .cams.followers.forces import follower_forces as follower_forces
 from .cams.followers.forces import Burden as Burden
@@ -131,9 +132,6 @@ from .cams.followers.forces import least_push as least_push
 from .cams.followers.forces import jump_speed as jump_speed
 from .cams.followers.forces import preload_needed as preload_needed
 from .cams.followers.forces import stiffness_needed as stiffness_needed
-from .study.cams.follower_cam import forces_rows as forces_rows
-from .present import write_cam_forces_csv as write_cam_forces_csv
-from .present import cam_forces_figure as cam_forces_figure
 from .present import animate_cam_body as animate_cam_body
 from .present import animate_follower as animate_follower
 

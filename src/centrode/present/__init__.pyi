@@ -33,7 +33,6 @@ from .cams.choice import trade_off_figure as trade_off_figure
 from .cams.tables import write_choice as write_choice
 from .cams.curves import contact_figure as contact_figure
 from .cams.curves import cam_figures as cam_figures
-from .cams.curves import cam_forces_figure as cam_forces_figure
 from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
 from .cams.outline_files import write_cam_outlines as write_cam_outlines
 from .cams.outlines import write_outlines_svg as write_outlines_svg
@@ -42,7 +41,6 @@ from .cams.profiles import follower_cam_figure as follower_cam_figure
 from .cams.profiles import profile_figure as profile_figure
 from .cams.tables import write_profile_csv as write_profile_csv
 from .cams.tables import write_cam_contact_csv as write_cam_contact_csv
-from .cams.tables import write_cam_forces_csv as write_cam_forces_csv
 from .cams.tables import write_cam_tables as write_cam_tables
 from .cams.walking_wheel import walking_figure as walking_figure
 

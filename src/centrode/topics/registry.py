@@ -595,6 +595,16 @@ PATH_ROUTES = Topic(
     subject="cam",
 )
 
+FOLLOWER_FORCES = Topic(
+    name="follower-forces",
+    compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
+    result=Lazily("centrode.cams.followers.force_results", "FollowerForceResults"),
+    view=Lazily("centrode.views.follower_forces", "sheet"),
+    concerns=Lazily("centrode.cams.followers.force_results", "has_forces"),
+    document=InDocuments(chapters=(ChapterOfTopic("cam-forces", mark("Forces on cam and follower")),)),
+    subject="cam",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -617,5 +627,6 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     ROLLER_PATH,
     PATH_ROUTES,
+    FOLLOWER_FORCES,
 )
 """Every topic."""

@@ -14,16 +14,13 @@ from matplotlib.figure import Figure
 
 from centrode.locale import _
 from centrode.present.curves import (
-    DrawnAbscissa,
-    Panel,
     angle_ticks,
     legend_width,
-    sheet,
     write_legend,
     write_title,
 )
 from centrode.present.displayed_units import formula, label_with_unit, shown_as
-from centrode.present.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
+from centrode.present.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals, house_style
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -170,43 +167,8 @@ def _draw_strip(axes: Axes, contact: xarray.Dataset, phi: Array) -> None:
     write_legend(axes, key, inches=LOW)
 
 
-# Forces between cam and follower over the angle of the cam.
-
-PANELS = ("follower_push", "follower_moment", "contact_force", "cam_torque", "contact_stress")
-SCALES = {"Pa": (1e-6, "MPa")}
-"""Factors and units of what no display names."""
-
-
-def cam_forces_figure(cam: AnyCam, forces: xarray.Dataset) -> Figure:
-    """Push, contact force, torque and contact stress over a turn of the cam (`ct.cam_forces`)."""
-    with house_style():
-        rows = []
-        for name in PANELS:
-            if name not in forces:
-                continue
-            quantity = QUANTITIES[name]
-            factor, unit = SCALES.get(quantity.unit, (1.0, quantity.unit))
-            title = _(quantity.title)
-            curves = {title: factor * forces[name].to_numpy()}
-            text = label_with_unit(formula(quantity.symbol), unit)
-            rows.append([Panel(text, unit, curves, pens(curves))])
-        return sheet(_("Forces on cam and follower"), _(cam.title), rows, _over_turn(cam, forces))
-
-
-def _over_turn(cam: AnyCam, forces: xarray.Dataset) -> DrawnAbscissa:
-    """The cam's angle, in the unit of the display."""
-    factor, unit = shown_as("rad", cam.display)
-    phi = forces["cam_angle"].to_numpy() * factor
-    order = np.argsort(phi, kind="stable")
-    none = np.zeros(0, dtype=np.intp)
-    quantity = QUANTITIES["cam_angle"]
-    label = label_with_unit(f"{_(quantity.title)} {formula(quantity.symbol)}", unit)
-    return DrawnAbscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
-
-
 CAM_FIGURES: Mapping[str, tuple[str, Callable[[Any, xarray.Dataset], Figure]]] = {
     "cam-contact": ("cam-contact", contact_figure),
-    "cam-forces": ("cam-forces", cam_forces_figure),
     "cam-curvature": ("cam-profile", plate_curves_figure),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""

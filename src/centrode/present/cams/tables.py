@@ -78,16 +78,8 @@ def write_cam_contact_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path
     write_columns(path, _columns(dataset, CONTACT), dataset["status"], cam.display)
 
 
-def write_cam_forces_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
-    """Write the forces on cam and follower (`ct.cam_forces`) as CSV, forces and stresses in SI, one row a sample."""
-    names = [name for name, one in dataset.data_vars.items() if one.dims == ("sample",) and name != "status"]
-    columns = [(str(name), unit_of(dataset[name]), dataset[name]) for name in ("cam_angle", *names)]
-    write_columns(path, columns, dataset["status"], cam.display)
-
-
 CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-contact": write_cam_contact_csv,
-    "cam-forces": write_cam_forces_csv,
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "cam-points": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),

@@ -20,7 +20,6 @@ from centrode.report.chapters.curvature_cams import (
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.base_radius import base_radius_chapter
-from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
@@ -74,7 +73,6 @@ OWN: Mapping[str, Kind] = {
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
-    "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),

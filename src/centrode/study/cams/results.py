@@ -16,7 +16,7 @@ from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
-from centrode.study.cams.follower_cam import forces_part, plate_part
+from centrode.study.cams.follower_cam import plate_part
 from centrode.study.cams.parts import Asked, CamPart
 from centrode.study.cams.profiles import profile_part, walking_part
 
@@ -43,7 +43,6 @@ PARTS: Mapping[str, MakesPart] = {
 
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
     "profile": plate_part,
-    "forces": forces_part,
 }
 """The same of a cam that is given by its follower's lift."""
 
@@ -79,7 +78,7 @@ def cam_results(
     groove: bool = False,
     front: bool = False,
 ) -> CamResults:
-    """Everything about the cam of a description but for the motion of its follower.
+    """Everything about the cam of a description but for the motion of its follower and its forces.
 
     Parameters
     ----------
