@@ -109,6 +109,8 @@ from .dynamics.balancing.counterweights import Counterweight as Counterweight
 # Cams
 from .cams.cam import cam as cam
 from .cams.cam import cam_routes as cam_routes
+from .cams.cam import roller_path_results as roller_path_results
+from .cams.cam import path_routes_results as path_routes_results
 from .cams.path_series import path_of as path_of
 from .study.cams.results import cam_results as cam_results
 from .cams.followers.motion_results import follower_motion_results as follower_motion_results
@@ -116,12 +118,7 @@ from .cams.followers.motion_results import motion_law_results as motion_law_resu
 from .cams.followers.motion import follower_motion as follower_motion
 from .cams.followers.motion import cam_laws as cam_laws
 from .cams.followers.motion import compare_laws as compare_laws
-from .present import write_cam_csv as write_cam_csv
-from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables
-from .present import cam_path_figure as cam_path_figure
-from .present import cam_curves_figure as cam_curves_figure
-from .present import cam_routes_figure as cam_routes_figure
 from .present import cam_figures as cam_figures
 from .cams.followers.base_circle import follower_cam as follower_cam
 from .cams.followers.base_circle import least_cam as least_cam

@@ -12,9 +12,9 @@ from matplotlib.patches import Circle
 
 from centrode.present.cams.outlines import GREY, STROKES, group_by_layer
 from centrode.present.curves import write_legend, write_title
-from centrode.present.displayed_units import label_with_unit, shown_as
+from centrode.present.displayed_units import formula, label_with_unit, shown_as
 from centrode.present.signs import cross, fixed_hinge, ground, turning_arrow
-from centrode.present.style import GROUND, INK, MUTED, PALETTE
+from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals
 from centrode.render.spelling import DrawingSpelling
 from centrode.sheets.outlines import (
     DrawnBaseCircle,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from centrode.model.settings import Display
-    from centrode.sheets.outlines import OutlineDrawing
+    from centrode.sheets.outlines import OutlineDrawing, PathDrawing
 
 SIZE = (8.4, 6.0)
 """Inches of a figure."""
@@ -152,3 +152,44 @@ def _rollers(axes: Axes, rollers: DrawnRollers, factor: float, spelling: Drawing
         look: dict[str, Any] = {"fontsize": 8.5, "color": INK, "ha": side, "va": "center", "zorder": 6}
         axes.text(away[0], away[1], spelling.text(text), **look)
     return Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", markersize=8)
+
+
+PATH_INCHES = 5.6
+"""Length on paper of the longer side of a path."""
+BESIDE = 0.075
+"""How far the text of a ray stands beyond its end, over the greatest distance of the path from the origin."""
+
+
+def path_figure(drawing: PathDrawing, display: Display) -> Figure:
+    """A curve about the origin with rays and normals, lengths in the unit of the display."""
+    spelling = DrawingSpelling(display)
+    factor, unit = shown_as("m", display)
+    places = factor * drawing.places
+    with_origin = np.concatenate([places[np.isfinite(places).all(axis=1)], np.zeros((1, 2))])
+    width, height = np.ptp(with_origin, axis=0).tolist()
+    scale = PATH_INCHES / (max(width, height) or 1.0)
+    figure = Figure(figsize=(scale * width + 4.2, max(scale * height + 1.5, 3.2)), layout="constrained")
+    axes = figure.subplots()
+    far = BESIDE * float(np.hypot(*with_origin.T).max())
+    for ray in drawing.rays:
+        end, inwards = factor * ray.place, factor * ray.inwards
+        beyond = end * (1.0 + far / float(np.hypot(*end)))
+        axes.plot(*np.stack([np.zeros(2), end]).T, color=MUTED, linewidth=0.7)
+        axes.plot(*np.stack([inwards, end]).T, color=PALETTE[1], linewidth=1.1)
+        look: dict[str, Any] = {"color": GROUND, "ha": "center", "va": "center", "fontsize": 8}
+        axes.text(beyond[0], beyond[1], spelling.text(ray.text), **look)
+    (line,) = axes.plot(*places.T, color=PALETTE[0], linewidth=2.0)
+    key: list[tuple[Artist, str]] = [
+        (line, spelling.text(drawing.path)),
+        (Line2D([], [], color=MUTED, linewidth=0.7), spelling.text(drawing.ray)),
+        (Line2D([], [], color=PALETTE[1], linewidth=1.1), spelling.text(drawing.normal)),
+    ]
+    axes.plot([0.0], [0.0], marker="+", markersize=11, color=INK, markeredgewidth=1.4)
+    axes.set_aspect("equal")
+    axes.margins(0.14)
+    for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+        axis.set_major_formatter(Decimals())
+        axis.set_label_text(label_with_unit(formula(name), unit))
+    write_legend(axes, key)
+    write_title(figure, spelling.text(drawing.title), spelling.text(drawing.mechanism))
+    return figure

@@ -66,6 +66,36 @@ class DrawnRollers:
     texts: tuple[Text, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class Ray:
+    """A ray from the origin to a place (2) of a curve, a text beyond that, and the other end (2) of a normal there."""
+
+    text: Text
+    place: Array
+    inwards: Array
+
+
+@dataclass(frozen=True, eq=False)
+class PathDrawing:
+    """A curve about the origin, to one scale, with rays to it and normals of it.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    places : (n, 2) of the curve
+    path, ray, normal : names in the legend
+    rays : in drawing order
+    """
+
+    title: Sentence
+    mechanism: Title
+    places: Array
+    path: Text
+    rays: tuple[Ray, ...]
+    ray: Text
+    normal: Text
+
+
 @dataclass(frozen=True)
 class DrawnBaseCircle:
     """The base circle of a cam about the origin, its radius [m] and its entry in the legend."""

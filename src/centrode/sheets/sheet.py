@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.outlines import OutlineDrawing, OutlineSet
+from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -38,6 +38,7 @@ Picture: TypeAlias = (
     | InstantPage
     | VectorDiagramPage
     | OutlineDrawing
+    | PathDrawing
 )
 Part = TypeVar("Part")
 

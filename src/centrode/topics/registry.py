@@ -23,6 +23,8 @@ READ_RANGES = Lazily("centrode.cli.option_values", "read_ranges")
 READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
+HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
+NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
 INTEGRATE = Topic(
     name="integrate",
@@ -409,6 +411,11 @@ MOTION_LAWS = Topic(
     concerns=Lazily("centrode.cams.followers.motion_results", "has_rise"),
     document=InDocuments(chapters=(ChapterOfTopic("laws", mark("Laws of motion for one rise")),)),
     subject="cam",
+    command=Command(
+        help="",
+        options=(FlagOption("laws", mark("Also other laws of motion for the first rise of the follower.")),),
+        needs=Lazily("centrode.model.cam_files", "with_follower"),
+    ),
     flag="laws",
 )
 
@@ -571,7 +578,50 @@ FOLLOWER_PROFILE = Topic(
     result=Lazily("centrode.cams.followers.profile_results", "FollowerProfileResults"),
     view=Lazily("centrode.views.follower_profile", "sheet"),
     concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
+    command=Command(
+        help="",
+        animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
+        animation_file="cam.gif",
+    ),
     document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),)),
+    subject="cam",
+)
+
+ROLLER_PATH = Topic(
+    name="roller-path",
+    compute=Lazily("centrode.cams.cam", "roller_path_results"),
+    result=Lazily("centrode.cams.cam", "RollerPathResults"),
+    view=Lazily("centrode.views.roller_path", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("path", mark("Path of the roller's centre")),
+        ),
+        instants=False,
+    ),
+    subject="cam",
+)
+
+PATH_ROUTES = Topic(
+    name="path-routes",
+    compute=Lazily("centrode.cams.cam", "path_routes_results"),
+    result=Lazily("centrode.cams.cam", "PathRoutesResults"),
+    view=Lazily("centrode.views.path_routes", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    command=Command(
+        help="",
+        options=(
+            ValueOption(
+                "terms",
+                mark("N"),
+                mark("Cut the power series after a_N; the description's own number, else 20."),
+                int,
+            ),
+        ),
+        needs=NEEDS_CURVATURE_LAW,
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("routes", mark("Three routes to the path")),)),
     subject="cam",
 )
 
@@ -607,6 +657,8 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     BASE_RADIUS,
     FOLLOWER_PROFILE,
+    ROLLER_PATH,
+    PATH_ROUTES,
     FOLLOWER_FORCES,
 )
 """Every topic."""

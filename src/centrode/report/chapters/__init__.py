@@ -15,11 +15,8 @@ from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
     cam_choice_chapter,
     cam_contact_chapter,
-    cam_data_chapter,
     cam_motion_chapter,
-    cam_path_chapter,
     cam_profile_chapter,
-    cam_routes_chapter,
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
@@ -62,7 +59,7 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
@@ -71,8 +68,6 @@ OWN: Mapping[str, Kind] = {
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
-    "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
-    "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
     "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),

@@ -16,7 +16,6 @@ from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
 from centrode.study.cams.parts import Asked, CamPart
-from centrode.study.cams.paths import path_part, routes_part
 from centrode.study.cams.profiles import profile_part, walking_part
 
 
@@ -27,8 +26,6 @@ class MakesPart(Protocol):
 
 
 PARTS: Mapping[str, MakesPart] = {
-    "path": path_part,
-    "routes": routes_part,
     "profile": profile_part,
     "walking": walking_part,
     "contact": contact_part,
