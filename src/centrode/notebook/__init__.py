@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import check_html, mechanism_html, motion_html
-    from centrode.present.equations.latex import equations_markdown
+    from centrode.notebook.display import check_html, equations_markdown, mechanism_html, motion_html
 
 __all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register"]
 
