@@ -178,10 +178,6 @@ from .present import animate_walking as animate_walking
 
 # Equations in symbols
 from .equations.derivation import equations as equations
-from .present import equations_text as equations_text
-from .present import equations_latex as equations_latex
-from .present import equations_markdown as equations_markdown
-from .present import equations_rows as equations_rows
 
 # Instant centres, centrodes, curvature
 from .analysis.instant_centres.centres import instant_centres as instant_centres

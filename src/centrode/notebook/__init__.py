@@ -13,8 +13,13 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import check_html, mechanism_html, motion_html, result_html
-    from centrode.present.equations.latex import equations_markdown
+    from centrode.notebook.display import (
+        check_html,
+        equations_markdown,
+        mechanism_html,
+        motion_html,
+        result_html,
+    )
 
 __all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
 

@@ -576,6 +576,39 @@ DIAGRAMS = Topic(
     ),
 )
 
+EQUATIONS = Topic(
+    name="equations",
+    compute=Lazily("centrode.equations.instants", "equation_results"),
+    result=Lazily("centrode.equations.derivation", "Equations"),
+    view=Lazily("centrode.views.equations", "sheet"),
+    command=Command(
+        help=mark("Write the constraint equations in symbols, solved."),
+        options=(
+            ValueOption(
+                "point",
+                mark("NAME"),
+                mark(
+                    "A point whose velocity is asked for, again for more; those on guides of the frame if left out."
+                ),
+                several=True,
+                parameter="points",
+            ),
+        ),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("equations", mark("Constraint equations")),
+            ChapterOfTopic("derivation", mark("Velocities and accelerations")),
+        ),
+        points=True,
+        may_be_left_out=True,
+        may_be_incomplete=True,
+    ),
+)
+
 DESCRIBE = Topic(
     name="describe",
     compute=Lazily("centrode.analysis.operation", "principle_of_operation"),
@@ -701,5 +734,6 @@ TOPICS: tuple[Topic, ...] = (
     ROLLER_PATH,
     PATH_ROUTES,
     FOLLOWER_FORCES,
+    EQUATIONS,
 )
 """Every topic."""
