@@ -70,6 +70,7 @@ class Solved:
         """Events between the ends of the span and the initial position, in the order of the path."""
         initial = self.ready.kinematics.path.initial
         ends = [initial, float(np.min(self.span.parameter)), float(np.max(self.span.parameter))]
+        # an event at an end of the span was found with an error of rounding
         margin = 1e-9 * self.branches.unit
         inside = [e for e in self.branches.events if min(ends) - margin <= e.at <= max(ends) + margin]
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)

@@ -66,6 +66,7 @@ class Output:
             return solved.contacts[:, :, *self.where]
         for kind in kinds_of(solved):
             orders = [None if x is None else x[:, :, *self.where] for x in kind.orders]
+            # only the part that is wanted is turned into rates by time: of a view nothing is copied
             _values, first, second = orders
             assert first is not None
             assert second is not None
@@ -227,6 +228,7 @@ VALUE = "value"
 """Name of the result of a formula that has none of its own."""
 RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", "path", MECHANISM})
 
+# no word inside a number (1e5) or behind a dot
 _WORD = re.compile(r"(?<![\w.])[^\W\d]\w*")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
 

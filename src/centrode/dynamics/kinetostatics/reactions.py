@@ -138,6 +138,7 @@ def _with_friction(
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
     sizes = friction_of_contacts(state, found.forces, contacts, found.pace.acceleration, useful)
     without = found.outer
+    # friction acts on the bodies as any load does, so the same equations take it
     outer = Outer(
         (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
     )
@@ -292,6 +293,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
         "flag_values": np.array(list(LOCKING), dtype=np.int8),
         "flag_meanings": " ".join(LOCKING.values()),
     }
+    # amounts act along the slopes, against the motion: minus makes work taken positive
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
     works = np.where(whole and _friction_converged(rubbed), works, np.nan)
     variables = {
@@ -415,6 +417,7 @@ def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
         "flag_meanings": " ".join(status.name.lower() for status in Status),
     }
     dimensions, values, attributes = vocabulary_variable("reaction_status", ("sample",), found.status)
+    # above 1 no digit is left, and how many more than none says nothing
     loss = found.forces.system.inverse.loss[0]
     return {
         "status": motion,

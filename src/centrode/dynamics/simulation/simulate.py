@@ -84,6 +84,7 @@ class Setting:
     @cached_property
     def field(self) -> Field:
         """What moves the mechanism; the start is checked."""
+        # the tracks are built once: the check of the start and the integration use the same
         field = Field(PanelTracks(self.rows), self.driving)
         self._check_start(field.tracks)
         return field
@@ -243,6 +244,7 @@ def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> Dri
         # at rest in the sense in which it would go on
         way = (1.0 if rate > 0.0 else -1.0) if rate else sense or setting.rows.sense
         leg = field.leg_at(float(value), way)
+        # a creeping speed in place of zero: what acts against the motion needs its sense
         forces[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
     return DriveForces(*forces.T)
 
