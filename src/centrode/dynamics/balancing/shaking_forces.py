@@ -185,6 +185,7 @@ class Instants:
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
             places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
             self._places = places
+        # by the value of the drive: rates come in later, by `ShaftMotion`
         moving = DriveMotion(0.0 * values, values, np.ones(len(values)))
         return State.of_samples(
             self.ready.mechanism, places.at(values), moving, self.ready.kinematics.path.scale
@@ -225,9 +226,9 @@ def constant_rate(prepared: Ready) -> float:
         what = _("a cycle needs a drive of constant speed, and this one is a law of time")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
     rate = float(path.parameter.constant_speed or 0.0)
+    # a machine's mean speed counts before the drive's own, in the drive's sense
     if mechanism.machine is not None:
         rate = copysign(mechanism.machine.mean_speed, path.forward)
-    # a machine's mean speed counts before the drive's own, in the drive's sense
     if rate == 0.0:
         what = _("its speed is zero, so there is no inertia force")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))

@@ -212,7 +212,7 @@ def trace_motion(
     """
     refuse_untraceable(ready, span)
     known = ready.kinematics
-    # the law of a drive is not traced: its value and derivatives are inputs
+    # laws of time are not traced: values and derivatives of the drives are inputs then
     path = traced_path(known.path, span.parameter, ORDERS - 1)
     # phases of gears belong to the initial position of the description, as in `of_batch`
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
