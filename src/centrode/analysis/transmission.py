@@ -242,7 +242,8 @@ def transmission_angles(
         **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
     coords = {"group": list(by_group), **{name: data[name] for name in ("time", "drive_value")}}
-    return xr.Dataset(variables, coords, attrs={"title": mechanism.title})
+    attributes = {"topic": "angles", "title": mechanism.title, "mechanism": data.attrs["mechanism"]}
+    return xr.Dataset(variables, coords, attrs=attributes)
 
 
 @dataclass(frozen=True)

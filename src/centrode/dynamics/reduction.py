@@ -278,7 +278,7 @@ def reduced_to_several(solved: Solved, burden: MassesAndLoads) -> xr.Dataset:
     names = labels_of(tuple(coefficients.units))
     coordinates |= {"drive_2": names, "drive_3": names}
     coordinates |= {"link": labels_of(burden.links), "load": labels_of(burden.labels)}
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "reduce"))
 
 
 def refuse_drive_in_formulas(burden: MassesAndLoads) -> None:
@@ -447,7 +447,7 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
     }
     coordinates["drive_value"] = coordinates_of(solved)["drive_value"]
     coordinates |= {"link": labels_of(burden.links), "load": labels_of(burden.labels)}
-    attributes = attributes_of(solved) | {"rate_from": "drive" if _by_drive(solved) else "machine"}
+    attributes = attributes_of(solved, "reduce") | {"rate_from": "drive" if _by_drive(solved) else "machine"}
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 

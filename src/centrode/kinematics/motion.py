@@ -49,7 +49,9 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     variables |= judgements_of(solved, front) | _contacts(solved, front)
     if not batch:
         variables |= _events(solved)
-    data = xr.Dataset(variables, coords=coordinates_of(solved), attrs=attributes_of(solved))
+    data = xr.Dataset(
+        variables, coords=coordinates_of(solved), attrs=attributes_of(solved, None if batch else "run")
+    )
     for path, values in (vary or {}).items():
         data = data.assign_coords({path: (BATCH, np.asarray(values, dtype=np.float64))})
     return data
@@ -218,12 +220,13 @@ def labels_of(names: tuple[str, ...]) -> Any:
     return pd.Index(names, dtype=object)
 
 
-def attributes_of(solved: Solved) -> dict[str, Any]:
-    """What a result says of itself."""
+def attributes_of(solved: Solved, topic: str | None = None) -> dict[str, Any]:
+    """What a result says of itself: the topic of the registry that shows it, its mechanism as text, how exact it is."""
     mechanism = solved.ready.mechanism
     with speaking("en"):
         worst = solved.worst_constraint.label
     return {
+        **({} if topic is None else {"topic": topic}),
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,

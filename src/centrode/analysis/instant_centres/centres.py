@@ -351,7 +351,9 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     variables["centre_case"][2]["flag_values"] = np.array([case.value for case in Case], dtype=np.int8)
     variables["centre_case"][2]["flag_meanings"] = " ".join(case.name.lower() for case in Case)
     kept = motion[["status"]].assign_coords(drive_value=motion["drive_value"], axis=motion["axis"])
-    return kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
+    centres = kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
+    # places of several mechanisms have no sheet
+    return centres.assign_attrs(topic="centres") if centres["status"].dims == ("sample",) else centres
 
 
 def _centres(bodies: BodyMotions, numbers: Sequence[Pair]) -> dict[str, Array]:

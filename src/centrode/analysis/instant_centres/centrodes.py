@@ -123,7 +123,9 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
         "moving_arc": vocabulary_variable("moving_arc", front, arcs[1], length_unit=unit),
     }
     kept = motion[["status"]].assign_coords(axis=motion["axis"], drive_value=motion["drive_value"])
-    return kept.assign(variables).assign_attrs(link=link, against=against)
+    curves = kept.assign(variables).assign_attrs(link=link, against=against)
+    # the centrodes of several mechanisms have no sheet
+    return curves.assign_attrs(topic="centrodes") if front == ("sample",) else curves
 
 
 def _in_plane(motion: xr.Dataset, link: str, against: str) -> Polodes:

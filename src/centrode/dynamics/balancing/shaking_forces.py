@@ -576,7 +576,7 @@ def shaking(
     found, facts = _harmonics(mechanism, complex(*centre), speed, orders)
     if prepared.kinematics.path.by_time:
         del variables["drive_rate"]
-    attributes = attributes_of(solved) | {"about": list(centre), "speed": speed} | facts
+    attributes = attributes_of(solved, "shaking") | {"about": list(centre), "speed": speed} | facts
     coordinates = _coordinates(solved, found)
     return xr.Dataset(variables | found, coords=coordinates, attrs=attributes)
 

@@ -394,8 +394,9 @@ def reactions_dataset(
     variables |= _statuses(solved, found)
     sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
     variables["determined"] = vocabulary_variable("determined", ("side",), sides)
-    attributes = attributes_of(solved) | checks
+    attributes = attributes_of(solved, "reactions") | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
+    attributes["samples"] = "range" if whole else "single places"
     coordinates = _coordinates(solved, burden, found)
     if found.friction is not None:
         rubbed, powers = found.friction.rubbed, found.friction.powers

@@ -311,13 +311,15 @@ def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
 def _facts(setting: Setting, course: Trajectory, curves: dict[str, Array]) -> dict[str, float | str]:
     """Attributes: what holds for the whole course."""
     return {
+        "topic": "simulate",
         "ended": course.ended,
         "scheme": course.scheme,
         "executor": course.executor,
         "evaluations": course.evaluations,
         "driving": setting.settings.law,
         "speed_at_start": setting.settings.speed,
-        "mechanism": mechanism_text(setting.mechanism),
+        # with the settings that it ran by: what is read back says how it was driven
+        "mechanism": mechanism_text(setting.mechanism.model_copy(update={"simulation": setting.settings})),
         "worst_energy_residual": float(np.nanmax(np.abs(curves["energy_residual"]), initial=0.0)),
         "representation_error": setting.field.tracks.error,
     }

@@ -400,6 +400,7 @@ def _facts(found: SteadySolution, method: Method) -> dict[str, float | str | lis
         }
     )
     return {
+        "topic": "flywheel",
         "speed_by": method,
         "mean": found.kind,
         "mean_speed": found.machine.mean_speed,

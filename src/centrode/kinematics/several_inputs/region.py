@@ -397,7 +397,11 @@ def region_results(
     held: Mapping[str, Value] | None = None,
 ) -> RegionResults:
     """The reachable region with the mechanism and its motion; raises as `reachable_region` does."""
-    region = reachable_region(mechanism, drives, ranges, samples, held)
+    return results_of_region(mechanism, reachable_region(mechanism, drives, ranges, samples, held))
+
+
+def results_of_region(mechanism: Mechanism, region: xr.Dataset) -> RegionResults:
+    """A dataset of `reachable_region` with the motion whose path leads through it."""
     try:
         return RegionResults(mechanism, region, motion(mechanism))
     except InputError:  # laws of several drives may not say how long the motion lasts
@@ -495,6 +499,7 @@ def _dataset(
         "drive": labels_of(pair),
     }
     attributes = {
+        "topic": "region",
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,
