@@ -133,7 +133,7 @@ def solve(
 
 
 def lanes_at_once(kinematics: Kinematics, span: SampleGrid) -> int:
-    """How many mechanisms of a batch are solved together."""
+    """Number of mechanisms of a batch that are solved together."""
     return max(1, CHUNK // max(len(span.parameter), len(mesh_of(kinematics.path, span.parameter))))
 
 
@@ -204,7 +204,7 @@ def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kine
 
 @dataclass(frozen=True)
 class _Part:
-    """What is found for some mechanisms of a batch besides the samples."""
+    """Results of some mechanisms of a batch besides the samples."""
 
     branches: Branches
     residual: Array

@@ -320,7 +320,7 @@ def _apply(operation: type[ast.operator], m: Any, left: Number, right: Number) -
 
 
 def _divisor(m: Any, number: Number) -> Number:
-    """What is divided by, as it is; an algebra that has `divisor` gets to know of it."""
+    """Divisor unchanged, shown to algebras that have a function `divisor`, which look for its zeros."""
     return m.divisor(number) if hasattr(m, "divisor") else number
 
 

@@ -231,7 +231,7 @@ def trace_motion(
 
 
 def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:
-    """What tells the turns of a link's angle: the place before, or a centre that runs on with a drive."""
+    """Rule for the turns of a link's angle: by the place before, or by a centre that runs on with a drive."""
     return turns_along if walked else functools.partial(turns_of, winders=winders)
 
 

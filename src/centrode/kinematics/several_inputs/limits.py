@@ -1,4 +1,4 @@
-"""How far one drive can go while the others are held."""
+"""Limits of one drive while the others are held."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ def lines_along(
 
 
 def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first: int) -> Lines:
-    """Some of the lines together."""
+    """Grid lines that are followed together, the first with number `first`."""
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
     # signs stay: the region is that of one assembly, and change points do not lead out of it
