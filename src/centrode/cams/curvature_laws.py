@@ -389,7 +389,7 @@ def lawful(law: CurvatureLaw, phi: float) -> bool:
 
 
 def refusal(law: CurvatureLaw, phi: float) -> InputError:
-    """What is said of a curvature that is not one of a cam at an angle."""
+    """Error for a curvature that is not one of a cam at an angle [rad]."""
     value = float(derivatives(law, np.array([phi]))[0, 0])
     angle = math.degrees(phi)
     if not math.isfinite(value):

@@ -164,7 +164,7 @@ class Reducer:
     def moving(
         self, values: Array, rate: npt.ArrayLike | None = None, time: npt.ArrayLike | None = None
     ) -> DriveMotion:
-        """How the drive passes values, as `at` takes it."""
+        """Motion of the drive at values (n), with speed and time as `at` takes them."""
         path = self.ready.kinematics.path
         speed = self.default_rate if rate is None else np.asarray(rate, dtype=np.float64)
         if speed is None:

@@ -138,7 +138,7 @@ class Space(Protocol):
         """Distance of two places."""
 
     def leverage(self, m: Namespace, first: Coordinates, second: Coordinates) -> Number:
-        """How well two points of a link determine its attitude: their distance [m], on the sphere the sine of their arc."""
+        """How well two points of a link determine its attitude: their distance, on the sphere the sine of their arc."""
 
     def reach(self, m: Namespace, curve: Curve, at: Place) -> Number:
         """Distance of a guide's curve from a place in the axes of the body that carries it."""

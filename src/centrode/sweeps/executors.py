@@ -24,18 +24,18 @@ KNOWN = (AUTO, ArraysExecutor.name, MACHINE_CODE)
 
 
 class Executor(Protocol):
-    """One way to compute."""
+    """Way to compute the motions of a sweep."""
 
     @property
     def name(self) -> str:
-        """What a result says it was computed by."""
+        """Name of the executor in results."""
 
     @property
     def blocks(self) -> int:
-        """How many times `designs.BLOCK_POSITIONS` it computes in a few seconds."""
+        """Size of its blocks in `designs.BLOCK_POSITIONS`, so that one takes a few seconds."""
 
     def lanes(self, task: SweepTask) -> int:
-        """How many mechanisms are computed together."""
+        """Number of mechanisms computed together."""
 
     def run(self, task: SweepTask, numbers: Dimensions, values: Rows, results: Results) -> None:
         """Fill in all columns for the mechanisms of these dimensions; `values` are those that vary, one a mechanism."""
@@ -108,5 +108,5 @@ def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tu
 
 
 def bare(executor: str) -> str:
-    """What decides the bits: the executor without the reason why it is this one."""
+    """Name of the executor without the reason why it is this one: the part that decides the bits."""
     return executor.partition(" (")[0]

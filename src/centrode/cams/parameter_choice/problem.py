@@ -41,7 +41,7 @@ SETTLED = 1e-14
 
 @dataclass(frozen=True)
 class PathTrial:
-    """One design to be tried.
+    """Design to be tried.
 
     Attributes
     ----------
@@ -374,7 +374,7 @@ class ChoiceProblem:
         return np.unique(np.concatenate([np.linspace(first, last, ANGLES), [0.0], self.more]))
 
     def scale(self, name: str) -> float:
-        """What a measure is divided by: its bound, or that of the best design seen at the start."""
+        """Scale of a measure: its bound, or without one its greatest value over some designs."""
         bound = abs(self.limits[name][1]) if name in self.limits else 0.0
         return bound or self._references.get(name, 1.0)
 

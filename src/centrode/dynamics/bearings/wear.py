@@ -198,7 +198,7 @@ def _wear(path: Array, places: Array, sectors: int, arc: float) -> Array:
 
 
 def _overlap(away: Array, arc: float, wide: float) -> Array:
-    """What an arc and a sector have in common whose middles lie so far apart; around the turn as well."""
+    """Overlap [rad] of an arc and a sector whose middles lie so far apart [rad], also across the end of the turn."""
     total = np.zeros_like(away)
     # an arc of nearly a turn meets a sector from both sides
     for shift in (-2.0 * np.pi, 0.0, 2.0 * np.pi):

@@ -137,7 +137,7 @@ class WorkedSteps:
         self.add(MomentsOfLink(ledger.bodies.number(body), joint, None, (), outcome, beside))
 
     def assumptions(self, joints: Sequence[StaticJoint]) -> None:
-        """What is left out of meshes, and of contacts that something else keeps."""
+        """Add what is left out of meshes, and of contacts that something else keeps."""
         for joint in joints:
             if joint.kind == "mesh":
                 self.add(
@@ -557,7 +557,7 @@ def solve_together(cell: Cell, ledger: Ledger, worked: WorkedSteps) -> DyadReact
 def _column(
     joint: StaticJoint, unit: complex, turn: float, body: str, centre: complex, scale: float
 ) -> tuple[float, float, float]:
-    """What a unit of an unknown does on a body: force and moment over the scale; moments are counted in scales."""
+    """Column of one unknown in the equations of a body: force, and moment over the scale; moments count in scales."""
     share = joint.shares.get(body, 0.0)
     moment = cross(joint.place - centre, unit) / scale + turn if share else 0.0
     return share * unit.real, share * unit.imag, share * moment
@@ -583,7 +583,7 @@ def _solve_scaled(matrix: Array, right: Array) -> Array:
 def _add_reaction(
     joint: StaticJoint, force: complex, moment: float, cell: Cell, ledger: Ledger, worked: WorkedSteps
 ) -> None:
-    """One reaction that was found with others."""
+    """Add the step of one reaction that was solved together with others."""
     bodies = [name for name in cell.bodies if name in joint.shares]
     body = max(bodies, key=lambda name: joint.shares[name])
     action = ledger.reaction(joint, body, force, moment)

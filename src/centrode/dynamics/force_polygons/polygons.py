@@ -119,7 +119,7 @@ class Polygon:
 
     @property
     def gap(self) -> complex:
-        """What is left open [N]: rounding."""
+        """Sum of the vectors [N], which only rounding keeps from zero."""
         return sum((vector.force for vector in self.vectors), 0j)
 
     def length(self, vector: PolygonVector) -> float:
@@ -240,7 +240,7 @@ class Lever:
 
     @property
     def balancing(self) -> float:
-        """What the drive must give, so that the lever stands still."""
+        """Moment [N m] or force [N] that the drive must give, so that the lever stands still."""
         return -sum(one.moment for one in self.forces)
 
 
@@ -296,7 +296,7 @@ def _turn(stage: ConstructionStage, bodies: FreeBodies, body: str) -> float:
 
 @dataclass(frozen=True)
 class GroupForces:
-    """What was done for one group.
+    """Forces of one group and the steps of their construction.
 
     Attributes
     ----------

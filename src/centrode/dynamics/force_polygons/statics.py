@@ -81,7 +81,7 @@ class FreeBodies:
         return f"{self.number(first)}{comma}{self.number(second)}"
 
     def carrier(self, guide: Guide) -> str:
-        """What slides on a guide: its link, or the slider that is understood."""
+        """Name of the body that slides on a guide: its link, or the slider that is understood."""
         if guide.link is not None:
             return guide.link
         return next(name for name, own in self.sliders.items() if own is guide)
@@ -142,7 +142,7 @@ Basis: TypeAlias = tuple[complex, float]
 
 @dataclass(frozen=True)
 class StaticJoint:
-    """What two bodies (three of a gear) do to each other.
+    """Joint of two bodies (three of a gear) with its unknown forces and moments.
 
     Attributes
     ----------
@@ -490,7 +490,7 @@ class Ledger:
         return cls(bodies, joints, scale, actions)
 
     def on(self, names: Sequence[str]) -> list[Action]:
-        """What acts on some bodies, body by body."""
+        """Actions on some bodies, body by body."""
         return [action for name in names for action in self.actions[name]]
 
     def settle(self, joint: StaticJoint, force: complex, moment: float = 0.0) -> None:
