@@ -87,8 +87,8 @@ def test_ipython_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     notebook.register()
     own = {row[1:3] for row in notebook.SHOWN}
     results = [(topic.result.module, topic.result.name) for topic in TOPICS]
-    results = [("text/html", *result) for result in results if result not in own]
-    assert told == results + [row[:3] for row in notebook.SHOWN]
+    shown = [("text/html", *result) for result in results if result not in own]
+    assert told == shown + [row[:3] for row in notebook.SHOWN]
     for _kind, module, name, _function in notebook.SHOWN:
         result: Any = {"Mechanism": ct.Mechanism, "Dataset": xr.Dataset}.get(name)
         if result is not None:
