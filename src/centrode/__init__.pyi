@@ -111,6 +111,9 @@ from .cams.cam import cam as cam
 from .cams.cam import cam_routes as cam_routes
 from .cams.cam import roller_path_results as roller_path_results
 from .cams.cam import path_routes_results as path_routes_results
+from .cams.results import cam_profile_results as cam_profile_results
+from .cams.results import walking_wheel_results as walking_wheel_results
+from .cams.results import cam_contact_results as cam_contact_results
 from .cams.path_series import path_of as path_of
 from .study.cams.results import cam_results as cam_results
 from .cams.followers.motion_results import follower_motion_results as follower_motion_results
@@ -147,23 +150,14 @@ from .present import write_profile_csv as write_profile_csv
 from .present import write_outlines_svg as write_outlines_svg
 from .present import write_outlines_dxf as write_outlines_dxf
 from .present import write_cam_outlines as write_cam_outlines
-from .present import profile_figure as profile_figure
 from .present import follower_cam_figure as follower_cam_figure
 from .present import plate_curves_figure as plate_curves_figure
-from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 
 # Contact of roller and cam, choice of parameters
 from .cams.results import cam_contact as cam_contact
-from .study.cams.contact import contact_rows as contact_rows
 from .cams.parameter_choice.search import choose_cam as choose_cam
 from .cams.parameter_choice.search import CamChoice as CamChoice
-from .study.cams.choice import choice_rows as choice_rows
-from .present import write_cam_contact_csv as write_cam_contact_csv
-from .present import write_choice as write_choice
-from .present import contact_figure as contact_figure
-from .present import trade_off_figure as trade_off_figure
-from .present import choice_figures as choice_figures
 
 # Animations
 from .present import animate as animate

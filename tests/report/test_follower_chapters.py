@@ -11,8 +11,8 @@ import pytest
 
 import centrode as ct
 from centrode.cams.followers import motion_results
-from centrode.cams.followers.force_results import virtual_work_difference
 from centrode.cams.followers.curve_formulas import CURVES, PEAKS, shares_of
+from centrode.cams.followers.force_results import virtual_work_difference
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.laws import CURVES as LAWS
 from centrode.laws import LawSegment, SegmentedLaw

@@ -38,9 +38,6 @@ TOPICS_OF_CAMS = tuple(topic for topic in TOPICS if topic.subject == "cam")
 cam_argument = click.argument(
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
 )
-groove_option = click.option(
-    "--groove", is_flag=True, help=mark("Also the outer wall of a groove that the roller runs in.")
-)
 animate_option = click.option(
     "--animate",
     is_flag=True,
@@ -52,28 +49,25 @@ def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given:
     """Print what is known of a cam, and write it where a folder is named."""
     description = ct.load_cam(cam)
     no_figures, dark = given.pop("no_figures"), given.pop("dark")
-    if given["groove"] and isinstance(description, ct.PlateCam):
-        what = _("this cam is given by its follower's lift and has no curvature law")
-        raise InputError("--groove", what, _("leave it out"))
     _check_options(description, given)
     if animate:
         _check_animation(description, out)
     announce_samples(samples or 0)
     topics = [topic for topic in TOPICS_OF_CAMS if _applies(topic, description, given)]
     names: list[str] = []
-    parts = Parts(description, samples, given)
+    parts = Parts(description, samples)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
         if out is None:
             sheets = [
                 sheet for _result, sheet in _results(topics, description, samples, given, written=False)
             ]
-            parts.compute(front=False)
+            parts.compute()
         else:
             with output.output_folder(out) as draft:
                 found = _results(topics, description, samples, given, written=True)
                 sheets = [sheet for _result, sheet in found]
-                parts.compute(front=True)
+                parts.compute()
                 _write(sheets, parts, draft, progress, description, figures=not no_figures, dark=dark)
                 if animate:
                     parts.animate(draft, dark=dark)
@@ -101,7 +95,7 @@ def _command() -> click.Command:
     for topic in TOPICS_OF_CAMS:
         for option in topic.command.options if topic.command is not None else ():
             made.params += option_parameters(option)
-    made.params += parameters_of([groove_option, animate_option, no_figures_option, dark_option])
+    made.params += parameters_of([animate_option, no_figures_option, dark_option])
     return made
 
 
@@ -114,18 +108,18 @@ cam = _command()
 class Parts:
     """What `cam_results` has of a cam."""
 
-    def __init__(self, cam: AnyCam, samples: int | None, given: Mapping[str, Any]) -> None:
-        self.cam, self.samples, self.groove = cam, samples, bool(given.get("groove"))
+    def __init__(self, cam: AnyCam, samples: int | None) -> None:
+        self.cam, self.samples = cam, samples
         self.results = CamResults(cam, {})
 
-    def compute(self, *, front: bool) -> None:
+    def compute(self) -> None:
         """Compute all parts."""
-        self.results = ct.cam_results(self.cam, self.samples, groove=self.groove, front=front)
+        self.results = ct.cam_results(self.cam, self.samples)
 
     @property
     def outlined(self) -> bool:
         """Whether there are outlines."""
-        return bool({"body", "plate"} & self.results.objects.keys())
+        return "plate" in self.results.objects
 
     def show(self) -> None:
         """Print all parts."""
@@ -145,13 +139,9 @@ class Parts:
         ct.write_cam_tables(cam, datasets, folder)
         for name, data in datasets.items():
             ct.write_motion_netcdf(data, folder / f"{name}.nc")
-        if "choice" in objects:
-            ct.write_choice(objects["choice"], folder)
-        ct.write_cam_outlines(cam, objects, folder, groove=self.groove, dxf=render.writes_dxf())
+        ct.write_cam_outlines(cam, objects, folder, dxf=render.writes_dxf())
         if figures:
-            drawn = ct.cam_figures(cam, datasets) | ct.cam_body_figures(cam, objects, groove=self.groove)
-            if "choice" in objects:
-                drawn |= ct.choice_figures(objects["choice"])
+            drawn = ct.cam_figures(cam, datasets) | ct.cam_body_figures(cam, objects)
             for name, figure in drawn.items():
                 ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)
 
@@ -159,12 +149,8 @@ class Parts:
         """Write the animation."""
         objects, cam = self.results.objects, self.cam
         title, display = _(cam.title), cam.display
-        if "wheel" in objects:
-            ct.animate_walking(objects["wheel"], folder / "walking-wheel.gif", title, display, dark=dark)
-        elif "plate" in objects:
+        if "plate" in objects:
             ct.animate_follower(objects["plate"], folder / "cam.gif", title, display, dark=dark)
-        elif "body" in objects and isinstance(cam, ct.Cam) and cam.mover is None:
-            ct.animate_cam_body(objects["body"], folder / "cam.gif", title, display, dark=dark)
         elif isinstance(cam, ct.PlateCam) and not self.results.failures:
             what = _("the cam has no size: neither base_radius nor bounds are given")
             raise InputError("--animate", what, _("give one of them, or leave it out"))
@@ -197,12 +183,10 @@ def _check_options(cam: AnyCam, given: Mapping[str, Any]) -> None:
 
 def _check_animation(cam: AnyCam, out: Path | None) -> None:
     """Refuse an animation of a cam that has no shape, or without a folder."""
-    if isinstance(cam, ct.Cam) and cam.roller is None:
-        raise InputError("--animate", _("a profile needs a roller"), _("give [roller] radius"))
     topics = [
         topic for topic in TOPICS_OF_CAMS if topic.command is not None and topic.command.animation is not None
     ]
-    if not any(topic.concerns is None or topic.concerns(cam) for topic in topics):
+    if isinstance(cam, ct.Cam) and not any(topic.concerns is None or topic.concerns(cam) for topic in topics):
         for topic in topics:
             try:
                 topic.compute(cam)

@@ -13,11 +13,7 @@ from typing import NamedTuple, TypeAlias
 from centrode.locale import mark
 from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
-    cam_choice_chapter,
-    cam_contact_chapter,
     cam_motion_chapter,
-    cam_profile_chapter,
-    cam_walking_chapter,
 )
 from centrode.report.chapters.followers.base_radius import base_radius_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
@@ -72,10 +68,7 @@ OWN: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
-    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
-    "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
-    "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
-    "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
+    "profile": Kind(mark("Profile of the cam"), follower_profile_chapter),
 }
 
 

@@ -10,41 +10,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
-from centrode.study.cams.choice import choice_part
-from centrode.study.cams.contact import contact_part
 from centrode.study.cams.follower_cam import plate_part
 from centrode.study.cams.parts import Asked, CamPart
-from centrode.study.cams.profiles import profile_part, walking_part
-
-
-class MakesPart(Protocol):
-    """Computes a part of the results; None where the description does not ask for it."""
-
-    def __call__(self, cam: Cam, asked: Asked) -> CamPart | None: ...
 
 
 class MakesFollowerPart(Protocol):
-    """The same of a cam that is given by its follower's lift."""
+    """Computes a part of the results; None where the description does not ask for it."""
 
     def __call__(self, cam: PlateCam, asked: Asked) -> CamPart | None: ...
 
 
-PARTS: Mapping[str, MakesPart] = {
-    "profile": profile_part,
-    "walking": walking_part,
-    "contact": contact_part,
-    "choice": choice_part,
-}
-"""Parts by name, in the order in which they are computed and shown."""
-
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
     "profile": plate_part,
 }
-"""The same of a cam that is given by its follower's lift."""
+"""Parts of a cam that is given by its follower's lift, by name."""
 
 
 @dataclass(frozen=True)
@@ -70,37 +52,21 @@ class CamResults:
         return [one for part in self.parts.values() for one in part.failures]
 
 
-def cam_results(
-    cam: AnyCam,
-    samples: int | None = None,
-    terms: int | None = None,
-    *,
-    groove: bool = False,
-    front: bool = False,
-) -> CamResults:
-    """Everything about the cam of a description but for the motion of its follower and its forces.
+def cam_results(cam: AnyCam, samples: int | None = None) -> CamResults:
+    """The profile of a cam that is given by its follower's lift; nothing of one by a curvature law.
 
     Parameters
     ----------
     cam : Cam or PlateCam
     samples : int
-        Evenly spaced over the range or the turn; the description's own number, else 361.
-    terms : int
-        Of the power series; the description's own number, else 20.
-    groove : bool
-        Also the outer wall of a groove that the roller runs in.
-    front : bool
-        Also the front of best designs where `[choose] trade_off` names a measure; it takes some seconds.
+        Evenly spaced over the turn; the description's own number, else 361.
 
     Raises
     ------
     InputError
-        What `ct.cam` and `ct.cam_routes` refuse.
+        What `ct.cam` refuses.
     """
-    asked = Asked(samples, terms, groove, front)
-    found: dict[str, CamPart | None]
-    if isinstance(cam, PlateCam):
-        found = {name: make(cam, asked) for name, make in FOLLOWER_PARTS.items()}
-    else:
-        found = {name: make(cam, asked) for name, make in PARTS.items()}
+    if not isinstance(cam, PlateCam):
+        return CamResults(cam, {})
+    found = {name: make(cam, Asked(samples)) for name, make in FOLLOWER_PARTS.items()}
     return CamResults(cam, {name: part for name, part in found.items() if part is not None})
