@@ -1,10 +1,11 @@
-"""Notebooks: mechanisms, structures, motions and equations show themselves as drawings, tables and formulas.
+"""Notebooks: mechanisms, structures, equations and every result show themselves as drawings, tables and formulas.
 
 IPython is told by name which class is shown by which function, so that nothing is imported before it is shown.
 """
 
 from __future__ import annotations
 
+import importlib
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -12,20 +13,23 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import check_html, mechanism_html, motion_html
+    from centrode.notebook.display import check_html, mechanism_html, motion_html, result_html
     from centrode.present.equations.latex import equations_markdown
 
-__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register"]
+__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
 
 __getattr__, __dir__, _names = lazy_loader.attach(
     __name__,
-    submod_attrs={"display": ["check_html", "equations_markdown", "mechanism_html", "motion_html"]},
+    submod_attrs={
+        "display": ["check_html", "equations_markdown", "mechanism_html", "motion_html", "result_html"]
+    },
 )
 
 SHOWN = (
     ("text/html", "centrode.model.mechanism", "Mechanism", "mechanism_html"),
     ("text/html", "centrode.study.check", "MechanismCheck", "check_html"),
     ("text/html", "xarray.core.dataset", "Dataset", "motion_html"),
+    ("text/html", "centrode.topics.presentation", "Result", "result_html"),
     ("text/markdown", "centrode.equations.derivation", "Equations", "equations_markdown"),
 )
 """Kind of presentation, module and name of a class, and the function that presents it."""
@@ -36,7 +40,9 @@ def register() -> None:
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if shell is None:
         return
-    for kind, module, name, function in SHOWN:
+    results = [topic.result for topic in importlib.import_module("centrode.topics.registry").TOPICS]
+    own = [("text/html", result.module, result.name, "result_html") for result in results]
+    for kind, module, name, function in (*own, *SHOWN):
         shell.display_formatter.formatters[kind].for_type_by_name(module, name, _later(function))
 
 

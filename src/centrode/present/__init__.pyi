@@ -3,7 +3,6 @@
 # Tables
 from .tables import motion_table as motion_table
 from .tables import write_motion_csv as write_motion_csv
-from .tables import write_motion_netcdf as write_motion_netcdf
 from .workbooks import workbook_of_csv as workbook_of_csv
 from .workbooks import write_motion_xlsx as write_motion_xlsx
 from .spelled_tables import spell_with_comma as spell_with_comma
