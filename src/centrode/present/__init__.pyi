@@ -26,15 +26,8 @@ from .equations.latex import equations_markdown as equations_markdown
 # Forces
 
 # Cams
-from .cams.profiles import cam_body_figures as cam_body_figures
-from .cams.curves import cam_figures as cam_figures
 from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
-from .cams.outline_files import write_cam_outlines as write_cam_outlines
 from .cams.outlines import write_outlines_svg as write_outlines_svg
-from .cams.curves import plate_curves_figure as plate_curves_figure
-from .cams.profiles import follower_cam_figure as follower_cam_figure
-from .cams.tables import write_profile_csv as write_profile_csv
-from .cams.tables import write_cam_tables as write_cam_tables
 
 # Animations
 from .animations.animate import animate as animate

@@ -10,13 +10,22 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from centrode.present.cams.outlines import STROKES, group_by_layer
+from centrode.present.cams.outlines import GREY, STROKES, group_by_layer
 from centrode.present.curves import write_legend, write_title
 from centrode.present.displayed_units import formula, label_with_unit, shown_as
-from centrode.present.signs import cross
+from centrode.present.signs import cross, fixed_hinge, ground, turning_arrow
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals
 from centrode.render.spelling import DrawingSpelling
-from centrode.sheets.outlines import DrawnLines, DrawnRollers, LineUse
+from centrode.sheets.outlines import (
+    DrawnBaseCircle,
+    DrawnFollower,
+    DrawnLines,
+    DrawnRollers,
+    DrawnTurning,
+    LineUse,
+    MarkedPlaces,
+)
+from centrode.sheets.texts import NOTHING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +43,11 @@ ROOM = 0.06
 """Room around the body, over its size."""
 CROSS = 0.012
 """Half the size of the centre's sign, over that of the outlines."""
+FOLLOWER = PALETTE[2]
+BASE_CIRCLE: Mapping[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (1.2, 2.0))}
 PENS: Mapping[LineUse, dict[str, Any]] = {
+    LineUse.AXIS: {"color": MUTED, "linewidth": 0.8, "linestyle": (0, (6, 2, 1.5, 2)), "zorder": 1},
+    LineUse.FOLLOWER: {"color": FOLLOWER, "linewidth": 2.0, "zorder": 4, "solid_capstyle": "round"},
     LineUse.NORMAL: {"color": MUTED, "linewidth": 0.6, "zorder": 2},
     LineUse.UNDERCUT: {"color": "#B00020", "linewidth": 2.4, "zorder": 5},
 }
@@ -55,10 +68,23 @@ def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
         match shape:
             case DrawnLines(use, name, lines):
                 for places in lines:
-                    (line,) = axes.plot(*(factor * places.T), **PENS[use])
-                key.append((line, spelling.text(name)))
+                    point: dict[str, Any] = {"marker": "s", "markersize": 5} if len(places) == 1 else {}
+                    (line,) = axes.plot(*(factor * places.T), **PENS[use], **point)
+                if lines and name != NOTHING:
+                    key.append((Line2D([], [], **PENS[use]), spelling.text(name)))
             case DrawnRollers(name):
                 key.append((_rollers(axes, shape, factor, spelling), spelling.text(name)))
+            case DrawnBaseCircle(name, radius):
+                axes.add_patch(Circle((0.0, 0.0), factor * radius, fill=False, **_patch_pen(BASE_CIRCLE)))
+                key.append((Line2D([], [], **BASE_CIRCLE), spelling.text(name)))
+            case MarkedPlaces(name):
+                key.append((_marks(axes, shape, factor, spelling), spelling.text(name)))
+            case DrawnTurning(radius, sense):
+                turn = np.linspace(0.25 * np.pi, 0.75 * np.pi, 25)[:: 1 if sense > 0 else -1]
+                arc = factor * radius * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+                turning_arrow(axes, np.asarray(arc), INK)
+            case DrawnFollower():
+                _follower(axes, shape, factor)
             case _:
                 assert_never(shape)
     places = np.concatenate([piece.places for piece in drawing.pieces])
@@ -73,6 +99,43 @@ def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
     write_legend(axes, key, inches=LEGEND)
     write_title(figure, spelling.text(drawing.title), spelling.text(drawing.mechanism))
     return figure
+
+
+def _patch_pen(pen: Mapping[str, Any]) -> dict[str, Any]:
+    """The pen of a line for the edge of a patch."""
+    return {"edgecolor" if name == "color" else name: value for name, value in pen.items()}
+
+
+def _marks(axes: Axes, marks: MarkedPlaces, factor: float, spelling: DrawingSpelling) -> Line2D:
+    """Draw places with their texts; returns the sign of the legend."""
+    for place, text, beside in zip(
+        factor * marks.places, marks.texts, factor * marks.text_places, strict=True
+    ):
+        axes.plot(*place, marker="o", color=INK, markersize=3.5, zorder=6)
+        look: dict[str, Any] = {"fontsize": 8, "color": INK, "ha": "center", "va": "center", "zorder": 6}
+        axes.text(beside[0], beside[1], spelling.text(text), **look)
+    return Line2D([], [], color=INK, marker="o", linestyle="none", markersize=3.5)
+
+
+def _follower(axes: Axes, follower: DrawnFollower, factor: float) -> None:
+    """The pivot or the walls of the guide, and the roller or the edge."""
+    size = factor * follower.hinge
+    if follower.pivot is not None:
+        fixed_hinge(axes, factor * follower.pivot, size)
+    if follower.walls is not None:
+        for side in (-1.0, 1.0):
+            low, high = factor * follower.walls + np.array([1.4 * side * size, 0.0])
+            ground(axes, low, high, np.array([side, 0.0]), size, GROUND)
+        axes.update_datalim([tuple(factor * follower.walls[1] + np.array([0.0, 5.0 * size]))])
+    if follower.tip is None:
+        return
+    x, y = (factor * follower.tip).tolist()
+    if not follower.roller:
+        axes.plot(x, y, marker="v", color=FOLLOWER, markersize=6, zorder=5)
+        return
+    look: dict[str, Any] = {"facecolor": "none", "edgecolor": FOLLOWER, "linewidth": 1.6, "zorder": 4}
+    axes.add_patch(Circle((x, y), factor * follower.roller, **look))
+    axes.plot(x, y, marker="+", color=INK, markersize=6, markeredgewidth=0.9, zorder=5)
 
 
 def _rollers(axes: Axes, rollers: DrawnRollers, factor: float, spelling: DrawingSpelling) -> Line2D:

@@ -41,11 +41,16 @@ class LineUse(Enum):
 
     NORMAL = "normals"
     UNDERCUT = "undercut"
+    AXIS = "axis of a motion"
+    FOLLOWER = "follower"
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnLines:
-    """Lines of one kind: their entry in the legend, and each as its places (n, 2)."""
+    """Lines of one kind: their entry in the legend, none if empty, and each as its places (n, 2).
+
+    A line of one place is a point.
+    """
 
     use: LineUse
     name: Text
@@ -92,7 +97,53 @@ class PathDrawing:
     normal: Text
 
 
-Shape: TypeAlias = DrawnLines | DrawnRollers
+@dataclass(frozen=True)
+class DrawnBaseCircle:
+    """The base circle of a cam about the origin, its radius [m] and its entry in the legend."""
+
+    name: Text
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class MarkedPlaces:
+    """Places (n, 2) that are marked, each with a text about a place (n, 2) of its own; their entry in the legend."""
+
+    name: Text
+    places: Array
+    texts: tuple[Text, ...]
+    text_places: Array
+
+
+@dataclass(frozen=True)
+class DrawnTurning:
+    """How a body turns: an arrow about the origin, counter-clockwise where `sense` is positive; its radius [m]."""
+
+    radius: float
+    sense: float
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnFollower:
+    """What a follower consists of beside its lines.
+
+    Attributes
+    ----------
+    hinge : radius of a hinge's circle [m]
+    pivot : (2) of an oscillating follower; None of another
+    walls : (2, 2) ends of the middle of its guide; None without one
+    tip : (2) centre of the roller, or the edge; None of a flat face
+    roller : radius [m]; zero of an edge
+    """
+
+    hinge: float
+    pivot: Array | None = None
+    walls: Array | None = None
+    tip: Array | None = None
+    roller: float = 0.0
+
+
+Shape: TypeAlias = DrawnLines | DrawnRollers | DrawnBaseCircle | MarkedPlaces | DrawnTurning | DrawnFollower
 """What a drawing shows beside the outlines."""
 
 

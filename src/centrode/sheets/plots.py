@@ -381,6 +381,7 @@ class SpanPanel:
     jumps : (abscissa, from, to) of curves that jump where spans meet
     bounds : values that are admissible at most or at least
     heading : above the panel
+    zero_line : a line stands where the quantity is zero
     """
 
     label: AxisLabel
@@ -388,6 +389,7 @@ class SpanPanel:
     jumps: tuple[tuple[float, float, float], ...] = ()
     bounds: tuple[float, ...] = ()
     heading: Text = NOTHING
+    zero_line: bool = True
 
 
 @dataclass(frozen=True)
@@ -400,7 +402,7 @@ class SpanPlot:
     label : of the abscissa
     values : (place) in the unit of the label; where two places are equal a span ends, and no line joins them
     ends : (spans + 1) where spans begin, and the last one ends
-    names : of the spans; none where there is one alone
+    names : of the spans; none where there is one alone, or the panels have headings
     panels : from the top
     """
 

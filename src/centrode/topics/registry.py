@@ -24,6 +24,7 @@ READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
 HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
+NEEDS_FOLLOWER = Lazily("centrode.model.cam_files", "with_follower")
 NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
 INTEGRATE = Topic(
@@ -405,7 +406,12 @@ FOLLOWER_MOTION = Topic(
     restore=Lazily("centrode.cams.followers.motion_results", "results_of_follower_motion"),
     view=Lazily("centrode.views.follower_motion", "sheet"),
     concerns=Lazily("centrode.model.cam_files", "has_follower"),
-    document=InDocuments(chapters=(ChapterOfTopic("lift", mark("Motion of the follower")),)),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("lift", mark("Motion of the follower")),
+        )
+    ),
     subject="cam",
 )
 
@@ -421,7 +427,7 @@ MOTION_LAWS = Topic(
     command=Command(
         help="",
         options=(FlagOption("laws", mark("Also other laws of motion for the first rise of the follower.")),),
-        needs=Lazily("centrode.model.cam_files", "with_follower"),
+        needs=NEEDS_FOLLOWER,
     ),
     flag="laws",
 )
@@ -569,6 +575,32 @@ DIAGRAMS = Topic(
     ),
 )
 
+BASE_RADIUS = Topic(
+    name="base-radius",
+    compute=Lazily("centrode.cams.followers.base_radius_results", "base_radius_results"),
+    result=Lazily("centrode.cams.followers.base_radius_results", "BaseRadiusResults"),
+    view=Lazily("centrode.views.base_radius", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_size"),
+    document=InDocuments(chapters=(ChapterOfTopic("base-radius", mark("Choice of the base radius")),)),
+    subject="cam",
+)
+
+FOLLOWER_PROFILE = Topic(
+    name="follower-profile",
+    compute=Lazily("centrode.cams.followers.profile_results", "follower_profile_results"),
+    result=Lazily("centrode.cams.followers.profile_results", "FollowerProfileResults"),
+    view=Lazily("centrode.views.follower_profile", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
+    command=Command(
+        help="",
+        needs=NEEDS_FOLLOWER,
+        animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
+        animation_file="cam.gif",
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),)),
+    subject="cam",
+)
+
 ROLLER_PATH = Topic(
     name="roller-path",
     compute=Lazily("centrode.cams.cam", "roller_path_results"),
@@ -699,6 +731,8 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    BASE_RADIUS,
+    FOLLOWER_PROFILE,
     ROLLER_PATH,
     PATH_ROUTES,
     CAM_PROFILE,

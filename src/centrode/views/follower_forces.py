@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.cams.followers.closed_forms import TURN
 from centrode.cams.followers.force_results import (
-    TURN,
     strip_loads_difference,
     vanishing_push,
     virtual_work_difference,

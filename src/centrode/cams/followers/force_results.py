@@ -12,6 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.cams.followers.base_circle import has_profile
+from centrode.cams.followers.closed_forms import ROUNDING, TURN, clear_lift
 from centrode.cams.followers.forces import (
     Burden,
     FollowerForces,
@@ -26,10 +27,6 @@ from centrode.model.follower_cam import PlateCam
 
 Array = npt.NDArray[np.float64]
 
-ROUNDING = 1e-12
-"""Share of its greatest size below which the lift, a derivative or a lever is rounding."""
-TURN = np.linspace(0.0, math.tau, 721)[:-1]
-"""Angles [rad] of a turn at which routes are compared."""
 NODES = 16
 """Of the rule of Gauss and Chebyshev, which integrates an ellipse exactly."""
 
@@ -56,10 +53,8 @@ class FollowerForceResults:
 
     def lift_at(self, phi: float) -> tuple[float, float, float]:
         """Lift, slope and second derivative at an angle [rad], without what rounding leaves of zero."""
-        motion = self.forces.body.motion
-        sizes = np.abs(motion.lift(np.linspace(0.0, math.tau, 361), 2)).max(axis=1)
-        rows = motion.lift(np.array([phi]), 2)[:, 0]
-        value, slope, second = (_clear(row, size) for row, size in zip(rows, sizes, strict=True))
+        rows = clear_lift(self.forces.body.motion, np.array([phi]), 2)[:, 0]
+        value, slope, second = map(float, rows)
         return value, slope, second
 
     def levers_at(self, phi: float) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -15,10 +15,7 @@ from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
     cam_motion_chapter,
 )
-from centrode.report.chapters.followers.base_radius import base_radius_chapter
-from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
@@ -58,7 +55,7 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, follower_data_chapter)),
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
@@ -67,8 +64,6 @@ OWN: Mapping[str, Kind] = {
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
-    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
-    "profile": Kind(mark("Profile of the cam"), follower_profile_chapter),
 }
 
 
