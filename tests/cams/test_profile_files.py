@@ -14,7 +14,9 @@ import pytest
 import centrode as ct
 from cam_shapes import exchanged
 from centrode.errors import InputError
+from centrode.model.settings import Display
 from centrode.present import dxf_files
+from centrode.render import write_table
 
 ezdxf = pytest.importorskip("ezdxf")
 
@@ -29,7 +31,11 @@ def cam() -> ct.Cam:
 
 def test_csv_reads_back_bit_for_bit(cam: ct.Cam, tmp_path: Path) -> None:
     data = ct.cam_profile(cam, 91, groove=True)
-    ct.write_profile_csv(data, tmp_path / "cam.csv")
+    write_table(
+        ct.tables(ct.cam_profile_results(cam, 91, groove=True))["cam-profile"],
+        tmp_path / "cam.csv",
+        Display(),
+    )
     rows = list(csv.DictReader((tmp_path / "cam.csv").read_text(encoding="utf-8").splitlines()))
     assert list(rows[0])[:4] == ["carrier_angle [rad]", "part", "roller_centre_x [m]", "roller_centre_y [m]"]
     for header, values in {
@@ -45,7 +51,9 @@ def test_csv_reads_back_bit_for_bit(cam: ct.Cam, tmp_path: Path) -> None:
 
 
 def test_display_units_stand_in_the_header(cam: ct.Cam, tmp_path: Path) -> None:
-    ct.write_profile_csv(ct.shoe_profile(cam, 5), tmp_path / "shoe.csv", cam.display)
+    write_table(
+        ct.tables(ct.walking_wheel_results(cam, 5))["shoe-profile"], tmp_path / "shoe.csv", cam.display
+    )
     header = (tmp_path / "shoe.csv").read_text(encoding="utf-8").splitlines()[0]
     assert header == (
         "carrier_angle [deg],shoe_radius [mm],shoe_angle [deg],shoe_bend [mm],shoe_along [mm],"

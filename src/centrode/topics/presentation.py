@@ -5,7 +5,7 @@ A result is what a topic computes, or its dataset, which names its topic and hol
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -112,24 +112,6 @@ def sheet_of(result: Any) -> Sheet:
         _("is not a result that can be shown"),
         _("show one of {known}").format(known=known),
     )
-
-
-def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str] = ()) -> dict[str, Sheet]:
-    """The sheets of all topics that a cam has something for, by the name of the topic.
-
-    Parameters
-    ----------
-    samples : int
-        As of each computation.
-    flags : collection of str
-        Topics that are left out otherwise; they refuse a cam that has nothing for them.
-    """
-    return {
-        topic.name: topic.view(topic.compute(cam, samples))
-        for topic in TOPICS
-        if topic.subject == "cam"
-        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(cam))
-    }
 
 
 def display_of(result: Any) -> Display:
