@@ -134,8 +134,6 @@ from .cams.profiles import cam_body as cam_body
 from .cams.profiles import cam_outlines as cam_outlines
 from .cams.profiles import shoe_outlines as shoe_outlines
 from .cams.walking_wheel import rolling as rolling
-from .present import write_outlines_svg as write_outlines_svg
-from .present import write_outlines_dxf as write_outlines_dxf
 
 # Contact of roller and cam, choice of parameters
 from .cams.results import cam_contact as cam_contact

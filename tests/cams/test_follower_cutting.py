@@ -22,6 +22,7 @@ from centrode.cams.followers.geometry import (
 from centrode.cams.followers.manufacture import cam_points, follower_outlines, join_outlines
 from centrode.errors import InputError
 from centrode.laws.segments import LawSegment, SegmentedLaw
+from centrode.render.outlines import write_outlines_dxf, write_outlines_svg
 from follower_motions import Array, Lift, lift_of, rise_dwell_fall_dwell
 
 EPS = float(np.finfo(float).eps)
@@ -193,8 +194,8 @@ def test_too_many_points_are_refused() -> None:
 def test_files_of_outlines(tmp_path: Path) -> None:
     ezdxf = pytest.importorskip("ezdxf")
     outlines = follower_outlines(cams()["arm"], 1e-6, 0.01)
-    ct.write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Cam")
-    ct.write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam")
+    write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Cam")
+    write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam")
     document = ezdxf.readfile(tmp_path / "cam.dxf")
     audit = document.audit()
     assert not audit.has_errors and not audit.has_fixes

@@ -26,8 +26,6 @@ from .equations.latex import equations_markdown as equations_markdown
 # Forces
 
 # Cams
-from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
-from .cams.outlines import write_outlines_svg as write_outlines_svg
 
 # Animations
 from .animations.animate import animate as animate
