@@ -5,7 +5,7 @@ A result is what a topic computes, or its dataset, which names its topic and hol
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -16,7 +16,6 @@ from centrode.files.drafts import draft_folder
 from centrode.locale import _, mark
 from centrode.model.cam_files import parse_cam
 from centrode.model.files import parse_mechanism
-from centrode.render.netcdf import read_dataset
 from centrode.topics.registry import TOPICS
 
 if TYPE_CHECKING:
@@ -114,24 +113,6 @@ def sheet_of(result: Any) -> Sheet:
     )
 
 
-def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str] = ()) -> dict[str, Sheet]:
-    """The sheets of all topics that a cam has something for, by the name of the topic.
-
-    Parameters
-    ----------
-    samples : int
-        As of each computation.
-    flags : collection of str
-        Topics that are left out otherwise; they refuse a cam that has nothing for them.
-    """
-    return {
-        topic.name: topic.view(topic.compute(cam, samples))
-        for topic in TOPICS
-        if topic.subject == "cam"
-        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(cam))
-    }
-
-
 def display_of(result: Any) -> Display:
     """The units of the description that a result knows: that of its mechanism or of its cam."""
     return description_of(result).display
@@ -193,7 +174,7 @@ def open(path: str | Path) -> xarray.Dataset:
 
     Raises InputError for a file that cannot be read, and for one that is no result of centrode.
     """
-    dataset = read_dataset(Path(path))
+    dataset = render.read_dataset(Path(path))
     if not is_result(dataset):
         what = _("it is no result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))

@@ -771,3 +771,8 @@ def choose_cam(
     wanted = front and against is not None
     trade = trade_off(family, start, best, against or "", bounds, points, said) if wanted else None
     return CamChoice(chosen, choice, proof, trade)
+
+
+def has_choice(cam: AnyCam) -> bool:
+    """Whether parameters of a cam are to be chosen."""
+    return isinstance(cam, Cam) and cam.choose is not None
