@@ -5,6 +5,7 @@ IPython is told by name which class is shown by which function, so that nothing 
 
 from __future__ import annotations
 
+import functools
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -12,23 +13,30 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import check_html, mechanism_html, motion_html
+    from centrode.notebook.display import mechanism_html, motion_html, result_html
     from centrode.present.equations.latex import equations_markdown
 
-__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register"]
+__all__ = ["equations_markdown", "mechanism_html", "motion_html", "register", "result_html", "shown_classes"]
 
 __getattr__, __dir__, _names = lazy_loader.attach(
     __name__,
-    submod_attrs={"display": ["check_html", "equations_markdown", "mechanism_html", "motion_html"]},
+    submod_attrs={"display": ["equations_markdown", "mechanism_html", "motion_html", "result_html"]},
 )
 
 SHOWN = (
     ("text/html", "centrode.model.mechanism", "Mechanism", "mechanism_html"),
-    ("text/html", "centrode.study.check", "MechanismCheck", "check_html"),
     ("text/html", "xarray.core.dataset", "Dataset", "motion_html"),
     ("text/markdown", "centrode.equations.derivation", "Equations", "equations_markdown"),
 )
-"""Kind of presentation, module and name of a class, and the function that presents it."""
+"""Kind of presentation, module and name of a class, and the function that presents it; results of topics besides."""
+# What is shown in a notebook alone is not imported for a command.
+_registry = functools.partial(lazy_loader.load, "centrode.topics.registry", suppress_warning=True)
+
+
+def shown_classes() -> list[tuple[str, str, str, str]]:
+    """`SHOWN` and the results of all topics of the registry."""
+    results = [topic.result for topic in _registry().TOPICS]
+    return [*SHOWN, *(("text/html", one.module, one.name, "result_html") for one in results)]
 
 
 def register() -> None:
@@ -36,7 +44,7 @@ def register() -> None:
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if shell is None:
         return
-    for kind, module, name, function in SHOWN:
+    for kind, module, name, function in shown_classes():
         shell.display_formatter.formatters[kind].for_type_by_name(module, name, _later(function))
 
 

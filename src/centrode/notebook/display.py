@@ -1,14 +1,16 @@
-"""What a notebook shows of a mechanism, its structure, its motion and its equations."""
+"""What a notebook shows of a mechanism, its motion, its equations and any result of a topic."""
 
 from __future__ import annotations
 
 import html
 import io
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 
+from centrode import render
 from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
@@ -16,19 +18,18 @@ from centrode.model.files import parse_mechanism
 from centrode.present.displayed_units import shown_as
 from centrode.present.equations.latex import equations_markdown
 from centrode.present.figure_files import METADATA
-from centrode.present.figures import read_scene
-from centrode.present.pictures import mechanism_figure
 from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
-from centrode.study.summary import check_rows
+from centrode.sheets.linkages import MechanismPicture
+from centrode.sheets.texts import Sentence
+from centrode.topics.presentation import display_of, sheet_of
 
 if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Mechanism
-    from centrode.study.check import MechanismCheck
 
-__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html"]
+__all__ = ["equations_markdown", "mechanism_html", "motion_html", "result_html"]
 
 SAMPLES = 73
 
@@ -44,10 +45,17 @@ def mechanism_html(mechanism: Mechanism) -> str:
     return drawing + _table(heads, rows)
 
 
-def check_html(checked: MechanismCheck) -> str:
-    """A structure as a table: mobility, redundant constraints, loops, groups, initial position."""
-    title = html.escape(_(checked.title))
-    return (f"<h4>{title}</h4>" if title else "") + _table((), check_rows(checked))
+def result_html(result: Any) -> str:
+    """A result of a topic: its facts as a table, and below it what a terminal prints besides."""
+    sheet, display = sheet_of(result), display_of(result)
+    description = result.mechanism if hasattr(result, "mechanism") else result.cam
+    title = html.escape(_(description.title))
+    text = render.sheet_text(replace(sheet, facts=()), display)
+    return (
+        (f"<h4>{title}</h4>" if title else "")
+        + (_table((), render.fact_rows(sheet.facts, display)) if sheet.facts else "")
+        + (f"<pre>{html.escape(text)}</pre>" if text else "")
+    )
 
 
 def motion_html(dataset: xarray.Dataset) -> str:
@@ -76,7 +84,8 @@ def _is_motion(dataset: xarray.Dataset) -> bool:
 def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:
     """The mechanism over fading pictures of its motion, as SVG within a page."""
     with house_style():
-        figure = mechanism_figure(read_scene(mechanism, dataset), dataset, [])
+        picture = MechanismPicture(Sentence("Mechanism"), mechanism, dataset)
+        figure = render.figure_of(picture, mechanism.display)
         spell_decimals(figure)
         canvas: Any = FigureCanvasSVG(figure)
         drawn = io.BytesIO()

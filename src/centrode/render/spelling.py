@@ -21,6 +21,7 @@ from centrode.sheets.texts import (
     Part,
     Place,
     Sentence,
+    Slanted,
     Symbol,
     Text,
     Title,
@@ -52,7 +53,7 @@ class Spelling(ABC):
     def text(self, text: Text) -> str:
         """A text as a string."""
         match text:
-            case Name(what):
+            case Name(what) | Slanted(what):
                 return self.name(what)
             case Title(what):
                 return self.name(_(what))

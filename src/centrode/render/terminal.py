@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
+from centrode.locale import _
 from centrode.quantities import typeset_unit
 from centrode.render.plain_table import aligned, listing
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.linkages import MotionPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -45,7 +47,10 @@ def plain_text(text: Text, display: Display) -> str:
 
 
 def sheet_text(sheet: Sheet, display: Display) -> str:
-    """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts."""
+    """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts.
+
+    Notes stand right below the last part.
+    """
     spelling = PlainSpelling(display)
     heading = spelling.text(sheet.heading)
     parts = [heading] if heading else []
@@ -56,7 +61,8 @@ def sheet_text(sheet: Sheet, display: Display) -> str:
             parts[-1] += "\n" + text  # what is above them is their heading
         else:
             parts.append(text)
-    return "\n\n".join(parts)
+    notes = [_("note: {note}").format(note=spelling.text(note)) for note in sheet.notes]
+    return "\n".join(["\n\n".join(parts), *notes] if parts else notes)
 
 
 def _section(section: Section, spelling: PlainSpelling) -> str:
@@ -77,7 +83,7 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             return "\n".join(f"  {spelling.text(item)}" for item in texts)
         case Listing(heading, items):
             return listing(spelling.text(heading), [spelling.text(item) for item in items])
-        case Formula() | Illustration() | Check():
+        case Formula() | Illustration() | Check() | MotionPlayer():
             return ""
         case _:
             assert_never(block)

@@ -18,21 +18,34 @@ if TYPE_CHECKING:
     from centrode.model.cam_files import AnyCam
     from centrode.model.mechanism import Display
     from centrode.sheets.sheet import Sheet, Table
+    from centrode.topics.topic import Topic
 
 
-def sheet_of(result: Any) -> Sheet:
-    """What there is to say about a result, as data; InputError for what is no result of a topic."""
+def topic_of(result: Any) -> Topic:
+    """The topic whose result something is; InputError for what is no result of a topic."""
     kind = type(result)
     names = {(one.__module__, one.__qualname__) for one in kind.__mro__}
     for topic in TOPICS:
         if (topic.result.module, topic.result.name) in names:
-            return cast("Sheet", topic.view(result))
+            return topic
     known = ", ".join(topic.result.name for topic in TOPICS)
     raise InputError(
         kind.__name__,
         _("is not a result that can be shown"),
         _("show one of {known}").format(known=known),
     )
+
+
+def sheet_of(result: Any) -> Sheet:
+    """What there is to say about a result and its parts, as data; InputError for what is no result of a topic."""
+    return sheet_with_parts(topic_of(result), result)
+
+
+def sheet_with_parts(topic: Topic, result: Any) -> Sheet:
+    """The sheet of a result of a topic, with those of the parts that are results of other topics."""
+    sheet = cast("Sheet", topic.view(result))
+    parts: Mapping[str, Any] = getattr(result, "parts", {})
+    return sheet.with_parts(map(sheet_of, parts.values())) if parts else sheet
 
 
 def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str] = ()) -> dict[str, Sheet]:

@@ -145,7 +145,6 @@ REDUCTION = Topic(
     command=Command(
         help=mark("Reduce masses and loads to the drive, part by part."),
         options=(RangeOptions(),),
-        ending=Lazily("centrode.study.limits", "check_reached"),
     ),
     document=InDocuments(chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),)),
 )
@@ -230,7 +229,6 @@ REACTIONS = Topic(
             FlagOption("frictionless", mark("Leave out friction that is given by coefficients.")),
             RangeOptions(),
         ),
-        ending=Lazily("centrode.study.run", "refuse_unreached"),
         summary=False,
         complete="complete",
     ),
@@ -550,6 +548,42 @@ DIAGRAMS = Topic(
     ),
 )
 
+RUN = Topic(
+    name="run",
+    compute=Lazily("centrode.dynamics.motion_results", "study"),
+    result=Lazily("centrode.dynamics.motion_results", "MotionResults"),
+    view=Lazily("centrode.views.motion", "sheet"),
+    command=Command(
+        help=mark("Compute the motion of a mechanism: tables and pictures."),
+        options=(RangeOptions(),),
+        folder="result",
+        animation=Lazily("centrode.present.animations.animate", "animate_results"),
+        animation_help=mark("Also write an animation of the motion."),
+        animation_name="motion",
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("motion", mark("Motion")),
+            ChapterOfTopic("tables", mark("Tables of the motion")),
+            ChapterOfTopic("plots", mark("Plots of the motion")),
+        ),
+        add_instants=Lazily("centrode.dynamics.motion_results", "with_instants"),
+        wished=True,
+        points=True,
+    ),
+)
+
+CHECK = Topic(
+    name="check",
+    compute=Lazily("centrode.kinematics.check", "check"),
+    result=Lazily("centrode.kinematics.check", "MechanismCheck"),
+    view=Lazily("centrode.views.structure", "sheet"),
+    command=Command(
+        help=mark("Check a mechanism: mobility, loops, groups, plan."), samples=False, prints_only=True
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("structure", mark("Structure")),), instants=False),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -570,5 +604,7 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    RUN,
+    CHECK,
 )
 """Every topic."""

@@ -126,7 +126,9 @@ class Command:
     pictures, dark : whether it draws, and on a dark ground as well
     animation : (result, file, dark) writes an animation, with `--animate`
     animation_help : what the animation shows, marked for the catalogues
+    animation_name : of its file without the ending; that of the topic if empty
     file_help : what the one file holds, marked for the catalogues; JSON or CSV if empty
+    prints_only : it writes no files
     """
 
     help: str
@@ -145,7 +147,9 @@ class Command:
     dark: bool = False
     animation: Lazily | None = None
     animation_help: str = ""
+    animation_name: str = ""
     file_help: str = ""
+    prints_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -173,7 +177,8 @@ class InDocuments:
     chapters : in the order of the document
     arguments : of the computation
     instants : whether the computation takes the instants of the document
-    add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
+    wished : it takes the instants that somebody wishes, none without, in place of those that a document chooses then
+    add_instants : (result, instants=..., **arguments) -> result: a document goes on with a result that it has already
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     may_be_incomplete : so is one whose description lacks what the computation needs
     points : whether the computation takes the points that the document is about
@@ -182,6 +187,7 @@ class InDocuments:
     chapters: tuple[ChapterOfTopic, ...] = ()
     arguments: Mapping[str, Any] = field(default_factory=dict)
     instants: bool = True
+    wished: bool = False
     add_instants: Lazily | None = None
     may_be_left_out: bool = False
     may_be_incomplete: bool = False
@@ -196,7 +202,7 @@ class Topic:
     ----------
     name : of the command
     compute : (mechanism or cam, samples=..., instants=..., **arguments) -> result
-    result : class of what is computed
+    result : class of what is computed; `parts` of it, where it has some, are name -> result of another topic
     view : result -> Sheet
     concerns : whether a mechanism has what the topic is about; every one has if None
     command : None where only documents and Python have the topic

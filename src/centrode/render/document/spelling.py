@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.present.equations.typst import quote, shown
+from centrode.present.equations.typst import quote, shown, word
 from centrode.render.document.formulas import in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.document.vectors import vector_mathematics
@@ -19,6 +19,7 @@ from centrode.sheets.texts import (
     Name,
     Number,
     Sentence,
+    Slanted,
     Symbol,
     VectorNotation,
 )
@@ -120,6 +121,8 @@ class DocumentSpelling(Spelling):
                 return f"({size})" if number.value < 0 or "dot" in size else size
             case Name(text):
                 return quote(text)
+            case Slanted(text):
+                return word(text)
             case Sentence():
                 return quote(self.text(leaf))
             case Symbol():

@@ -7,7 +7,7 @@ raises CentrodeError where it cannot be made.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
@@ -30,15 +30,10 @@ from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
-from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
-from centrode.report.chapters.linkages.structure import structure_chapter
-from centrode.report.chapters.linkages.tables import tables_chapter
 from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.spherical_linkages import (
     sphere_data_chapter,
     sphere_equations_chapter,
-    sphere_plots_chapter,
-    sphere_tables_chapter,
 )
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
@@ -69,13 +64,10 @@ OWN: Mapping[str, Kind] = {
     "data": Kind(
         mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
     ),
-    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
+    "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
-    "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
     "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
-    "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
-    "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
@@ -87,15 +79,21 @@ OWN: Mapping[str, Kind] = {
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
-CHAPTERS: Mapping[str, Kind] = in_order(
-    {
-        **OWN,
-        **{
-            chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
-            for topic in TOPICS
-            for chapter in topic.document.chapters
-        },
-    },
-    order.CHAPTERS,
-)
+
+def _of_topics() -> Iterator[tuple[str, Kind]]:
+    """The chapters of the topics; several topics may have a chapter of one name, for linkages and for cams."""
+    for topic in TOPICS:
+        for chapter in topic.document.chapters:
+            yield chapter.name, Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
+
+
+def _together(entries: Iterable[tuple[str, Kind]]) -> dict[str, Kind]:
+    """Chapters by name; of those of one name the first that has something to tell."""
+    found: dict[str, Kind] = {}
+    for name, kind in entries:
+        found[name] = Kind(kind.title, either(found[name].make, kind.make)) if name in found else kind
+    return found
+
+
+CHAPTERS: Mapping[str, Kind] = in_order(_together([*OWN.items(), *_of_topics()]), order.CHAPTERS)
 """Those of the topics among the others."""

@@ -21,11 +21,11 @@ from centrode.render.document.blocks import (
     TableBlock,
     shown,
 )
+from centrode.render.document.cam_player import moving_wheel
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.forces.tables import ForceColumn, over_samples
-from centrode.report.player_cams import moving_wheel
 from centrode.report.texts import difference_check, typeset_table
 from centrode.study.cams.parts import Asked, CamPart
 from centrode.study.cams.parts import CamTable as Told

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from centrode.locale import _
 from centrode.render.document.blocks import ChapterBlocks, SectionBlocks
+from centrode.render.document.cam_player import moving_follower
 from centrode.report.chapters.followers.parts import body_of
-from centrode.report.player_cams import moving_follower
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
