@@ -221,11 +221,13 @@ from .topics.presentation import summary as summary
 from .topics.presentation import tables as tables
 from .topics.presentation import figures as figures
 from .topics.presentation import write as write
+from .topics.presentation import open as open
+from .topics.presentation import Result as Result
 from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
 from .present import sweep_csv as sweep_csv
-from .present import write_motion_netcdf as write_motion_netcdf
+from .render.netcdf import write_motion_netcdf as write_motion_netcdf
 from .study.among import motion_among as motion_among
 from .study.among import moving_points as moving_points
 from .present import mechanism_drawing as mechanism_drawing

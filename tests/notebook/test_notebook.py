@@ -14,6 +14,7 @@ from tools.notebook import CELLS, TARGET, executed
 
 import centrode as ct
 from centrode import notebook, render
+from centrode.topics.registry import TOPICS
 
 HOSTILE = '<script>alert("x")</script>'
 
@@ -85,7 +86,8 @@ def test_ipython_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     shell = types.SimpleNamespace(display_formatter=types.SimpleNamespace(formatters=kinds))
     monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: shell))  # type: ignore[arg-type]
     notebook.register()
-    assert told == [row[:3] for row in notebook.shown_classes()]
+    results = [("text/html", topic.result.module, topic.result.name) for topic in TOPICS]
+    assert told == results + [row[:3] for row in notebook.SHOWN]
     for _kind, module, name, _function in notebook.SHOWN:
         result: Any = {"Mechanism": ct.Mechanism, "Dataset": xr.Dataset}.get(name)
         if result is not None:

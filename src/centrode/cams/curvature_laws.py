@@ -60,6 +60,7 @@ class Analytic:
         raise NotImplementedError
 
     def series(self, phi: Number, order: int, side: int = 1) -> list[Number]:
+        # phi itself as a series: its slope is 1 and all else zero
         return self.along([phi, 1.0, *([0.0] * (order - 1))][: order + 1], side)
 
     def along(self, angles: list[Number], side: int = 1) -> list[Number]:
@@ -71,15 +72,17 @@ def full(found: Number, like: Number, count: int) -> list[Number]:
     """Coefficients of a jet, the zeros of constants with the shape of `like`."""
     coefficients = found.coefficients if isinstance(found, Jet) else (found,)
     zero = 0.0 * like
+    # constants have coefficients of the shape of the places, so that arrays stack
     return [zero + c for c in coefficients] + [zero] * (count - len(coefficients))
 
 
 def derivatives(law: CurvatureLaw, phi: Array, order: int = 0) -> Array:
     """K and its derivatives (order + 1, n) [1/m/rad^k]; NaN outside the law's span."""
     inside = (phi >= law.span[0]) & (phi <= law.span[1])
+    # laws may be called with NaN and give it, but not with places outside their span
     at = np.where(inside, phi, np.nan)
-    found = [math.factorial(k) * c for k, c in enumerate(law.series(at, order))]
-    return np.where(inside, np.asarray(found), np.nan)
+    rates = [math.factorial(k) * c for k, c in enumerate(law.series(at, order))]
+    return np.where(inside, np.asarray(rates), np.nan)
 
 
 @dataclass(frozen=True)
@@ -160,6 +163,7 @@ class SplineCurvature:
         places = np.searchsorted(self.angles, phi, side="right" if side > 0 else "left") - 1
         places = np.clip(places, 0, len(self.cubics) - 1)
         c0, c1, c2, c3 = np.moveaxis(np.asarray(self.cubics)[places], -1, 0)
+        # the distance from the knot as a series: the cubic over it has any derivatives
         u = Jet([angles[0] - np.asarray(self.angles)[places], *angles[1:]])
         return full(((u * c3 + c2) * u + c1) * u + c0, angles[0], len(angles))
 
@@ -268,6 +272,7 @@ class TextCurvature:
         return self.along([phi, 1.0, *([0.0] * (order - 1))][: order + 1], side)
 
     def along(self, angles: list[Number], side: int = 1) -> list[Number]:
+        # at a break the stretch on the side that is requested
         stretch = np.searchsorted(self.breaks, np.real(angles[0]), side="right" if side > 0 else "left")
         functions = _Signed(list(np.moveaxis(self.signs[stretch], -1, 0)))
         with np.errstate(all="ignore"):
@@ -280,16 +285,17 @@ class TextCurvature:
             return math.inf
 
     def _condition_values(self, places: Array) -> Array:
-        """Values (functions, n) whose signs are asked for."""
+        """Values (functions, n) whose signs are requested."""
         watched = _Watched()
         with np.errstate(all="ignore"):
             self._value(watched, Jet([places]))
-        return np.asarray([np.broadcast_to(one, places.shape) for one in watched.asked]).reshape(
+        return np.asarray([np.broadcast_to(value, places.shape) for value in watched.asked]).reshape(
             -1, len(places)
         )
 
     def _kinks(self) -> tuple[float, ...]:
         count = 3 + math.ceil((self.stop - self.start) / math.tau * NODES_OF_A_TURN)
+        # a mesh over the whole range: three cells at least
         places = np.linspace(self.start, self.stop, count)
         above = self._condition_values(places) >= 0
         functions, cells = np.nonzero(above[:, :-1] != above[:, 1:])
@@ -318,16 +324,16 @@ def drawn_curvature(phi: Array, radius: Array) -> Array:
     It knows nothing of the equations that gave rho. It differs from the curvature of the path in the order of the
     distances squared where these are equal, else in their first order; rounding is divided by the distance squared.
     """
-    found = np.full(len(phi), np.nan)
+    curvature = np.full(len(phi), np.nan)
     if len(phi) < 3:
-        return found
+        return curvature
     x, y = radius * np.sin(phi), radius * np.cos(phi)
     ahead, behind = (x[2:] - x[1:-1], y[2:] - y[1:-1]), (x[1:-1] - x[:-2], y[1:-1] - y[:-2])
     across = np.hypot(x[2:] - x[:-2], y[2:] - y[:-2])
     turned = behind[1] * ahead[0] - behind[0] * ahead[1]  # positive clockwise, as phi is
     with np.errstate(all="ignore"):
-        found[1:-1] = 2.0 * turned / (np.hypot(*ahead) * np.hypot(*behind) * across)
-    return found
+        curvature[1:-1] = 2.0 * turned / (np.hypot(*ahead) * np.hypot(*behind) * across)
+    return curvature
 
 
 # Whether a curvature is one of a cam over a range: known, finite and positive.

@@ -19,7 +19,7 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
-from centrode.topics.presentation import sheets_of_cam
+from centrode.topics.sheets import sheets_of_cam
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet

@@ -28,7 +28,7 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, chosen_language, mark, speaking
-from centrode.topics.presentation import sheet_with_parts
+from centrode.topics.sheets import sheet_with_parts
 from centrode.topics.topic import (
     ChoiceOption,
     Command,

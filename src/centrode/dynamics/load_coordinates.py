@@ -27,7 +27,7 @@ class Coordinate(Protocol):
         """The number itself [m or rad]."""
 
     def slope(self, state: State) -> Jet:
-        """Its derivative by the parameter, at held directions, and the derivative of that."""
+        """Derivative of the number by the parameter, at held directions, as a jet with its own derivative."""
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
         """What a load of one unit along it does to points and links: its derivatives by their coordinates."""
@@ -83,6 +83,7 @@ class Slide:
             else state.heading(guide.on, unit_vector(state.m.base, spot))
         )
         (x, y, z), (u, v, w) = place_of(pole), place_of(state.point(guide.point))
+        # square to the pole and to the point: the tangent of the circle, counter-clockwise about the pole
         return unit(state.m.base, cross((x, y, z), (u, v, w)))
 
 
@@ -147,6 +148,7 @@ class Component:
 
     def slope(self, state: State) -> Jet:
         pairs = zip(self._direction(state), self._place(state), strict=True)
+        # the direction's own derivative is left out: a force does no work when its direction turns
         parts = [u.lower_order() * x.slope() for u, x in pairs]
         return sum(parts[1:], parts[0])
 
@@ -178,6 +180,7 @@ def place_of(place: Place) -> Vector:
 def _apart(state: State, first: str, second: str, size: Number) -> tuple[Wrench, ...]:
     """Two points pushed apart, each with a force of their distance over `size`."""
     one, other = place_of(state.point(first)), place_of(state.point(second))
+    # for a distance the force is of unit size; for half its square it is the distance itself
     force = tuple((u - x) / size for x, u in zip(one, other, strict=True))
     return on_point(second, force, other), on_point(first, tuple(-x for x in force), one)
 
@@ -209,6 +212,7 @@ class Spin:
 
     def slope(self, state: State) -> Jet:
         along = [x.lower_order() for x in self._axis(state)]
+        # spins differ by the relative angular velocity; along the axis it is the rate of the joint's angle
         pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
         parts = [(own - other) * axis for own, other, axis in pairs]
         return sum(parts[1:], parts[0])
@@ -233,6 +237,7 @@ class Travel:
         return float("nan")
 
     def slope(self, state: State) -> Jet:
+        # the distance gone grows whichever way the drive runs, so its slope is the sense of the rate
         return Jet((state.m.base.sign(state.rate), 0.0))
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
@@ -242,7 +247,7 @@ class Travel:
 def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:
     """The turning of a load's link against another; `measured` where the load asks for the angle itself.
 
-    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is asked for.
+    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is requested.
     """
     assert load.link is not None
     if mechanism.space != "sphere":
@@ -279,13 +284,13 @@ def _joint(
     mechanism: Mechanism, link: str, other: str, axis: str | tuple[float, ...]
 ) -> tuple[str | None, float]:
     """The link whose joint angle is that of one against the other about a point, and which way it counts."""
-    for one, base, sense in ((link, other, 1.0), (other, link, -1.0)):
-        reference = None if one == FRAME else mechanism.links[one].reference
+    for body, base, sense in ((link, other, 1.0), (other, link, -1.0)):
+        reference = None if body == FRAME else mechanism.links[body].reference
         # a reference starts in the first point of its link, which is the axis of the angle
         if (
             reference is not None
             and reference[0] == axis
             and set(reference) <= set(points_of(mechanism, base))
         ):
-            return one, sense
+            return body, sense
     return None, 1.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -96,14 +96,21 @@ def reduction_results(
     >>> print(results.extremes[0].variable, results.extremes[0].unit)
     reduced_inertia kg m^2
     """
-    reduction = reduce(mechanism, samples, start, stop)
-    at_instants = reduce(mechanism, at=instants) if instants and "reduced_inertia" in reduction else None
+    found = results_of_reduction(mechanism, reduce(mechanism, samples, start, stop))
+    at_instants = (
+        reduce(mechanism, at=instants) if instants and "reduced_inertia" in found.reduction else None
+    )
     links: tuple[tuple[LinkMotion, ...], ...] = ()
     if at_instants is not None and mechanism.space == "plane":
         there = motion(mechanism, at=instants)
         links = tuple(tuple(motions_of_links(mechanism, there.isel(sample=k))) for k in range(len(instants)))
+    return replace(found, instants=at_instants, links=links)
+
+
+def results_of_reduction(mechanism: Mechanism, reduction: xr.Dataset) -> ReductionResults:
+    """A dataset of `reduce` with the extremes of each part, and with the limits where it has some."""
     bounds = limits_met(mechanism, reduction["status"].to_numpy())
-    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), at_instants, links, bounds)
+    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), None, (), bounds)
 
 
 def _extremes(reduction: xr.Dataset) -> Iterator[PartExtremes]:
@@ -138,6 +145,7 @@ def _along(reduction: xr.Dataset) -> Array:
     """What means are taken over: the value of the only drive where it runs one way, else time."""
     values, time = (np.asarray(reduction[name].to_numpy()) for name in ("drive_value", "time"))
     steps = np.diff(values[:, 0])
+    # over time where the drive comes back: over its value the way forth and back would cancel
     one_way = "reduced_inertia" in reduction and bool((steps > 0.0).all() or (steps < 0.0).all())
     return values[:, 0] if one_way else time
 
@@ -148,9 +156,11 @@ def _over(values: Array, along: Array) -> tuple[float, float, float]:
     if not known.any():
         return np.nan, np.nan, np.nan
     some, where = values[known], along[known]
+    # the trapezoidal rule over samples that may lie unevenly
     width = float(where[-1] - where[0])
     mean = float(np.trapezoid(some, where)) / width if width else float(np.mean(some))
     low, high = float(np.min(some)), float(np.max(some))
+    # what differs from zero by the rounding of the greatest value is zero
     noise = ROUNDING * max(abs(low), abs(high))
     return (
         0.0 if abs(low) <= noise else low,

@@ -145,7 +145,7 @@ class State:
     side : -1, 0 or 1
         At a jump: the side of the parameter that counts; 0 where a one-sided load counts as acting.
     scale : float [m]
-        The greatest length, by which velocities of zero are told from rounding.
+        The greatest length, by which velocities of zero are distinguished from rounding.
     columns : kind -> what gives value and two derivatives of its k-th number
     m : functions of jets, over arrays or over expressions
     """
@@ -193,6 +193,7 @@ class State:
     @property
     def exists(self) -> npt.NDArray[np.bool_]:
         """Where there are derivatives: nothing is reduced at limits."""
+        # any link will do: at a limit the derivatives of all are absent
         first = self.columns["attitude" if self.on_sphere else "angle"](0)[1]
         return np.asarray(np.isfinite(first))
 
@@ -202,6 +203,7 @@ class State:
             fixed = self.mechanism.frame.coordinates[name]
             if self.on_sphere:
                 radius = self.mechanism.sphere_radius
+                # over plain numbers: a point of the frame has no derivatives
                 return tuple(_constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
             return tuple(_constant(x) for x in fixed)
         place = self.known.get(f"point {name}")
@@ -215,13 +217,13 @@ class State:
 
     def attitude(self, link: str) -> Attitude:
         """On the sphere: the axes of a link in those of the frame."""
-        found = self.attitudes.get(link)
-        if found is None:
+        attitude = self.attitudes.get(link)
+        if attitude is None:
             first = 9 * self.layout.links.index(link)
             jets = [_jet(self.columns["attitude"](first + k)) for k in range(9)]
-            found = Attitude(*((jets[k], jets[k + 1], jets[k + 2]) for k in (0, 3, 6)))
-            self.attitudes[link] = found
-        return found
+            attitude = Attitude(*((jets[k], jets[k + 1], jets[k + 2]) for k in (0, 3, 6)))
+            self.attitudes[link] = attitude
+        return attitude
 
     def heading(self, link: str, direction: Vector3) -> Place:
         """On the sphere: a direction of a link's own axes, or of the frame's, as it stands in the frame."""
@@ -234,22 +236,23 @@ class State:
         """On the sphere: angular velocity of a link by the parameter, with its derivative; of first order."""
         if link == FRAME:
             return tuple(Jet((0.0, 0.0)) for _axis in range(3))
-        found = self.known.get(f"spin {link}")
-        if found is None:
+        spin = self.known.get(f"spin {link}")
+        if spin is None:
             # half the sum of a x a' over the axes
             turns = [
                 cross(tuple(x.lower_order() for x in axis), tuple(x.slope() for x in axis))
                 for axis in self.attitude(link)
             ]
-            found = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
-            self.known[f"spin {link}"] = found
-        assert isinstance(found, tuple)
-        return found
+            spin = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
+            self.known[f"spin {link}"] = spin
+        assert isinstance(spin, tuple)
+        return spin
 
     def turned_about(self, link: str, direction: Vector3) -> Jet:
         """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
         axis = tuple(x.lower_order() for x in self.heading(link, direction))
         along = dot(self.spin(link), axis)  # type: ignore[arg-type]
+        # of a first-order jet (rate, its derivative) the turning is (., rate, half of that derivative)
         return Jet((0.0, along.coefficients[0], along.coefficients[1] * 0.5))
 
     def angle(self, link: str) -> Jet:
@@ -278,18 +281,19 @@ class State:
             return tuple(x * centre.distance for x in self.heading(centre.link, centre.direction))
         x, y = self.point(centre.base)
         along, across = centre.along, centre.across
+        # the base itself: no sine or cosine is taken for nothing
         if isinstance(along, float) and isinstance(across, float) and along == across == 0.0:
             return x, y
         cosine, sine = self.rotor(centre.link)
         return x + cosine * along - sine * across, y + sine * along + cosine * across
 
     def _jet(self, kind: str, name: str, names: tuple[str, ...]) -> Jet:
-        found = self.known.get(f"{kind} {name}")
-        if found is None:
-            found = _jet(self.columns[kind](names.index(name)))
-            self.known[f"{kind} {name}"] = found
-        assert isinstance(found, Jet)
-        return found
+        jet = self.known.get(f"{kind} {name}")
+        if jet is None:
+            jet = _jet(self.columns[kind](names.index(name)))
+            self.known[f"{kind} {name}"] = jet
+        assert isinstance(jet, Jet)
+        return jet
 
 
 @dataclass(frozen=True)
@@ -329,6 +333,7 @@ def _scale_jet(jet: Jet, unit: float) -> Jet:
 
 
 def _jet(orders: Array) -> Jet:
+    # second derivatives to second Taylor coefficients
     return Jet((orders[0], orders[1], 0.5 * orders[2]))
 
 

@@ -119,17 +119,20 @@ class SampleJudging(Smooth):
 
     def root(self, group: int, radicand: Number) -> Number:
         sign = self.continuation.branches.sign(group, self.parameter, self.lanes)
+        # a radicand that does not move has derivatives that are zero: groups behind need jets
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         value = np.broadcast_to(radicand.value, self.shape)
         below = self._at_zero(group, value)
         if below is None:
+            # without power series a negative radicand opens at once; with one, `after` may take that back
             if self.continuation.windows_of(group) is None:
                 np.logical_or(self.opened, value < 0.0, out=self.opened)
             else:
                 self._judged[group] = (value < 0.0, np.zeros(self.shape, dtype=bool))
             return JETS.sqrt(radicand) * sign
         self._judged[group] = ((value < 0.0) & ~below, below)
+        # a root of rounding would move the point: at zero it is zero exactly, and its derivatives infinite
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
 
     def judge(self, group: int, judged: ConvergedPlaces) -> None:
@@ -138,15 +141,16 @@ class SampleJudging(Smooth):
 
     def after(self, group: int, at: Positions) -> None:
         mended = self.continuation.mend(group, at, self.parameter, self.lanes)
-        for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
+        for total, mask in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
             for index in mended:
-                found[index] = False  # there the motion goes on smoothly
-            np.logical_or(total, found, out=total)
+                mask[index] = False  # there the motion goes on smoothly
+            np.logical_or(total, mask, out=total)
 
     def _at_zero(self, group: int, value: Array) -> Mask | None:
         """Where a radicand is zero within its rounding error; None if nowhere."""
         greatest = self.continuation.branches.largest[group]
         greatest = greatest[:, None] if self.lanes is None else greatest[self.lanes]
+        # rounding bounds cost some ten times the value, so they are computed for radicands near zero alone
         suspects = np.nonzero(np.abs(value) <= SUSPECT * greatest)
         if not len(suspects[0]):
             return None
@@ -181,6 +185,7 @@ def sample(
 ) -> None:
     """Fill in columns and statuses; with `lanes` as in `evaluate_columns`."""
     judged = evaluate_columns(continuation, samples, parameter, lanes)
+    # in this order: later statuses are stronger, and overwrite
     samples.status[judged.zero | ~samples.complete] = Status.SINGULAR
     samples.status[beyond_limits(continuation.branches, parameter, lanes)] = Status.CUT_OFF
     samples.status[judged.lost] = Status.UNCONVERGED
@@ -191,6 +196,7 @@ def beyond_limits(branches: Branches, parameter: Array, lanes: Lanes | None = No
     """Where a mechanism would have to pass a limit: (lanes, n), or (k,) with a lane for each parameter."""
     reach = branches.reaches()
     low, high = (reach[:, :1], reach[:, 1:]) if lanes is None else reach[lanes].T
+    # a sample at the limit itself, but for rounding, is not beyond it
     margin = 4.0 * np.spacing(np.abs(parameter))
     return np.asarray((parameter < low - margin) | (parameter > high + margin))
 
@@ -200,9 +206,11 @@ def settle(samples: Samples) -> None:
     if not samples.status.any():
         return  # incomplete samples have a status
     absent = (samples.status == Status.OPEN) | (samples.status == Status.UNCONVERGED)
+    # both arrays: columns are what is computed, angles what follows from them
     for numbers in (samples.columns, samples.angles):
         numbers[:, :, absent] = np.nan
         numbers[1:, :, samples.status == Status.SINGULAR] = np.nan
+    # infinities, of groups that go to infinity, are absent too
     samples.columns[~np.isfinite(samples.columns)] = np.nan
 
 
@@ -251,6 +259,7 @@ class ResultArrays:
             columns[0, k] = place
         opened = self.status == Status.OPEN
         if opened.any():
+            # what does not close has no frame either, so that a picture of the sample is empty
             columns[:, :, opened] = np.nan
 
     @property
@@ -260,7 +269,7 @@ class ResultArrays:
         return np.moveaxis(points.reshape(ORDERS, -1, self.layout.axes, *self.status.shape), (1, 2), (3, 4))
 
     @property
-    def turned(self) -> Array:
+    def all_angles(self) -> Array:
         """Angles (3, lanes, n, angles)."""
         return np.moveaxis(self.angles, 1, 3)
 
@@ -301,7 +310,7 @@ class UnwoundAngle:
     ) -> NodeTurns:
         """Turns along the mesh of what a rotor shows; `initial` [rad] is its angle in the initial position."""
         start = int(np.argmin(np.abs(self.mesh - self.ready.kinematics.path.initial)))
-        quick = self.quick.measured(lambda numbers, at: _angle_of(rotor(numbers, at)))
+        quick = self.quick.measure(lambda numbers, at: _angle_of(rotor(numbers, at)))
         return node_turns(rotor(self.numbers, self.on_mesh), initial, start, len(self.mesh), quick)
 
     def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:
@@ -316,6 +325,7 @@ def _angle_of(rotor: tuple[Number, Number]) -> Number:
 
 def fill_angles(course: UnwoundAngle, samples: Samples, parameter: Array) -> None:
     """Fill in the angles that are measured and that the plan itself does not give with their turns."""
+    # one node for each sample, the same for all links
     nearest = course.nearest(parameter)
     for k, link in enumerate(samples.layout.angles):
         if link in samples.followed:
@@ -334,6 +344,7 @@ def fill_slides(course: UnwoundAngle, samples: Samples, parameter: Array) -> Non
             continue
         nodes = course.turns(partial(_rotor_of_slide, guide, point), _initial(course, guide, point))
         slide = samples.columns[0, layout.first_slide + k]
+        # a displacement along a closed guide is an angle about its pole, and counted like one
         angle = slide * (TURN / period)
         slide += period * nodes.at(course.nearest(parameter), np.cos(angle), np.sin(angle), parameter)
 
@@ -363,12 +374,13 @@ def _initial(course: UnwoundAngle, guide: str, point: str) -> float:
 def contacts_at(kinematics: Kinematics, at: Positions, samples: Samples) -> Array:
     """Contact points (lanes, n, rolling wheels, 2) [m] in description order; NaN where there is no position."""
     wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
-    found = np.empty((*samples.status.shape, len(wheels), 2))
+    # in the order of the description, as its constraints are
+    contacts = np.empty((*samples.status.shape, len(wheels), 2))
     for k, contact in enumerate(wheels):
         for axis, x in enumerate(contact_point(contact, ARRAYS, kinematics.numbers, at)):
-            found[..., k, axis] = x
-    found[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
-    return found
+            contacts[..., k, axis] = x
+    contacts[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
+    return contacts
 
 
 # How well every constraint holds at every sample, redundant constraints and the unit length of axes included.
@@ -404,9 +416,10 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     greatest: dict[Kept, float] = {}
     with np.errstate(all="ignore"):
         for kept, size, angular in each_residual(kinematics, ARRAYS, at):
-            found = size / (1.0 if angular else kinematics.numbers.scale)
-            worst = np.maximum(worst, found)
-            greatest[kept] = float(np.nanmax(found, initial=0.0))
+            relative = size / (1.0 if angular else kinematics.numbers.scale)
+            # maximum lets NaN win: a constraint without a value leaves the sample without a residual
+            worst = np.maximum(worst, relative)
+            greatest[kept] = float(np.nanmax(relative, initial=0.0))
     if samples.status.any():
         worst[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
     return worst, max(greatest, key=greatest.__getitem__)
@@ -416,6 +429,7 @@ def each_residual(kinematics: Kinematics, m: Namespace, at: Positions) -> Iterat
     """Every constraint, drives included, with the size of its residual over any algebra, and whether it has no unit."""
     numbers, space = kinematics.numbers, kinematics.numbers.space
     for constraint in kinematics.structure.constraints:
+        # hinges by the distance of the two places, which does not depend on the axes
         left = constraint.apart if isinstance(constraint, PointInLink) else constraint.residual
         size = [m.abs(r) for r in left(m, numbers, at)]
         yield constraint, functools.reduce(m.max, size), constraint.angular
@@ -431,6 +445,7 @@ def open_what_does_not_close(samples: Samples, residual: Array) -> None:
     if broken.any():
         samples.status[broken] = Status.OPEN
         residual[broken] = np.nan
+        # what was opened is taken out of the arrays
         settle(samples)
 
 
@@ -481,6 +496,7 @@ class MotionOnPath:
         fill_angles(self.course, samples, parameter)
         at = positions_from(kinematics, samples.layout, samples.columns[0], samples.angles[0], parameter)
         residual, worst = residuals(kinematics, samples, at)
+        # slides after residuals: constraints know no rounds along a guide
         open_what_does_not_close(samples, residual)
         fill_slides(self.course, samples, parameter)
         return Filled(at, residual, worst)

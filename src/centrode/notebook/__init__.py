@@ -1,11 +1,11 @@
-"""Notebooks: mechanisms, structures, motions and equations show themselves as drawings, tables and formulas.
+"""Notebooks: mechanisms, structures, equations and every result show themselves as drawings, tables and formulas.
 
 IPython is told by name which class is shown by which function, so that nothing is imported before it is shown.
 """
 
 from __future__ import annotations
 
-import functools
+import importlib
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from centrode.notebook.display import mechanism_html, motion_html, result_html
     from centrode.present.equations.latex import equations_markdown
 
-__all__ = ["equations_markdown", "mechanism_html", "motion_html", "register", "result_html", "shown_classes"]
+__all__ = ["equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
 
 __getattr__, __dir__, _names = lazy_loader.attach(
     __name__,
@@ -26,17 +26,10 @@ __getattr__, __dir__, _names = lazy_loader.attach(
 SHOWN = (
     ("text/html", "centrode.model.mechanism", "Mechanism", "mechanism_html"),
     ("text/html", "xarray.core.dataset", "Dataset", "motion_html"),
+    ("text/html", "centrode.topics.presentation", "Result", "result_html"),
     ("text/markdown", "centrode.equations.derivation", "Equations", "equations_markdown"),
 )
-"""Kind of presentation, module and name of a class, and the function that presents it; results of topics besides."""
-# What is shown in a notebook alone is not imported for a command.
-_registry = functools.partial(lazy_loader.load, "centrode.topics.registry", suppress_warning=True)
-
-
-def shown_classes() -> list[tuple[str, str, str, str]]:
-    """`SHOWN` and the results of all topics of the registry."""
-    results = [topic.result for topic in _registry().TOPICS]
-    return [*SHOWN, *(("text/html", one.module, one.name, "result_html") for one in results)]
+"""Kind of presentation, module and name of a class, and the function that presents it."""
 
 
 def register() -> None:
@@ -44,7 +37,9 @@ def register() -> None:
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if shell is None:
         return
-    for kind, module, name, function in shown_classes():
+    results = [topic.result for topic in importlib.import_module("centrode.topics.registry").TOPICS]
+    own = [("text/html", result.module, result.name, "result_html") for result in results]
+    for kind, module, name, function in (*own, *SHOWN):
         shell.display_formatter.formatters[kind].for_type_by_name(module, name, _later(function))
 
 

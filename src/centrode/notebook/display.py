@@ -1,14 +1,9 @@
-"""What a notebook shows of a mechanism, its motion, its equations and any result of a topic."""
+"""What a notebook shows of a mechanism, its structure, its motion and its equations."""
 
 from __future__ import annotations
 
 import html
-import io
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
-
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 
 from centrode import render
 from centrode.errors import CentrodeError
@@ -17,12 +12,9 @@ from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.present.displayed_units import shown_as
 from centrode.present.equations.latex import equations_markdown
-from centrode.present.figure_files import METADATA
-from centrode.present.spelled_figures import spell_decimals
-from centrode.present.style import house_style
 from centrode.sheets.linkages import MechanismPicture
 from centrode.sheets.texts import Sentence
-from centrode.topics.presentation import display_of, sheet_of
+from centrode.topics.presentation import display_of, is_result, sheet_of
 
 if TYPE_CHECKING:
     import xarray
@@ -42,27 +34,29 @@ def mechanism_html(mechanism: Mechanism) -> str:
         drawing = f"<p>{html.escape(str(failure))}</p>"
     rows = [(name, *_link(mechanism, name)) for name in mechanism.links]
     heads = (_("link"), _("points"), _("length"))
-    return drawing + _table(heads, rows)
+    return drawing + render.rows_html(heads, rows)
 
 
 def result_html(result: Any) -> str:
-    """A result of a topic: its facts as a table, and below it what a terminal prints besides."""
-    sheet, display = sheet_of(result), display_of(result)
-    description = result.mechanism if hasattr(result, "mechanism") else result.cam
-    title = html.escape(_(description.title))
-    text = render.sheet_text(replace(sheet, facts=()), display)
-    return (
-        (f"<h4>{title}</h4>" if title else "")
-        + (_table((), render.fact_rows(sheet.facts, display)) if sheet.facts else "")
-        + (f"<pre>{html.escape(text)}</pre>" if text else "")
-    )
+    """A result of a topic as its first picture, its facts and its tables; a motion as a drawing over its dataset.
+
+    A dataset that names no topic is shown as xarray shows it.
+    """
+    is_dataset = hasattr(result, "_repr_html_")
+    own: str = result._repr_html_() if is_dataset else ""
+    if is_dataset and not is_result(result):
+        return own
+    try:
+        return render.sheet_html(sheet_of(result), display_of(result)) + own
+    except (CentrodeError, LookupError, ValueError):  # parts of a dataset may lack what a picture needs
+        return own
 
 
 def motion_html(dataset: xarray.Dataset) -> str:
-    """A motion as a drawing over xarray's own view of it; any other dataset as xarray shows it."""
-    own: str = dataset._repr_html_()
+    """A motion as a drawing over xarray's own view of it; any other dataset as the result that it is."""
     if not _is_motion(dataset):
-        return own
+        return result_html(dataset)
+    own: str = dataset._repr_html_()
     try:
         mechanism = parse_mechanism(dataset.attrs["mechanism"])
         return _drawing(mechanism, dataset) + own
@@ -83,15 +77,8 @@ def _is_motion(dataset: xarray.Dataset) -> bool:
 
 def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:
     """The mechanism over fading pictures of its motion, as SVG within a page."""
-    with house_style():
-        picture = MechanismPicture(Sentence("Mechanism"), mechanism, dataset)
-        figure = render.figure_of(picture, mechanism.display)
-        spell_decimals(figure)
-        canvas: Any = FigureCanvasSVG(figure)
-        drawn = io.BytesIO()
-        canvas.print_svg(drawn, metadata=METADATA["svg"])
-    text = drawn.getvalue().decode()
-    return f"<div style='max-width: 36em'>{text[text.index('<svg') :]}</div>"
+    picture = MechanismPicture(Sentence("Mechanism"), mechanism, dataset)
+    return render.figure_html(render.figure_of(picture, mechanism.display))
 
 
 def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:
@@ -101,13 +88,3 @@ def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:
         return ", ".join(link.coordinates), ""
     factor, unit = shown_as("m" if mechanism.space == "plane" else "rad", mechanism.display)
     return ", ".join(link.coordinates), f"{factor * link.length:.6g} {unit}"
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Rows as a table, whatever stands in them shown as it is."""
-    heads = "".join(f"<th style='text-align: left'>{html.escape(cell)}</th>" for cell in head)
-    lines = [
-        "<tr>" + "".join(f"<td style='text-align: left'>{html.escape(cell)}</td>" for cell in row) + "</tr>"
-        for row in rows
-    ]
-    return f"<table>{f'<tr>{heads}</tr>' if heads else ''}{''.join(lines)}</table>"

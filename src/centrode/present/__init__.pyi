@@ -1,7 +1,6 @@
 # The names of presentations by subject, for type checkers and for lazy_loader, which imports by it.
 
 # Tables
-from .tables import write_motion_netcdf as write_motion_netcdf
 from .workbooks import workbook_of_csv as workbook_of_csv
 from .spelled_tables import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling

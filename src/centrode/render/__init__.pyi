@@ -6,6 +6,9 @@ from .files import write_record as write_record
 from .files import write_summary as write_summary
 from .files import write_table as write_table
 from .files import write_tables as write_tables
+from .hypertext import figure_html as figure_html
+from .hypertext import rows_html as rows_html
+from .hypertext import sheet_html as sheet_html
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text

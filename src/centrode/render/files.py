@@ -13,7 +13,7 @@ import numpy as np
 from centrode.locale import speaking
 from centrode.present.displayed_units import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.present.tables import write_motion_netcdf
+from centrode.render.netcdf import write_dataset
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def write_tables(sheet: Sheet, folder: Path, display: Display, spelling: TableSp
     for name, table in sheet.tables.items():
         write_table(table, folder / f"{name}.csv", display, spelling)
     for name, dataset in sheet.datasets.items():
-        write_motion_netcdf(dataset, folder / f"{name}.nc")
+        write_dataset(dataset, folder / f"{name}.nc")
     for name, text in sheet.files.items():
         (folder / name).write_text(text, encoding="utf-8")
 

@@ -61,8 +61,13 @@ def sheet_text(sheet: Sheet, display: Display) -> str:
             parts[-1] += "\n" + text  # what is above them is their heading
         else:
             parts.append(text)
-    notes = [_("note: {note}").format(note=spelling.text(note)) for note in sheet.notes]
+    notes = notes_of(sheet, spelling)
     return "\n".join(["\n\n".join(parts), *notes] if parts else notes)
+
+
+def notes_of(sheet: Sheet, spelling: PlainSpelling) -> list[str]:
+    """What a reader should know besides, a line each."""
+    return [_("note: {note}").format(note=spelling.text(note)) for note in sheet.notes]
 
 
 def _section(section: Section, spelling: PlainSpelling) -> str:
@@ -91,6 +96,14 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
 
 def table_text(table: Table, spelling: PlainSpelling) -> str:
     """A table of texts below its caption; numbers without units of their own stand flush right."""
+    heads, rows = table_cells(table, spelling)
+    right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
+    caption = spelling.text(table.caption)
+    return (f"{caption}\n" if caption else "") + aligned(rows, heads, right)
+
+
+def table_cells(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Heads with their units, and the rows of a table, as texts."""
     heads = [_head(column, spelling) for column in table.columns]
     cells = [
         [
@@ -101,9 +114,7 @@ def table_text(table: Table, spelling: PlainSpelling) -> str:
         ]
         for column in table.columns
     ]
-    right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
-    caption = spelling.text(table.caption)
-    return (f"{caption}\n" if caption else "") + aligned(list(zip(*cells, strict=True)), heads, right)
+    return heads, list(zip(*cells, strict=True))
 
 
 def _head(column: Column, spelling: PlainSpelling) -> str:

@@ -89,13 +89,14 @@ def sweep(
     Raises
     ------
     InputError
-        Anything asked for that there is not, a result too great, a store of another sweep, machine code for
+        Anything requested that there is not, a result too great, a store of another sweep, machine code for
         what it cannot compute.
     """
     name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
     span = requested_grid(prepared, samples, start, stop)
+    # the description's own motion says what there is to name
     motion = _first(solve(prepared, span), outputs, reduce)
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)
@@ -108,15 +109,16 @@ def sweep(
         return _in_memory(frame, blocks, task, chosen, progress)
     _check_size(frame, designs.IN_STORE, _("reduce it, or ask for fewer"))
     with open_store(Path(store), frame, blocks, task) as kept:
-        found = kept.tally.mechanisms
+        finished = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
     data = with_tally(read_store(Path(store), frame), frame, kept.tally)
-    return data.assign_attrs(mechanisms_found=found)
+    return data.assign_attrs(mechanisms_found=finished)
 
 
 def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
-    """The description's own motion, with its reduction where that is asked for."""
+    """The description's own motion, with its reduction where that is requested."""
     motion = dataset_of(solved)
+    # reductions are computed only where they are named: masses need not be complete otherwise
     if "reduced_" not in f"{outputs} {reduce}":
         return motion
     check_reducible(solved)
@@ -132,6 +134,7 @@ def _check_size(frame: SweepFrame, most: int, repair: str) -> None:
 
 def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor) -> Blocks:
     each = max(1, sum(column.bytes for column in task.asked.columns))
+    # positions of a block by time, its bytes by memory: the lesser of both
     most = min(executor.blocks * designs.BLOCK_POSITIONS // task.places, designs.BLOCK_BYTES // each)
     return Blocks.of(frame.design.shape, max(1, most))
 
@@ -163,6 +166,7 @@ def _compute(
         if kept.has(block):
             continue
         first, stop = kept.blocks.mechanisms(block)
+        # parts that are solved together stay below the working set; a block is kept as a whole
         before = kept.tally.mechanisms
         results = kept.room(block)
         for low in range(first, stop, lanes):
@@ -175,7 +179,7 @@ def _compute(
         kept.put(block, results, tally_of(task.asked, len(task.span.parameter), results))
 
 
-# Sweeps in files: which mechanism, what varies, what is asked for.
+# Sweeps in files: which mechanism, what varies, what is requested.
 
 WAYS = ("vary", "grid", "sample")
 KEYS = ("mechanism", *WAYS, "outputs", "samples", "from", "to", "reduce", "gradient", "executor")
@@ -310,8 +314,8 @@ def _sample(table: Mapping[str, Any]) -> Sample:
         raise InputError(
             "[sample]", _("it needs count and ranges"), _("write count = 1000 and [sample.ranges]")
         )
-    found = {path: _range_of_sample(path, value) for path, value in _paths(ranges, RANGE[:2])}
-    return sample(found, table["count"], table.get("method", METHODS[0]), table.get("seed", 0))
+    spans = {path: _range_of_sample(path, value) for path, value in _paths(ranges, RANGE[:2])}
+    return sample(spans, table["count"], table.get("method", METHODS[0]), table.get("seed", 0))
 
 
 def _range_of_sample(path: str, value: object) -> Any:

@@ -209,6 +209,8 @@ class Topic:
     document : its chapters
     subject : "mechanism", or "cam": those of cams have one command together
     flag : option of that command without which it leaves the topic out
+    restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
+        computation has no dataset that says everything
     """
 
     name: str
@@ -220,3 +222,4 @@ class Topic:
     document: InDocuments = InDocuments()
     subject: Literal["mechanism", "cam"] = "mechanism"
     flag: str = ""
+    restore: Lazily | None = None

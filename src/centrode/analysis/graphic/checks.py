@@ -17,7 +17,7 @@ from centrode.model.mechanism import Mechanism
 # Velocities by integrating the equations in Cauchy form: the second of three routes, where it applies.
 
 STEPS = 100
-"""Rows of an integration; of them only the last is asked for."""
+"""Rows of an integration; of them only the last is requested."""
 
 # the equations in symbols are heavy, and needed by this column alone
 _integrated = functools.partial(importlib.import_module, "centrode.equations.integration")
@@ -34,16 +34,17 @@ def integrated_rates(mechanism: Mechanism, exact: xr.Dataset) -> Mapping[tuple[s
         course = _integrated().integrate(mechanism, "adaptive", steps=STEPS, stop=stop)
     except (ModuleNotFoundError, CentrodeError):
         return {}
+    # it stopped before the instant: its last row is of another one
     if int(course["status"][-1]) != Status.OK:
         return {}
     last = course.isel(sample=-1)
-    found = {
+    rates = {
         ("angular_velocity", name): float(last["angular_velocity"].sel(link=name))
         for name in mechanism.link_names
     }
     for name in mechanism.moving_points:
-        found["velocity", name] = float(np.hypot(*last["velocity"].sel(point=name).to_numpy()))
-    return found
+        rates["velocity", name] = float(np.hypot(*last["velocity"].sel(point=name).to_numpy()))
+    return rates
 
 
 RATES = (("angular_velocity", "velocity"), ("angular_acceleration", "acceleration"))
@@ -101,11 +102,11 @@ def graphic_check(
     Parameters and failures are those of `diagrams`: a value of the drive or a time, a reading step of directions
     [rad] and of lengths on paper [m], scales of the drawings.
     """
-    found = diagrams(mechanism, at, angle_step, length_step, scales)
-    integrated = integrated_rates(mechanism, found.exact)
-    pairs = zip(RATES, (found.velocity, found.acceleration), strict=True)
-    rows = [row for names, diagram in pairs for row in _rows(found, diagram, names, integrated)]
-    return GraphicCheck(found, tuple(rows))
+    drawn = diagrams(mechanism, at, angle_step, length_step, scales)
+    integrated = integrated_rates(mechanism, drawn.exact)
+    pairs = zip(RATES, (drawn.velocity, drawn.acceleration), strict=True)
+    rows = [row for names, diagram in pairs for row in _rows(drawn, diagram, names, integrated)]
+    return GraphicCheck(drawn, tuple(rows))
 
 
 def _rows(
@@ -118,8 +119,10 @@ def _rows(
     for link in found.mechanism.link_names:
         exact = float(found.exact[turning].sel(link=link)[0])
         unit = "rad/s" if diagram.order == 1 else "rad/s^2"
+        # no -0.0 in a table
         turn = diagram.turns[link] + 0.0
         yield CheckRow(turning, link, unit, turn, integrated.get((turning, link)), exact)
+    # a step on paper [m] in millimetres, times what a millimetre stands for
     grain = 1e3 * (found.board.paper_step or 0.0) * diagram.scale
     for point in found.mechanism.moving_points:
         exact = float(np.hypot(*found.exact[moving].sel(point=point).to_numpy()[0]))

@@ -80,6 +80,7 @@ def stages(
     structure: Structure, drawing: VectorDrawing, driven: Driven, grains: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[ConstructionStage, ConstructionStage]:
     """Velocities and accelerations constructed; lengths of edges are read to the grains [m/s] and [m/s^2]."""
+    # the frame's points stand still: they are all at the pole
     velocity = ConstructionStage(drawing, driven[0], grain=grains[0])
     velocity.points |= dict.fromkeys(drawing.numbers.frame, 0j)
     construct(structure, velocity)
@@ -112,14 +113,15 @@ def positions_at(prepared: Ready, exact: xr.Dataset) -> Positions:
 def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], dict[str, float]]:
     """First and second derivatives by time of every drive's value."""
     path = prepared.kinematics.path
+    # one drive at a given speed has the rates of the grid; laws are differentiated by time
     if not path.by_time:
         drive = path.driven[0].drive.id
         return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
     first, second = {}, {}
-    for one in path.driven:
-        value = one.value(JETS, Jet.variable(span.time, 2))
+    for driven in path.driven:
+        value = driven.value(JETS, Jet.variable(span.time, 2))
         value = value if isinstance(value, Jet) else Jet((value, 0.0, 0.0))
-        first[one.drive.id], second[one.drive.id] = (
+        first[driven.drive.id], second[driven.drive.id] = (
             float(np.broadcast_to(value.derivative(k), (1,))[0]) for k in (1, 2)
         )
     return first, second
@@ -135,14 +137,16 @@ def instant_centres(velocity: ConstructionStage) -> dict[str, complex | None]:
     """Instant centres of velocity where perpendiculars to the velocities meet; None at infinity."""
     size = max((abs(rate) for rate in velocity.points.values()), default=0.0)
     reach = extent_of([velocity.drawing.point(name) for name in velocity.points])
-    found: dict[str, complex | None] = {}
+    centres: dict[str, complex | None] = {}
     for link, base in velocity.bases.items():
         rate, turn = velocity.rate(base), velocity.turns[link]
+        # a turn counts by the speed that it gives across the drawing
         if abs(turn) * reach > AT_REST * size:
-            found[link] = velocity.drawing.point(base) + 1j * rate / turn
+            centres[link] = velocity.drawing.point(base) + 1j * rate / turn
+        # it moves but does not turn: the centre is at infinity; what does neither has none
         elif abs(rate) > AT_REST * size:
-            found[link] = None
-    return found
+            centres[link] = None
+    return centres
 
 
 MECHANISM, DIAGRAM = 90.0, 105.0
@@ -209,7 +213,7 @@ class Diagrams:
 
 
 def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
-    """The velocity diagram at a value of the drive [rad or m], or a time [s] where that is what a motion is asked at.
+    """The velocity diagram at a value of the drive [rad or m], or a time [s] where the motion is given by time.
 
     `angle_step` [rad] rounds the directions that are read off the drawing. Raises as `diagrams` does. Without it the
     images agree with the motion's velocities to rounding over the sine between the lines that meet.
@@ -218,7 +222,7 @@ def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | str | 
 
 
 def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
-    """The acceleration diagram, with normal, tangential and Coriolis parts; as `velocity_diagram`."""
+    """Acceleration diagram with normal, tangential and Coriolis parts; arguments are those of `velocity_diagram`."""
     return diagrams(mechanism, at, angle_step).acceleration
 
 
@@ -262,18 +266,23 @@ def diagrams(
     span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
-    found = _construct_diagrams(prepared, exact, span, board, scales or {})
+    exact_drawing = _construct_diagrams(prepared, exact, span, board, scales or {})
     if board.paper_step is None:
-        return found
+        return exact_drawing
     # scales are chosen by the exact drawing, then lengths on paper are read
-    coarse = replace(board, length_step=1e3 * board.paper_step * found.scale)
-    grains = tuple(1e3 * board.paper_step * one.scale for one in (found.velocity, found.acceleration))
+    # a step on paper [m] in millimetres, times what a millimetre stands for
+    coarse = replace(board, length_step=1e3 * board.paper_step * exact_drawing.scale)
+    grains = tuple(
+        1e3 * board.paper_step * diagram.scale
+        for diagram in (exact_drawing.velocity, exact_drawing.acceleration)
+    )
+    # with the reading step all is drawn again, at the scales already chosen
     again = _construct_diagrams(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
     return replace(
         again,
-        scale=found.scale,
-        velocity=replace(again.velocity, scale=found.velocity.scale),
-        acceleration=replace(again.acceleration, scale=found.acceleration.scale),
+        scale=exact_drawing.scale,
+        velocity=replace(again.velocity, scale=exact_drawing.velocity.scale),
+        acceleration=replace(again.acceleration, scale=exact_drawing.acceleration.scale),
     )
 
 
@@ -310,6 +319,7 @@ def _construct_diagrams(
     drawing = drawing_of(prepared, exact, board)
     velocity, acceleration = stages(prepared.structure, drawing, driven_rates(prepared, span), grains)
     places = {name: complex(*at) for name, at in drawing.at.points.items()}
+    # a wheel's rim may reach beyond all points
     extent = extent_of([*places.values(), *_rims(prepared.mechanism, drawing)])
     moving, speeding = _size(velocity), _size(acceleration)
     # velocities that are rounding beside what accelerations make in a moment are none
@@ -328,7 +338,7 @@ def _construct_diagrams(
 
 
 def _trajectory(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
-    """The motion as far as it is asked for by default; the instant alone where nothing says how far."""
+    """The motion as far as it is requested by default; the instant alone where nothing says how far."""
     try:
         return dataset_of(solve(prepared, requested_grid(prepared, COURSE, None, None)))
     except InputError:
@@ -338,6 +348,7 @@ def _trajectory(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
 def _size(stage: ConstructionStage) -> float:
     """The longer side of a diagram."""
     ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
+    # the pole, 0, belongs to the diagram although no edge may begin there
     return extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
 
 

@@ -1,4 +1,4 @@
-"""The products of mass and radius that were asked for: force zero, least greatest effects, a fraction."""
+"""The products of mass and radius that were requested: force zero, least greatest effects, a fraction."""
 
 from __future__ import annotations
 
@@ -43,12 +43,9 @@ from centrode.model.mechanism import Link, Mechanism
 # Full balance of the shaking force: the common centre of mass is brought to rest.
 #
 # The sum of mass times place of all links is to be constant. Places of bases and rotors of links with
-# counterweights
-# are functions of the drive; where the sum lies in their span (with constants) the counterweights follow from
-# linear
-# equations: the method of linearly independent vectors (R. S. Berkof, G. G. Lowen, Journal of Engineering for
-# Industry
-# 91, 1969, 21-26) by numbers in place of the closure of loops.
+# counterweights are functions of the drive; where the sum lies in their span (with constants) the
+# counterweights follow from linear equations: the method of linearly independent vectors (R. S. Berkof, G. G.
+# Lowen, Journal of Engineering for Industry 91, 1969, 21-26) by numbers in place of the closure of loops.
 
 INSTANTS = 90
 """Values of the drive in a turn at which the sum is looked at."""
@@ -87,7 +84,8 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     """
     values = turning.values(INSTANTS * turning.turns)
     state, tracks = turning.at(values)
-    mass = np.array([one.mass for one in turning.masses])
+    mass = np.array([each.mass for each in turning.masses])
+    # constants do not shake: only what differs from the mean counts
     own = _remove_mean(mass @ tracks.places[0])
     pairs = [mass_moments(state, spot) for spot in spots]
     bases = np.array([_remove_mean(base) for base, _rotor in pairs]).reshape(len(spots), len(values))
@@ -95,11 +93,13 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     products = np.zeros(len(spots), dtype=np.complex128)
     rank = len(spots)
     for _round in range(MOST_ROUNDS):
+        # the mass that goes with a product acts on what carries its base: it is known from the round before
         masses = np.array(
             [spot.making.counterweight_for(abs(s)).mass for spot, s in zip(spots, products, strict=True)]
         )
         before = products
         if len(spots):
+            # spots whose rotors depend on each other to rounding share the work: the least products are taken
             products, _rest, rank, _sizes = np.linalg.lstsq(rotors.T, -(own + masses @ bases), rcond=SAME)
         if np.max(np.abs(products - before), initial=0.0) <= SETTLED * float(mass.sum()) * state.scale:
             break
@@ -119,17 +119,20 @@ def _remove_mean(places: Complex) -> Complex:
 def enough_spots(
     turning: ShakingTurning, candidates: Sequence[CounterweightPlace]
 ) -> list[CounterweightPlace]:
-    """As few of the candidates, the first ones before the others, as balance the mechanism; all if none do."""
+    """Candidates that suffice for balance, as few as possible and early ones first; all where no choice suffices."""
     hung = [spot for spot in candidates if spot.fixed]
     chosen = list(hung)
-    for spot in [one for one in candidates if not one.fixed]:
+    # first those hinged to the frame, as their mass alone does nothing; then others until the balance is
+    # complete
+    for spot in [each for each in candidates if not each.fixed]:
         if full_balance(turning, chosen).complete:
             break
         chosen.append(spot)
     if not full_balance(turning, chosen).complete:
         return list(candidates)
+    # from the last one back: what has become superfluous goes
     for spot in reversed(list(chosen)):
-        fewer = [one for one in chosen if one is not spot]
+        fewer = [each for each in chosen if each is not spot]
         if full_balance(turning, fewer).complete:
             chosen = fewer
     return chosen
@@ -139,9 +142,8 @@ def enough_spots(
 # counterweights.
 #
 # A link's mass with its centre on the line of two joints is replaced by two masses there with the same
-# centre; as complex
-# numbers also one beside the line: m z_S = m (1 - c) z_P + m c z_Q with c = (S - P)/(Q - P) in the link's
-# axes.
+# centre; as complex numbers also one beside the line: m z_S = m (1 - c) z_P + m c z_Q with c = (S - P)/(Q -
+# P) in the link's axes.
 
 
 @dataclass(frozen=True)
@@ -218,6 +220,7 @@ def share_of(mechanism: Mechanism, masses: Sequence[Mass], link: str, first: str
         if mass.link == link:
             centre = mass.planar_centre
             at = places[centre.base] + complex(centre.along, centre.across)
+            # of the base along the joints' line and across it: one complex number says both
             c = (at - places[first]) / (places[second] - places[first])
             return Share(link, first, second, mass.mass * (1.0 - c), mass.mass * c)
     return Share(link, first, second, 0j, 0j)
@@ -231,13 +234,13 @@ def arm(mechanism: Mechanism, link: str, first: str, second: str) -> complex:
 
 def shares_of(mechanism: Mechanism, masses: Sequence[Mass], loop: Loop) -> tuple[Share, ...]:
     """Crank, coupler and rocker replaced at their joints; what stands at a fixed joint does not move."""
-    found = [
+    shares = [
         share_of(mechanism, masses, loop.crank, loop.O, loop.A),
         share_of(mechanism, masses, loop.coupler, loop.A, loop.B),
     ]
     if loop.rocker is not None and loop.D is not None:
-        found.append(share_of(mechanism, masses, loop.rocker, loop.D, loop.B))
-    return tuple(found)
+        shares.append(share_of(mechanism, masses, loop.rocker, loop.D, loop.B))
+    return tuple(shares)
 
 
 def fraction_of_slider_crank(
@@ -247,6 +250,7 @@ def fraction_of_slider_crank(
     crank, coupler = shares_of(mechanism, masses, loop)
     rotating = crank.at_second + coupler.at_first
     reciprocating = coupler.at_second + loop.slider
+    # opposite to the crank's pin
     return -(rotating + fraction * reciprocating) * arm(mechanism, loop.crank, loop.O, loop.A)
 
 
@@ -254,13 +258,10 @@ def fraction_of_slider_crank(
 # others.
 #
 # Once the force is balanced, the moment of momentum does not depend on the place it is taken about. Where it
-# is a sum
-# of constants times the angular velocities of the links, discs geared one to one against the links on the
-# frame cancel
-# their shares. Of an in-line four-bar the coupler has no share if it is a physical pendulum, k^2 = r r' with
-# r, r' the
-# distances of its centre of mass from its joints (R. S. Berkof, Mechanism and Machine Theory 8, 1973,
-# 397-410).
+# is a sum of constants times the angular velocities of the links, discs geared one to one against the links
+# on the frame cancel their shares. Of an in-line four-bar the coupler has no share if it is a physical
+# pendulum, k^2 = r r' with r, r' the distances of its centre of mass from its joints (R. S. Berkof, Mechanism
+# and Machine Theory 8, 1973, 397-410).
 
 
 @dataclass(frozen=True)
@@ -292,8 +293,9 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
     hinged = hinged_from(mechanism)
     names = [name for name in mechanism.links if _turns(orders(state.angle(name), len(values))[1])]
     rates = np.array([orders(state.angle(name), len(values))[1] for name in names])
-    found, _rest, _rank, _sizes = np.linalg.lstsq(rates.T, momentum, rcond=SAME)
-    left = float(np.max(np.abs(momentum - found @ rates), initial=0.0))
+    # momentum as a sum of constants times rates: the constants are the inertias that are too much
+    inertias, _rest, _rank, _sizes = np.linalg.lstsq(rates.T, momentum, rcond=SAME)
+    left = float(np.max(np.abs(momentum - inertias @ rates), initial=0.0))
     if left > SAME * size:
         raise MotionError(
             "",
@@ -303,10 +305,12 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
             _("put the centres of mass of the links on the lines between their joints"),
         )
     discs = []
-    for name, inertia in zip(names, found, strict=True):
+    for name, inertia in zip(names, inertias, strict=True):
         if abs(inertia) * float(np.max(np.abs(rates))) <= SAME * size:
+            # what is rounding beside the whole is no disc
             continue
         base = hinged.get(name)
+        # too much inertia on the frame: a disc turns against the link; too little: the link gets more
         if inertia > 0.0 and base in mechanism.frame.points:
             discs.append(CounterweightDisc(name, base, float(inertia)))
         elif inertia < 0.0:
@@ -318,7 +322,8 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
 
 def _momentum(tracks: MassTracks, masses: Sequence[Mass]) -> tuple[Array, float]:
     """Moment of momentum at unit speed of the drive (n), and the greatest sum of the sizes of its parts."""
-    mass, inertia = (np.array([getattr(one, name) for one in masses]) for name in ("mass", "inertia"))
+    mass, inertia = (np.array([getattr(each, name) for each in masses]) for name in ("mass", "inertia"))
+    # about any place, as the force is balanced; near the middle numbers are small
     middle = tracks.places[0].mean()
     parts = [mass[:, None] * cross(tracks.places[0] - middle, tracks.places[1])]
     parts.append(inertia[:, None] * tracks.angles[1])
@@ -353,6 +358,7 @@ def with_discs(mechanism: Mechanism, discs: Sequence[CounterweightDisc]) -> Mech
             links[disc.link] = add_inertia(links[disc.link], own.get(disc.link), disc.inertia)
             continue
         name = disc_name(mechanism, disc.link)
+        # geared one to one against the link, about the same point of the frame
         links[name] = Link(points={disc.base: (0.0, 0.0)}, inertia=disc.inertia)
         gears.append(Gear(links=(disc.link, name), ratio=-1.0))
     return replace_parts(mechanism, links=links, gears=tuple(gears))
@@ -412,7 +418,7 @@ class BalanceProblem:
         return self.columns_at(self.values)
 
     def columns_at(self, values: Array) -> list[Effects]:
-        """The same at other values of the drive."""
+        """Effects of the parameters of each counterweight at values (n) of the drive."""
         state, pace = self.turning.instants.state(values), self.turning.instants.pace(values)
         return [columns_of(state, spot, pace, self.turning.about) for spot in self.spots]
 
@@ -420,7 +426,7 @@ class BalanceProblem:
     def unit(self) -> float:
         """What products are measured by [kg m]: all masses times the greatest length."""
         scale = self.turning.instants.ready.kinematics.path.scale
-        return scale * (sum(one.mass for one in self.turning.masses) or 1.0)
+        return scale * (sum(each.mass for each in self.turning.masses) or 1.0)
 
     @property
     def linear(self) -> bool:
@@ -441,6 +447,7 @@ class BalanceProblem:
             return PULL
         rows = np.concatenate([column.force[1:3] for column in self.columns]).T
         parts = np.concatenate([rows.real, rows.imag])
+        # rows that depend on each other: several sets of products do the same, and the smallest is wanted
         return (
             0.0 if np.linalg.matrix_rank(parts, tol=SAME * np.linalg.norm(parts)) == parts.shape[1] else PULL
         )
@@ -460,26 +467,30 @@ class BalanceProblem:
         """What counts, linear about some unknowns; `lengths`: for which spots the length is an unknown of its own."""
         whole = self.effects(x, self.own, self.columns)
         products = self.products(x)
+        # all unknowns: components of the products, then their lengths
         place = np.concatenate([x, np.abs(products) / self.unit])
         slopes = [self._slopes(*each) for each in zip(self.spots, products, lengths, strict=True)]
-        found = []
+        terms = []
         for (name, weight), size in zip(self.aim.parts, self.sizes, strict=True):
             parts = [s @ getattr(column, name) for s, column in zip(slopes, self.columns, strict=True)]
             rows = np.concatenate([*(part[:2] for part in parts), *(part[2:] for part in parts)]).T
             rows = rows * (self.unit / size)
+            # what makes the linear function agree with the effects at x
             constant = np.asarray(getattr(whole, name) / size - rows @ place)
-            found.append(MinimaxTerm(weight, constant, rows))
+            terms.append(MinimaxTerm(weight, constant, rows))
         if not self.pull:
-            return found
+            return terms
         pairs = len(self.spots)
+        # the greatest product itself as a term of very little weight
         small = np.zeros((pairs, 3 * pairs), dtype=np.complex128)
         small[np.arange(pairs), 2 * np.arange(pairs)] = 1.0
         small[np.arange(pairs), 2 * np.arange(pairs) + 1] = 1j
-        return [*found, MinimaxTerm(self.pull, np.zeros(pairs, dtype=np.complex128), small)]
+        return [*terms, MinimaxTerm(self.pull, np.zeros(pairs, dtype=np.complex128), small)]
 
     def _slopes(self, spot: CounterweightPlace, product: complex, length: bool) -> Array:
         """Derivatives of the parameters by the product's components and its length (3, PARAMETERS)."""
         made = spot.making.counterweight_for(abs(product), LEAST * self.unit)
+        # the direction in which the length of the product grows
         towards = product / abs(product) if product else 0j
         by_length = np.array([made.mass_slope, 0.0, 0.0, made.inertia_slope])
         slopes = np.zeros((3, PARAMETERS))
@@ -500,7 +511,7 @@ class BalanceProblem:
         )
 
     def with_tops(self, x: Array) -> BalanceProblem | None:
-        """The same with the tops between its instants; None where none stands out."""
+        """The problem with tops between its instants as further instants; None where none stands out."""
         added: list[Array] = []
         whole = self.effects(x, self.own, self.columns)
         for name, _weight in self.aim.parts:
@@ -521,12 +532,10 @@ class BalanceProblem:
 # weighted.
 #
 # With bases in the frame the force depends linearly on the products of mass and radius, and the least
-# greatest force is
-# found with a proof (`minimax`). Masses and inertias go with the length of the products, which may be an
-# unknown of its
-# own, not below them: a convex problem that bounds the answer. Where its lengths are those of its products it
-# is the
-# answer. Else, and with discs, linear problems are solved one after the other within a region of trust.
+# greatest force is found with a proof (`minimax`). Masses and inertias go with the length of the products,
+# which may be an unknown of its own, not below them: a convex problem that bounds the answer. Where its
+# lengths are those of its products it is the answer. Else, and with discs, linear problems are solved one
+# after the other within a region of trust.
 
 MINIMAX_INSTANTS = 180
 WIDE = 20.0
@@ -562,7 +571,8 @@ def lightest(
         turning, tuple(spots), aim, tuple(sizes), turning.values(MINIMAX_INSTANTS * turning.turns)
     )
     most = [spot.making.greatest for spot in spots]
-    limits = np.array([WIDE if one is None else min(WIDE, one / problem.unit) for one in most])
+    # in units of the problem, and never without a bound, as linear programmes need a bounded box
+    limits = np.array([WIDE if limit is None else min(WIDE, limit / problem.unit) for limit in most])
     x, bound = _solve_problem(problem, limits, None)
     for _exchange in range(EXCHANGES):
         finer = problem.with_tops(x)
@@ -578,10 +588,13 @@ def _solve_problem(problem: BalanceProblem, limits: Array, near: Array | None) -
     """The answer, with what no answer goes below where that is proved; `near` is one for a few instants less."""
     zero = np.zeros(2 * len(problem.spots))
     if problem.convex:
-        found = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
-        x = found.x[: len(zero)]
-        bound = max(found.bound - problem.pull * WIDE, 0.0)
-        if problem.value(x) <= found.value + TIGHT * max(found.value, 1e-3):
+        solution = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
+        x = solution.x[: len(zero)]
+        # without what the small pull may have added
+        bound = max(solution.bound - problem.pull * WIDE, 0.0)
+        # lengths that are free to be greater than their products' would not make it better: then the convex
+        # answer is the answer
+        if problem.value(x) <= solution.value + TIGHT * max(solution.value, 1e-3):
             return x, bound
         # more inertia than the products have would be better: what was proved is not reached
     if near is not None:
@@ -589,7 +602,10 @@ def _solve_problem(problem: BalanceProblem, limits: Array, near: Array | None) -
     full = full_balance(problem.turning, problem.spots).products / problem.unit
     resting = np.stack([full.real, full.imag], axis=1).reshape(-1)
     longest = np.repeat(np.maximum(np.hypot(resting[::2], resting[1::2]) / limits, 1.0), 2)
+    # a full balance that is too heavy is shortened until it is allowed
     resting = resting / longest
+    # the search is local: from no counterweights, from the full balance, from half of it, and from the other
+    # side
     beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
     looked = [_descend(problem, x, limits, ROUGHLY, WIDE) for x in beginnings]
     return _descend(problem, min(looked, key=problem.value), limits, CONVERGED, 10.0 * NEARBY), None
@@ -612,17 +628,20 @@ def _descend(problem: BalanceProblem, x: Array, limits: Array, converged: float,
     """
     value = problem.value(x)
     for _step in range(STEPS):
+        # the length of a product that is nearly zero bends too much to be linear
         lengths = (np.hypot(x[::2], x[1::2]) < CRUMB).tolist()
-        found = _linear(problem, x, limits, trust, max(CLOSED, 0.1 * converged), lengths)
-        there = found.x[: len(x)]
+        solution = _linear(problem, x, limits, trust, max(CLOSED, 0.1 * converged), lengths)
+        there = solution.x[: len(x)]
         reached = problem.value(there)
-        promised, gained = value - found.value, value - reached
+        # what the linear problem promised against what came of it decides on the region of trust
+        promised, gained = value - solution.value, value - reached
         step = float(np.max(np.abs(there - x)))
         if gained > 0.0:
             x, value = there, reached
         if promised <= converged * value:
             break
         if gained < 0.25 * promised:
+            # a quarter of the step taken, if that was shorter than the region
             trust = 0.25 * min(trust, step or trust)
         elif gained > 0.75 * promised:
             trust = min(2.0 * trust, WIDE)
@@ -635,6 +654,7 @@ def _without_crumbs(problem: BalanceProblem, x: Array) -> Array:
     """Without the counterweights that are nothing but what is left of the search."""
     small = np.repeat(np.hypot(x[::2], x[1::2]) < CRUMB, 2)
     fewer = np.where(small, 0.0, x)
+    # only if the value does not grow by it
     return fewer if problem.value(fewer) <= problem.value(x) * (1.0 + CLOSED) else x
 
 
@@ -662,10 +682,10 @@ def fully(
 ) -> Chosen:
     """The force zero, by all spots where they were named, else by as few as are enough."""
     spots = spots if named else enough_spots(turning, spots)
-    found = full_balance(turning, spots)
-    if not found.complete:
-        raise _cannot(turning, mechanism, spots, found.left)
-    return Chosen(tuple(spots), found.products, left=found.left, unique=found.unique)
+    chosen = full_balance(turning, spots)
+    if not chosen.complete:
+        raise _cannot(turning, mechanism, spots, chosen.left)
+    return Chosen(tuple(spots), chosen.products, left=chosen.left, unique=chosen.unique)
 
 
 def least_effects(
@@ -674,23 +694,25 @@ def least_effects(
     """The least weighted sum of greatest effects."""
     aim = _aim(weights)
     greatest = greatest_of(turning)
+    # weights count relative to the effects without counterweights
     sizes = [greatest[f"greatest_{EFFECTS[name]}"] for name, _weight in aim.parts]
     whole = {"force": turning.sizes[0], "moment": turning.sizes[1], "driving": turning.sizes[1]}
+    # an effect that is rounding from the start has no share to be weighed by
     small = [size <= ROUNDING * whole[name] for (name, _weight), size in zip(aim.parts, sizes, strict=True)]
     if any(small):
         raise InputError("weights", _("what they count is zero without counterweights"))
     try:
-        found = lightest(turning, spots, aim, sizes)
+        chosen = lightest(turning, spots, aim, sizes)
     except ArithmeticError:
         what = _("the search for counterweights fails: effects over the cycle differ too much in size")
         raise MotionError("", what, _("look for places near a limit, or ask for the full balance")) from None
     bound = None
     # in steady motion the counterweights change the speed itself, so nothing is proved
-    proved = found.bound is not None and turning.instants.panels is None
-    if found.bound is not None and proved and aim.force and len(aim.parts) == 1:
-        bound = found.bound * sizes[0] / aim.force
+    proved = chosen.bound is not None and turning.instants.panels is None
+    if chosen.bound is not None and proved and aim.force and len(aim.parts) == 1:
+        bound = chosen.bound * sizes[0] / aim.force
     weighed = (aim.force, aim.moment, aim.driving)
-    return Chosen(tuple(spots), found.products, weights=weighed, bound=bound, proved=proved)
+    return Chosen(tuple(spots), chosen.products, weights=weighed, bound=bound, proved=proved)
 
 
 def by_fraction(
@@ -717,13 +739,13 @@ def by_fraction(
 
 def check_masses(spots: Sequence[CounterweightPlace], weighed: Sequence[Counterweight]) -> None:
     """Refuse counterweights with more mass than they may have."""
-    for spot, one in zip(spots, weighed, strict=True):
+    for spot, weight in zip(spots, weighed, strict=True):
         most = spot.making.most
-        if most is not None and one.mass > most * (1.0 + 1e-9):
+        if most is not None and weight.mass > most * (1.0 + 1e-9):
             what = _("the counterweight on {link} would have {mass:.6g} kg, more than {most:.6g} kg")
             raise MotionError(
                 "most",
-                what.format(link=one.link, mass=one.mass, most=most),
+                what.format(link=weight.link, mass=weight.mass, most=most),
                 _("allow more, give it a greater radius, or ask for the least greatest force"),
             )
 
@@ -741,7 +763,7 @@ def _cannot(
 ) -> MotionError:
     """Why the force cannot be balanced fully."""
     hinged = hinged_from(mechanism)
-    heavy = [one.link for one in turning.masses if one.weighs and one.link not in hinged]
+    heavy = [mass.link for mass in turning.masses if mass.weighs and mass.link not in hinged]
     links = ", ".join(spot.link for spot in spots) or _("none")
     if heavy:
         what = _("its force cannot be balanced fully: hinges alone do not lead from the frame to {links}")

@@ -37,8 +37,7 @@ from centrode.numerics.search import tops
 # Inertial effects of bodies on the frame and on the drive, as sums over bodies in plane motion.
 #
 # Vectors of the plane are complex numbers x + i y. With momentum P and moment of momentum K of all bodies the
-# force on
-# the frame is -dP/dt and the moment on it -dK/dt: the joints only hand on what the inertia asks for.
+# force on the frame is -dP/dt and the moment on it -dK/dt: the joints only hand on what the inertia asks for.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Complex: TypeAlias = npt.NDArray[np.complex128]
@@ -54,8 +53,8 @@ class ShaftMotion:
 
     def second(self, orders: Numbers) -> Numbers:
         """Second derivatives by time of what has value and two derivatives by the parameter (3, ..., n)."""
-        found: Numbers = orders[2] * self.rate**2 + orders[1] * self.second_rate
-        return found
+        second_rate: Numbers = orders[2] * self.rate**2 + orders[1] * self.second_rate
+        return second_rate
 
 
 @dataclass(frozen=True)
@@ -106,12 +105,13 @@ def effects_of(tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, ab
 
     With J the inertia reduced to the parameter q, the drive must give J q'' + (dJ/dq) q'^2 / 2.
     """
-    mass = np.array([one.mass for one in masses])
-    inertia = np.array([one.inertia for one in masses])
+    mass = np.array([each.mass for each in masses])
+    inertia = np.array([each.inertia for each in masses])
     (place, first, second), angles = tracks.places, tracks.angles
     acceleration = pace.second(tracks.places)
     turning = pace.second(angles)
     reduced = mass @ np.abs(first) ** 2 + inertia @ angles[1] ** 2
+    # half the derivative of the reduced inertia
     slope = mass @ (np.conj(first) * second).real + inertia @ (angles[1] * angles[2])
     return Effects(
         -(mass @ acceleration),
@@ -124,8 +124,8 @@ def sizes_of(
     tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, about: complex
 ) -> tuple[float, float]:
     """Greatest force and moment if no link took anything from another: what rounding is a share of."""
-    mass = np.array([one.mass for one in masses])
-    inertia = np.array([one.inertia for one in masses])
+    mass = np.array([each.mass for each in masses])
+    inertia = np.array([each.inertia for each in masses])
     acceleration = np.abs(pace.second(tracks.places))
     moment = mass @ (np.abs(tracks.places[0] - about) * acceleration)
     moment = moment + inertia @ np.abs(pace.second(tracks.angles))
@@ -168,8 +168,10 @@ class Instants:
         """
         check_speed(speed)
         if speed == "steady":
-            found = solution_of(mechanism)
-            return cls(found.prepared, lambda values: steady_shaft_motion(found, values), found.cycle.panels)
+            solution = solution_of(mechanism)
+            return cls(
+                solution.prepared, lambda values: steady_shaft_motion(solution, values), solution.cycle.panels
+            )
         if mechanism.space == "sphere":
             raise on_sphere()
         prepared = ready(mechanism)
@@ -208,6 +210,7 @@ def steady_shaft_motion(found: SteadySolution, values: Array) -> ShaftMotion:
     """The real speed and acceleration of a drive in steady motion."""
     cycle = found.cycle
     turned = cycle.sense * (values - cycle.first)
+    # the cycle repeats: any value of the drive has its place in it
     turned = turned - cycle.period * np.floor(turned / cycle.period)
     return ShaftMotion(cycle.sense * found.speed.at(turned), cycle.sense * found.speed.acceleration(turned))
 
@@ -224,6 +227,7 @@ def constant_rate(prepared: Ready) -> float:
     rate = float(path.parameter.constant_speed or 0.0)
     if mechanism.machine is not None:
         rate = copysign(mechanism.machine.mean_speed, path.forward)
+    # a machine's mean speed counts before the drive's own, in the drive's sense
     if rate == 0.0:
         what = _("its speed is zero, so there is no inertia force")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
@@ -249,17 +253,21 @@ def turns_of_cycle(
     if drive.kind != "angle":
         what = _("there is no whole turn: the drive moves to and fro")
         raise InputError(f"[[drives]] {drive.id}", what, _("drive the angle of a link that turns fully"))
+    # most mechanisms repeat after a turn: few turns are looked at first
     for most in (FEW_TURNS, MOST_TURNS):
+        # at probes in every turn, which lie nowhere special
         turned = (PROBES + tau * np.arange(most + 1)[:, None]).reshape(-1)
         values = path.initial + path.forward * turned
-        found = _signature(instants, masses, carriers, values)
-        missing = ~np.isfinite(found).all(axis=0)
+        signature = _signature(instants, masses, carriers, values)
+        missing = ~np.isfinite(signature).all(axis=0)
         if missing.any():
             raise does_not_turn(float(values[missing][0]))
-        by_turn = found.reshape(len(found), most + 1, -1)
+        by_turn = signature.reshape(len(signature), most + 1, -1)
+        # each turn against the first one, at the same probes
         apart = np.max(np.abs(by_turn[:, 1:] - by_turn[:, :1]), axis=(0, 2))
-        same = apart <= SAME * float(np.max(np.abs(found)))
+        same = apart <= SAME * float(np.max(np.abs(signature)))
         if same.any():
+            # the first turn after which everything agrees
             return 1 + int(np.argmax(same))
     what = _("the masses are not back in their places after {turns} turns of the drive").format(turns=most)
     raise InputError("[[gears]]", what, _("change the ratios of the gears"))
@@ -409,10 +417,8 @@ def top(curve: Curve, nodes: Array) -> Top:
 # Harmonics of what inertia does to the frame: Fourier coefficients over a whole cycle of the drive.
 #
 # At constant speed by the trapezoidal rule on a whole period, which converges faster than any power of the
-# number of
-# nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014, 385-458);
-# where loads
-# make the acceleration jump by Gauss's rule between the jumps.
+# number of nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014,
+# 385-458); where loads make the acceleration jump by Gauss's rule between the jumps.
 
 MOST_DOUBLINGS = 5
 SETTLED = 1e-13
@@ -446,6 +452,7 @@ class Harmonics:
     @property
     def force_greatest(self) -> Array:
         """Longer half axis of the ellipse that the force of each order describes (orders) [N]."""
+        # an ellipse is two vectors that turn against each other: where they meet, their sizes add up
         forward, backward = self.force_cosine - 1j * self.force_sine, self.force_cosine + 1j * self.force_sine
         return np.asarray(0.5 * (np.abs(forward) + np.abs(backward)))
 
@@ -464,14 +471,16 @@ def harmonics_of(turning: ShakingTurning, most: int) -> Harmonics:
             values, weights = turning.values(count), np.full(count, 1.0 / count)
         else:
             values, weights = _gauss(turning, panels)
-        found = _coefficients(turning, orders, values, weights)
+        coefficients = _coefficients(turning, orders, values, weights)
         if before is not None:
-            error = float(np.max(np.max(np.abs(found - before), axis=(0, 2)) / sizes))
+            # force by force, moment by moment: each coefficient over what its own sum may come up to
+            error = float(np.max(np.max(np.abs(coefficients - before), axis=(0, 2)) / sizes))
         if error <= SETTLED:
             break
-        before, count = found, 2 * count
+        before, count = coefficients, 2 * count
+        # twice the panels where the acceleration jumps: Gauss's rule converges between jumps only
         panels = None if panels is None else _halve_panels(panels)
-    cosine, sine = found
+    cosine, sine = coefficients
     return Harmonics(
         orders,
         cosine[0] + 1j * cosine[1],
@@ -487,9 +496,10 @@ def _coefficients(turning: ShakingTurning, orders: Array, values: Array, weights
     """Cosine and sine coefficients (2, 3, orders) of force x, force y and moment."""
     effects = turning.effects(values)
     rows = np.stack([effects.force.real, effects.force.imag, effects.moment])
+    # the mean has weight 1, the others 2: the coefficients of a real Fourier series
     waves = np.exp(1j * orders[:, None] * values) * np.where(orders == 0.0, 1.0, 2.0)[:, None]
-    found = (rows * weights) @ waves.T
-    return np.stack([found.real, found.imag])
+    coefficients = (rows * weights) @ waves.T
+    return np.stack([coefficients.real, coefficients.imag])
 
 
 def _gauss(turning: ShakingTurning, panels: Panels) -> tuple[Array, Array]:
@@ -565,7 +575,7 @@ def shaking(
     found, facts = _harmonics(mechanism, complex(*centre), speed, orders)
     if prepared.kinematics.path.by_time:
         del variables["drive_rate"]
-    attributes = attributes_of(solved) | {"about": list(centre), "speed": speed} | facts
+    attributes = attributes_of(solved, "shaking") | {"about": list(centre), "speed": speed} | facts
     coordinates = _coordinates(solved, found)
     return xr.Dataset(variables | found, coords=coordinates, attrs=attributes)
 
@@ -595,17 +605,17 @@ def _sampled_range(
     at: npt.ArrayLike | None,
     speed: Speed,
 ) -> tuple[Ready, SampleGrid]:
-    """The samples, passed at the speed that is asked for."""
+    """The samples, passed at the speed that is requested."""
     if speed == "steady":
         if start is not None or stop is not None:
             what = _("steady motion is shown over its cycle")
             raise InputError("speed", what, _("leave the range out, or name values by at"))
-        found = solution_of(mechanism)
-        turned = turned_at(found, samples, at)
-        rate, second = found.speed.at(turned), found.speed.acceleration(turned)
-        sense = found.cycle.sense
-        return found.prepared, SampleGrid(
-            found.speed.time(turned), found.cycle.value(turned), sense * rate, sense * second
+        solution = solution_of(mechanism)
+        turned = turned_at(solution, samples, at)
+        rate, second = solution.speed.at(turned), solution.speed.acceleration(turned)
+        sense = solution.cycle.sense
+        return solution.prepared, SampleGrid(
+            solution.speed.time(turned), solution.cycle.value(turned), sense * rate, sense * second
         )
     prepared = ready(mechanism)
     path = prepared.kinematics.path
@@ -623,16 +633,16 @@ def _sampled_range(
 def _curves(effects: Effects, unit: str, *, several: bool) -> dict[str, Variable]:
     """Force, its size, moment; what the drive gives, where there is one."""
     force = np.stack([effects.force.real, effects.force.imag], axis=-1)
-    found = {
+    curves = {
         "shaking_force": vocabulary_variable("shaking_force", ("sample", "axis"), force),
         "shaking_force_size": vocabulary_variable("shaking_force_size", ("sample",), np.abs(effects.force)),
         "shaking_moment": vocabulary_variable("shaking_moment", ("sample",), effects.moment),
     }
     if not several:
-        found["inertia_on_drive"] = vocabulary_variable(
+        curves["inertia_on_drive"] = vocabulary_variable(
             "inertia_on_drive", ("sample",), effects.driving, unit
         )
-    return found
+    return curves
 
 
 def _coordinates(solved: Solved, found: dict[str, Variable]) -> dict[str, Any]:
@@ -669,8 +679,8 @@ def greatest_of(turning: ShakingTurning) -> dict[str, float]:
         ("shaking_moment", lambda q: np.abs(turning.effects(q).moment)),
         ("inertia_on_drive", lambda q: np.abs(turning.effects(q).driving)),
     ):
-        found = top(curve, turning.nodes)
-        facts |= {f"greatest_{name}": found.value, f"greatest_{name}_at": found.at % (tau * turning.turns)}
+        peaks = top(curve, turning.nodes)
+        facts |= {f"greatest_{name}": peaks.value, f"greatest_{name}_at": peaks.at % (tau * turning.turns)}
     return facts
 
 

@@ -95,8 +95,21 @@ def reaction_results(
     results = ReactionResults(mechanism, found, tuple(at))
     if complete and not at:
         results = with_bearings(mechanism, found)
-    results = replace(results, limits=limits_met(mechanism, found["status"].to_numpy()))
+    results = _with_limits(results)
     return results if instants is None else with_instants(results, instants)
+
+
+def results_of_reactions(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:
+    """A dataset of `reactions`, over a motion with the loads and the wear of the bearings."""
+    if found.attrs["samples"] == "range":
+        return _with_limits(with_bearings(mechanism, found))
+    places = tuple(map(float, mechanism.motion_parameter.instants(found)))
+    return _with_limits(ReactionResults(mechanism, found, places))
+
+
+def _with_limits(results: ReactionResults) -> ReactionResults:
+    """Results with what bounds the motion where samples are not reached."""
+    return replace(results, limits=limits_met(results.mechanism, results.reactions["status"].to_numpy()))
 
 
 def with_bearings(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:

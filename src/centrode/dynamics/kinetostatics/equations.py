@@ -113,16 +113,18 @@ class Scheme:
 
 def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
     """The unknowns that bear each pin: both rows of the first link that has both."""
-    found: dict[Axis, Unknown] = {}
+    hosts: dict[Axis, Unknown] = {}
     whole = set(kept)
     for constraint, row in kept:
+        # a host bears both components of a pin, so both its rows have to be there
         if (
             isinstance(constraint, PointInLink)
             and constraint.point in points
             and (constraint, 1 - row) in whole
         ):
-            found.setdefault((constraint.point, row), (constraint, row))
-    return found
+            hosts.setdefault((constraint.point, row), (constraint, row))
+    # the first link in the order of the constraints: a host is a choice, and has to be the same every time
+    return hosts
 
 
 # How forces act on bodies: three equations a link and two a pin, in the plane and on the sphere.
@@ -143,7 +145,8 @@ class Pressing:
 
     @property
     def pulls(self) -> tuple[Wrench, ...]:
-        """The same as forces on both."""
+        """The force as wrenches on the pin and on what bears it."""
+        # the frame has no equations, so any place will do; through the centre the force turns nothing
         at = NOWHERE if self.bearer == FRAME else self.at
         return on_point(self.point, tuple(-x for x in self.force), self.at), on_link(
             self.bearer, self.force, at
@@ -209,17 +212,19 @@ class InPlane:
         return constraint.angular
 
     def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
-        found = []
+        wrenches = []
         for entity, values in row.items():
             if entity.kind == "link":
                 x, y, moment = values
-                found.append(Wrench(entity, (x, y), at.poses[entity.name].origin, moment))
+                # moments of a row are by the turn about the origin of the link's axes, so there the force
+                # acts
+                wrenches.append(Wrench(entity, (x, y), at.poses[entity.name].origin, moment))
                 continue
             place = at.points[entity.name]
-            found.append(
+            wrenches.append(
                 on_point(entity.name, values, place) if link is None else on_link(link, values, place)
             )
-        return tuple(found)
+        return tuple(wrenches)
 
     def foot(self, first: Vector) -> MomentCentre:
         return (first,)
@@ -254,6 +259,7 @@ class OnSphere:
 
     def positions(self, state: State, numbers: Dimensions) -> Positions:
         mechanism = state.mechanism
+        # on the unit sphere: lengths come in with the radius where forces do
         points = {
             name: tuple(x / self.radius for x in place_of(state.point(name))) for name in mechanism.points
         }
@@ -272,10 +278,12 @@ class OnSphere:
         if point is None:
             return tuple(couple(entity.name, tuple(moment)) for entity, moment in row.items())
         place = at.points[point.name]
+        # a multiplier that is a moment has its row by arcs: over the radius it is a force
         unit = 1.0 / self.radius if self.by_moment(constraint) else 1.0
         first, second = basis(ARRAYS, place)
         force = times(unit, linear_combination((row[point][0], first), (row[point][1], second)))
         there = times(self.radius, place)
+        # what ties a point to a body pushes both, with opposite forces at one place
         others = [on_link(entity.name, times(-1.0, force), there) for entity in row if entity is not point]
         return on_point(point.name, force, there), *others
 
@@ -284,6 +292,8 @@ class OnSphere:
 
     def on_link(self, pull: Wrench, foot: MomentCentre, scale: float) -> tuple[Number, Number, Number]:
         (up, one, other), force = foot, pull.force
+        # moments over the radius are forces; about the link's own first point differences of places keep
+        # their digits
         place = times(1.0 / self.radius, pull.at)
         turning, twist = cross(place, force), cross(subtract(place, up), force)
         if isinstance(pull.moment, tuple):
@@ -299,25 +309,25 @@ class OnSphere:
 
         The only link of a pin bears it; with several links nothing tells which, so that the centre does.
         """
-        found = []
+        pressings = []
         for pull in outer:
             name = pull.body.name
             if pull.body.kind == "point" and name in mechanism.moving_points:
                 up = at.points[name]
                 outwards = times(dot(pull.force, up), up)
-                links = [link for link, one in mechanism.links.items() if name in one.coordinates]
-                found.append(Pressing(name, links[0] if len(links) == 1 else FRAME, outwards, pull.at))
-        return tuple(found)
+                links = [link for link, body in mechanism.links.items() if name in body.coordinates]
+                pressings.append(Pressing(name, links[0] if len(links) == 1 else FRAME, outwards, pull.at))
+        return tuple(pressings)
 
     def centre(self, pulls: Iterable[Wrench], mechanism: Mechanism) -> tuple[Wrench, ...]:
         sums: dict[str, Vector] = dict.fromkeys(mechanism.links, NOWHERE)
         for pull in pulls:
             if pull.body.kind == "link" and pull.body.name in sums:
                 sums[pull.body.name] = add(sums[pull.body.name], pull.force)
-        found: list[Wrench] = []
+        wrenches: list[Wrench] = []
         for link, force in sums.items():
-            found += [on_link(link, tuple(-x for x in force), NOWHERE), on_link(FRAME, force, NOWHERE)]
-        return tuple(found)
+            wrenches += [on_link(link, tuple(-x for x in force), NOWHERE), on_link(FRAME, force, NOWHERE)]
+        return tuple(wrenches)
 
 
 def equilibrium_of(mechanism: Mechanism) -> Equilibrium:
@@ -344,12 +354,13 @@ class Teeth:
     @classmethod
     def of(cls, mechanism: Mechanism) -> Teeth:
         """The gears of a mechanism whose pitch points follow."""
-        found = {}
+        teeth = {}
         for gear in mechanism.gears:
             first, second = (_common(mechanism, wheel, gear.carrier) for wheel in gear.links)
+            # wheels that turn alike have no pitch point: it lies at infinity
             if len(first) == len(second) == 1 and first != second and gear.ratio != 1.0:
-                found[gear.id] = (first[0], second[0])
-        return cls(found, mechanism.sphere_radius if mechanism.space == "sphere" else None)
+                teeth[gear.id] = (first[0], second[0])
+        return cls(teeth, mechanism.sphere_radius if mechanism.space == "sphere" else None)
 
     def pulls(self, constraint: GearRatio, at: Positions, numbers: Dimensions) -> tuple[Wrench, ...]:
         """The force between the teeth, square to the line of centres, with a moment of one on the second wheel.
@@ -360,9 +371,11 @@ class Teeth:
         first, second = (at.points[name] for name in self.axes[constraint.gear])
         if self.radius is not None:
             return _on_sphere(constraint, ratio, first, second, self.radius)
+        # where both wheels have one velocity in the carrier: (p - a) w = (p - b) i w
         pitch = tuple((a - ratio * b) / (1.0 - ratio) for a, b in zip(first, second, strict=True))
         place = pitch[0], pitch[1]
         x, y = plane_subtract(place, second)
+        # square to the line of centres, of moment 1 about the second wheel's axis
         square = plane_dot((x, y), (x, y))
         force = -y / square, x / square
         return (
@@ -378,12 +391,13 @@ class Teeth:
 def _on_sphere(
     gear: GearRatio, ratio: float, first: Vector, second: Vector, radius: float
 ) -> tuple[Wrench, ...]:
-    """The same of bevel gears, whose pitch cones touch along the axis of their relative turning.
+    """Tooth force of bevel gears, whose pitch cones touch along the axis of their relative turning.
 
     Wheels that turn against each other mesh between their axes. Of others nothing tells on which side of the centre,
     and so which way the force points: then its moment about the centre alone is put on the wheels.
     """
     a, b = (first[0], first[1], first[2]), (second[0], second[1], second[2])
+    # the axis of relative turning: w (a - i b) for angular velocities w and i w about a and b
     pitch = unit(ARRAYS, space.subtract(a, space.times(ratio, b)))
     along = space.cross(b, pitch)
     square = space.dot(along, along)
@@ -419,6 +433,7 @@ def wrenches_of(
     Rows act on points; where a guide has a slider of its own, and under a rolling wheel, the force is put on the
     slider or the wheel itself: the pin's share of it would be a mere name.
     """
+    # the force between teeth is put where it acts; the row alone would be two moments
     if isinstance(constraint, GearRatio) and constraint.gear in teeth.axes:
         return [teeth.pulls(constraint, at, numbers)]
     link = _host_link(constraint, mechanism)
@@ -457,9 +472,10 @@ class Inverse:
         """Solutions (m, ...) for right sides (n, ...), with one step of refinement."""
         asked = np.moveaxis(right, 0, -1)[..., None]
         with np.errstate(invalid="ignore"):
-            found = self.inverse @ asked
-            found = found + self.inverse @ (asked - self.matrix @ found)
-        return np.moveaxis(found[..., 0], -1, 0)
+            solution = self.inverse @ asked
+            # one step of refinement takes back what the inverse's own rounding left
+            solution = solution + self.inverse @ (asked - self.matrix @ solution)
+        return np.moveaxis(solution[..., 0], -1, 0)
 
     @property
     def loss(self) -> Array:
@@ -486,16 +502,17 @@ def inverse_of(matrix: Array) -> Inverse:
     matrices and those with NaN are no error.
     """
     size, width = matrix.shape[-2:]
+    # more columns than equations: those of repeating constraints, used only where the others are singular
     inverse, condition = _square(matrix[..., :size])
     if width == size:
         return Inverse(matrix, inverse, condition)
     wide = np.zeros((*matrix.shape[:-2], width, size))
     wide[..., :size, :] = inverse
-    found = Inverse(matrix, wide, condition)
-    lost = found.useless
+    candidate = Inverse(matrix, wide, condition)
+    lost = candidate.useless
     if lost.any():
         wide[lost], condition[lost] = _pseudo(matrix[lost])
-    return found
+    return candidate
 
 
 def _square(matrix: Array) -> tuple[Array, Array]:
@@ -511,10 +528,12 @@ def _square(matrix: Array) -> tuple[Array, Array]:
     if not regular.all():
         inverse = np.where(regular[..., None, None], inverse, np.nan)
     with np.errstate(invalid="ignore", over="ignore"):
+        # the norm of the greatest row sum: no singular values are needed for a bound
         condition = _norm(matrix) * _norm(inverse)
     return inverse, np.where(regular, condition, np.where(known, np.inf, np.nan))
 
 
+# an identity in the place of what has no inverse keeps the rest of the stack going
 def _where(regular: Mask, matrix: Array) -> Array:
     return matrix if regular.all() else np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
 
@@ -527,6 +546,7 @@ def _pseudo(matrix: Array) -> tuple[Array, Array]:
     """Pseudo-inverses (k, m, n) and condition numbers of matrices (k, n, m) that are known."""
     left, values, right = np.linalg.svd(matrix, full_matrices=False)
     with np.errstate(divide="ignore", invalid="ignore"):
+        # of singular values that are zero the quotient is infinite, and so is the condition number
         condition = values[:, 0] / values[:, -1]
         inverse = np.swapaxes(right, 1, 2) @ (np.swapaxes(left, 1, 2) / values[..., None])
     return inverse, condition
@@ -556,7 +576,10 @@ class ForceSystem:
     @cached_property
     def _wrenches_by_unknown(self) -> dict[Unknown, list[Wrench]]:
         pulls = self.system.pulls
-        return {one: [pull.times(value) for pull in pulls[one]] for one, value in self.multipliers.items()}
+        return {
+            unknown: [pull.times(value) for pull in pulls[unknown]]
+            for unknown, value in self.multipliers.items()
+        }
 
     @cached_property
     def pressing(self) -> tuple[Pressing, ...]:
@@ -568,7 +591,7 @@ class ForceSystem:
     def acting(self) -> tuple[Wrench, ...]:
         """Everything that acts on any body but the centre of a sphere."""
         tied = [pull for pulls in self._wrenches_by_unknown.values() for pull in pulls]
-        return (*tied, *self.outer, *(pull for one in self.pressing for pull in one.pulls))
+        return (*tied, *self.outer, *(pull for joint in self.pressing for pull in joint.pulls))
 
     @cached_property
     def centre(self) -> tuple[Wrench, ...]:
@@ -620,8 +643,8 @@ class Kinetostatics:
         pulls: dict[Unknown, tuple[Wrench, ...]] = {}
         with np.errstate(all="ignore"):
             for constraint in scheme.structure.constraints:
-                found = wrenches_of(constraint, state.mechanism, numbers, at, teeth, space)
-                pulls |= {(constraint, row): each for row, each in enumerate(found)}
+                wrenches = wrenches_of(constraint, state.mechanism, numbers, at, teeth, space)
+                pulls |= {(constraint, row): each for row, each in enumerate(wrenches)}
         shape = (1, len(state.parameter))
         return cls(scheme, numbers, teeth, space, space.scale(numbers), at, pulls, shape)
 
@@ -632,15 +655,17 @@ class Kinetostatics:
         matrix = np.zeros((size, len(unknowns), *self.shape))
         for column, unknown in enumerate(unknowns):
             self._add(matrix[:, column], self.pulls[unknown])
+            # forces and moments over the greatest length are of one size, so that the condition number means
+            # something
             if self.equilibrium.by_moment(unknown[0]):
                 matrix[:, column] *= self.scale
         return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))))
 
     def right_side(self, outer: Iterable[Wrench]) -> Array:
         """Forces and moments [N] on the links, as (equations, 1, n)."""
-        found = np.zeros((self.scheme.size, *self.shape))
-        self._add(found, outer)
-        return found
+        right = np.zeros((self.scheme.size, *self.shape))
+        self._add(right, outer)
+        return right
 
     def forces(self, outer: Sequence[Wrench]) -> ForceSystem:
         """Constraint forces that balance what acts on points and links.
@@ -662,6 +687,7 @@ class Kinetostatics:
         """What the host of each pin bears: the rest of what acts on the pin."""
         sums: dict[Axis, Number] = dict.fromkeys(self.scheme.hosts, np.zeros(self.shape))
         acting = [(pull, value) for unknown, value in multipliers.items() for pull in self.pulls[unknown]]
+        # only pins are summed: what acts on links is in their own equations
         for pull, value in [*acting, *((pull, 1.0) for pull in outer)]:
             if pull.body.kind == "point":
                 for axis in range(2):
@@ -669,6 +695,7 @@ class Kinetostatics:
                     along = _along(pull.force, self._host_axis(place)) if place in sums else 0.0
                     if not _is_zero(along):
                         sums[place] = sums[place] + along * value
+        # what is missing to the pin's equilibrium is what its host bears
         return {unknown: -sums[place] for place, unknown in self.scheme.hosts.items()}
 
     def _host_axis(self, place: Axis) -> Vector:
@@ -687,9 +714,11 @@ class Kinetostatics:
         name, scheme = pull.body.name, self.scheme
         if pull.body.kind == "link":
             return self._on_link(name, pull) if name in scheme.links else []
+        # what acts on a pin with a host is put on the host's equations, at the pin's place
         if (name, 0) in scheme.hosts:
             return self._on_link(scheme.hosts[name, 0][0].link, pull)  # type: ignore[attr-defined]
         if (name, 0) not in scheme.loose:
+            # pins of the frame have no equations
             return []
         row, axes = 3 * len(scheme.links) + scheme.loose.index((name, 0)), self._pin_axes(name)
         return [(row + k, _along(pull.force, axis)) for k, axis in enumerate(axes)]
@@ -714,11 +743,11 @@ class Kinetostatics:
 
 def _along(force: Vector, axis: Vector) -> Number:
     """Component of a force; a component that is plainly zero costs nothing."""
-    found: Number = 0.0
+    summed: Number = 0.0
     for x, u in zip(force, axis, strict=True):
         if not _is_zero(x) and not _is_zero(u):
-            found = found + (x if isinstance(u, float) and u == 1.0 else x * u)
-    return found
+            summed = summed + (x if isinstance(u, float) and u == 1.0 else x * u)
+    return summed
 
 
 def _is_zero(value: Number) -> bool:

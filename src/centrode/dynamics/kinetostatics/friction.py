@@ -51,7 +51,7 @@ class HingeBearing:
 
     @property
     def label(self) -> str:
-        """Its name in results, that of the side."""
+        """Name of the joint in results, "point/link" as that of the side."""
         return f"{self.point}/{self.link}"
 
     @property
@@ -85,7 +85,7 @@ class Sliding:
 
     @property
     def label(self) -> str:
-        """Its name in results."""
+        """Name of the joint in results, "guide C"."""
         return f"guide {self.guide}"
 
     @property
@@ -108,7 +108,7 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     Raises InputError for a hinge that is none, a pin in a body that is not there, a slider that is no link, and for a
     contact that is given twice; NotComputedYet on the sphere.
     """
-    found: dict[str, Contact] = {}
+    by_label: dict[str, Contact] = {}
     for load in mechanism.loads:
         if load.coefficient is None:
             continue
@@ -120,11 +120,11 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
             [_sliding_friction(mechanism, load, where)] if load.guide else _bearings(mechanism, load, where)
         )
         for contact in contacts:
-            if contact.label in found:
+            if contact.label in by_label:
                 what = _("friction at {contact} is given twice").format(contact=contact.label)
                 raise InputError(where, what, _("keep one of them"))
-            found[contact.label] = contact
-    return tuple(found.values())
+            by_label[contact.label] = contact
+    return tuple(by_label.values())
 
 
 def without_friction(mechanism: Mechanism) -> Mechanism:
@@ -190,6 +190,7 @@ def _bearings(mechanism: Mechanism, load: Load, where: str) -> list[HingeBearing
                 where, what.format(point=point, link=pin), _("name another link, or another pin")
             )
         links = [load.link]
+    # the fit is a factor of the moment, so it goes into the coefficient
     coefficient = (load.coefficient or 0.0) * FITS[load.fit]
     return [HingeBearing(point, link, pin, coefficient, load.radius or 0.0, where) for link in links]
 
@@ -211,12 +212,10 @@ def _carrier(mechanism: Mechanism, point: str) -> str | None:
 # How great friction is where it depends on reactions that depend on it: f = c |R(f)|, at many positions.
 #
 # The reactions are straight in the sizes f of friction, R(f) = R_0 + G f. The solution that counts is the one
-# that
-# grows out of no friction at all while every coefficient grows from 0 to its value: f = s c |R(f)|, s from 0
-# to 1.
-# Where all of c G is small there is no other; elsewhere it is followed. A branch that ends before s = 1,
-# because it
-# goes to infinity or turns back, has no solution that motion without friction leads to: self-locking.
+# that grows out of no friction at all while every coefficient grows from 0 to its value: f = s c |R(f)|, s
+# from 0 to 1. Where all of c G is small there is no other; elsewhere it is followed. A branch that ends
+# before s = 1, because it goes to infinity or turns back, has no solution that motion without friction leads
+# to: self-locking.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -270,7 +269,7 @@ class FrictionLaw:
     rules: npt.NDArray[np.int8]
 
     def at(self, mask: Mask) -> FrictionLaw:
-        """The same at some of the positions."""
+        """The law at some of the positions (n)."""
         return FrictionLaw(self.factor[mask], self.base[mask], self.gain[mask], self.rules)
 
     def measures(self, sizes: Array) -> tuple[Array, Array]:
@@ -278,30 +277,35 @@ class FrictionLaw:
         parts = self.base + np.einsum("njak,nk->nja", self.gain, sizes)
         first, second = parts[..., 0], parts[..., 1]
         length = np.hypot(first, second)
+        # zero vectors are divided by 1: their direction does not count
         safe = np.where(length > 0.0, length, 1.0)
         larger = np.abs(first) >= np.abs(second)
         weights = np.empty_like(parts)
         by = (self.rules == FrictionRule.LENGTH, self.rules == FrictionRule.GREATER)
+        # derivatives of the measure by its two numbers: direction cosines, or the sign of the greater one, or
+        # 1
         weights[..., 0] = np.select(by, (first / safe, np.sign(first) * larger), 1.0)
         weights[..., 1] = np.select(by, (second / safe, np.sign(second) * ~larger), 0.0)
-        found = np.select(by, (length, np.maximum(np.abs(first), np.abs(second))), first)
-        return found, np.einsum("nja,njak->njk", weights, self.gain)
+        measures = np.select(by, (length, np.maximum(np.abs(first), np.abs(second))), first)
+        return measures, np.einsum("nja,njak->njk", weights, self.gain)
 
     @property
     def feedback(self) -> Array:
         """Spectral radius (n) of the greatest shares of sizes that sizes can add: below 1 there is one solution."""
+        # by how much a size can change another's measure at most, whatever the directions
         shares = np.abs(self.factor)[..., None] * np.linalg.norm(self.gain, axis=2)
         return np.asarray(np.abs(np.linalg.eigvals(shares)).max(axis=-1, initial=0.0))
 
     def residual(self, sizes: Array, share: Array) -> tuple[Array, Array, Array]:
         """What is missing, f - s c m(f) (n, m), its derivatives (n, m, m), and what rounding leaves of it (n, m)."""
-        found, slopes = self.measures(sizes)
+        measures, slopes = self.measures(sizes)
         factor = share[:, None] * self.factor
+        # sizes of the terms before they cancel: rounding is a share of these
         parts = np.abs(self.base).max(axis=2) + np.einsum(
             "njk,nk->nj", np.abs(self.gain).max(axis=2), np.abs(sizes)
         )
         noise = ROUNDING * EPSILON * (np.abs(sizes) + np.abs(factor) * parts)
-        return sizes - factor * found, np.eye(sizes.shape[1]) - factor[..., None] * slopes, noise
+        return sizes - factor * measures, np.eye(sizes.shape[1]) - factor[..., None] * slopes, noise
 
 
 @dataclass(frozen=True)
@@ -332,6 +336,7 @@ def solve_friction(law: FrictionLaw) -> Followed:
     count, width = law.factor.shape
     feedback, ones = law.feedback, np.ones(count)
     sizes, good, _slope, tries = _newton_corrections(law, np.zeros((count, width)), ones, TRIES)
+    # with feedback of 1 or more there may be other solutions, and Newton's method may have found one of them
     good &= feedback < 1.0
     outcome = np.where(good, Outcome.FOUND, Outcome.LOST).astype(np.int8)
     share = np.where(good, 1.0, 0.0)
@@ -340,6 +345,7 @@ def solve_friction(law: FrictionLaw) -> Followed:
         sizes[rest], outcome[rest], share[rest], more = _along(law.at(rest), feedback[rest])
         tries = max(tries, more)
     missing = np.abs(law.residual(sizes, ones)[0])
+    # where there is no friction at all the share is 0 and not 0/0
     size = np.maximum(np.abs(sizes).max(axis=1, initial=0.0), np.finfo(np.float64).tiny)
     return Followed(sizes, outcome, share, missing.max(axis=1, initial=0.0) / size, tries)
 
@@ -356,6 +362,7 @@ def _newton_corrections(
         part = law.at(open_)
         with np.errstate(all="ignore"):
             residual, slopes, noise = part.residual(sizes[open_], share[open_])
+            # the determinant at the last place tells whether the branch has been left
             determinant[open_] = np.linalg.det(slopes)
             sizes[open_] -= _solve_matrices(slopes, residual)
             done = (np.abs(residual) <= noise).all(axis=1)
@@ -368,15 +375,16 @@ def _solve_matrices(matrix: Array, right: Array) -> Array:
     with np.errstate(all="ignore"):
         singular = ~(np.abs(np.linalg.det(matrix)) > 0.0)
     regular = np.where(singular[:, None, None], np.eye(matrix.shape[-1]), matrix)
-    found = np.linalg.solve(regular, right[..., None])[..., 0]
-    found[singular] = np.nan
-    return np.asarray(found)
+    solution = np.linalg.solve(regular, right[..., None])[..., 0]
+    solution[singular] = np.nan
+    return np.asarray(solution)
 
 
 def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]:
     """Follow the branch from no friction on, each position with steps of its own."""
     count, width = law.factor.shape
     sizes, share, tries = np.zeros((count, width)), np.zeros(count), 0
+    # sizes feed on themselves from s = 1 / feedback on: a quarter of that is a safe step
     longest = np.clip(STRIDE / np.maximum(feedback, STRIDE), SHORTEST, 1.0)
     step = longest.copy()
     for _step in range(MOST_STEPS):
@@ -386,13 +394,15 @@ def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]
         part, here, aim = law.at(going), sizes[going], np.minimum(share[going] + step[going], 1.0)
         slopes = part.residual(here, share[going])[1]
         ahead = part.factor * part.measures(here)[0]
+        # along the branch (I - s c m') df/ds = c m: a tangent step, which Newton's method then corrects
         guess = here + (aim - share[going])[:, None] * _solve_matrices(slopes, ahead)
-        found, good, determinant, made = _newton_corrections(part, guess, aim, TRIES_ON_BRANCH)
+        corrected, good, determinant, made = _newton_corrections(part, guess, aim, TRIES_ON_BRANCH)
         # the determinant is 1 without friction and changes its sign where the branch ends
         good &= determinant > 0.0
         tries = max(tries, made)
-        sizes[going] = np.where(good[:, None], found, here)
+        sizes[going] = np.where(good[:, None], corrected, here)
         share[going] = np.where(good, aim, share[going])
+        # twice as long after success, half as long after failure
         step[going] = np.where(good, np.minimum(2.0 * step[going], longest[going]), 0.5 * step[going])
     locked = (share < 1.0) & (step < LEAST_STEP)
     outcome = np.select((share >= 1.0, locked), (Outcome.FOUND, Outcome.LOCKED), Outcome.LOST)
@@ -431,7 +441,7 @@ class Rubbed:
     slopes : (n, contacts)
         Derivative of what rubs by the path's parameter; 0 where it turns round.
     turns : (n, contacts)
-        Where a contact stands for an instant: what is told holds just after it.
+        Where a contact stands for an instant: what is returned holds just after it.
     standing : labels of contacts that do not move
     """
 
@@ -447,9 +457,9 @@ class Rubbed:
     @property
     def pulls(self) -> list[Wrench]:
         """Friction as forces and moments on links and pins."""
-        found = self.solution.sizes
+        sizes = self.solution.sizes
         return [
-            pull.times(found[None, :, k].copy()) for k, size in enumerate(self.sizes) for pull in size.pulls
+            pull.times(sizes[None, :, k].copy()) for k, size in enumerate(self.sizes) for pull in size.pulls
         ]
 
     @property
@@ -472,6 +482,7 @@ def friction_of_contacts(
     solution = _where_known(_law(free, sizes, senses[:, owner]), useful)
     amounts, arms = np.zeros(senses.shape), np.zeros(senses.shape)
     for k, size in enumerate(sizes):
+        # the moment that a slider's height brings is kept apart from the force along the guide
         (arms if size.rule is FrictionRule.FIRST else amounts)[:, owner[k]] += solution.sizes[:, k]
     still = tuple(c.label for c, sense in zip(contacts, senses.T, strict=True) if not np.any(sense))
     return Rubbed(tuple(contacts), tuple(sizes), solution, amounts, arms, slopes, turns, still)
@@ -491,8 +502,10 @@ def _motion(
     reach = np.maximum(1.0, np.abs(state.parameter))
     condition = system.inverse.condition[0]
     with np.errstate(all="ignore"):
+        # a slope this small is rounding: of the place, and of positions near a singular one
         noise = REST * (np.abs(bend) * reach + unit) + EPSILON * condition * unit
         rest = ~(np.abs(slope) > noise)
+        # the second derivative is less exact: its rounding goes with the square of the condition number
         bends = np.abs(bend) > noise + EPSILON * condition**2 * unit
         speed = np.where(rest, 0.0, slope) * state.rate
         # where the drive itself stands, it is about to move as it is accelerated
@@ -506,19 +519,21 @@ def _sizes(contact: Contact, state: State) -> list[Size]:
     pulls = contact.motion.pulls(state)
     if isinstance(contact, HingeBearing):
         return [Size(contact, pulls, contact.coefficient * contact.radius, FrictionRule.LENGTH)]
-    found = [Size(contact, pulls, contact.coefficient, FrictionRule.GREATER)]
+    sizes = [Size(contact, pulls, contact.coefficient, FrictionRule.GREATER)]
     if contact.link is not None and contact.height:
         # the faces that bear lie half the height beside the line, on the side the force comes from
         arm = couple(contact.link, 1.0), couple(contact.on, -1.0)
-        found.append(Size(contact, arm, 0.5 * contact.coefficient * contact.height, FrictionRule.FIRST))
-    return found
+        sizes.append(Size(contact, arm, 0.5 * contact.coefficient * contact.height, FrictionRule.FIRST))
+    return sizes
 
 
 def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw:
     samples, count = len(senses), len(sizes)
     gain = np.empty((samples, count, 2, count))
+    # reactions are linear in the sizes: those of each unit size, without any load, are the gains
     for k, size in enumerate(sizes):
         gain[..., k] = _size_measures(free.system.forces(size.pulls), sizes, samples)
+    # friction acts against the motion
     factors = -senses * np.array([size.factor for size in sizes])
     rules = np.array([size.rule for size in sizes], dtype=np.int8)
     return FrictionLaw(factors, _size_measures(free, sizes, samples), gain, rules)
@@ -526,11 +541,11 @@ def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw
 
 def _size_measures(forces: ForceSystem, sizes: Sequence[Size], samples: int) -> Array:
     """The two numbers (n, sizes, 2) that each size depends on."""
-    found = np.zeros((samples, len(sizes), 2))
+    measures = np.zeros((samples, len(sizes), 2))
     for k, size in enumerate(sizes):
         for part, value in enumerate(_contact_forces(forces, size.contact)):
-            found[:, k, part] = column(value, samples)
-    return found
+            measures[:, k, part] = column(value, samples)
+    return measures
 
 
 def _contact_forces(forces: ForceSystem, contact: Contact) -> tuple[Number, Number]:
@@ -555,13 +570,14 @@ def _where_known(law: FrictionLaw, useful: Mask) -> Followed:
     """Solve where all numbers are known; NaN elsewhere."""
     count, width = law.factor.shape
     known = useful & np.isfinite(law.base).all(axis=(1, 2)) & np.isfinite(law.gain).all(axis=(1, 2, 3))
-    found = solve_friction(law.at(known))
+    followed = solve_friction(law.at(known))
     sizes, outcome = np.full((count, width), np.nan), np.zeros(count, dtype=np.int8)
     share, residual = np.full(count, np.nan), np.zeros(count)
-    sizes[known], outcome[known] = found.sizes, found.outcome
-    share[known], residual[known] = found.share, found.residual
+    sizes[known], outcome[known] = followed.sizes, followed.outcome
+    share[known], residual[known] = followed.share, followed.residual
+    # where there is no solution nothing is said of its residual
     residual[outcome != Outcome.FOUND] = 0.0
-    return Followed(sizes, outcome, share, residual, found.tries)
+    return Followed(sizes, outcome, share, residual, followed.tries)
 
 
 # What friction takes: power and work of each contact, efficiency, and where loads no longer drive.
@@ -607,6 +623,7 @@ class Powers:
         return cls(
             drives,
             by_load[:, ~rubbing],
+            # what is left of the sum of loads and inertia is the inertia
             total[0] - by_load.sum(axis=1),
             -rubbed.moment - by_load[:, rubbing].sum(axis=1),
             rate,
@@ -619,7 +636,7 @@ class Powers:
         return _efficiency(parts, self.lost * self.rate)
 
     def mean_efficiency(self, parameter: Array) -> float:
-        """The same of works over all samples; each drive, each load and inertia counts with what it gives in all."""
+        """Efficiency by works over all samples; each drive, load and inertia counts with what it gives in all."""
         parts = np.column_stack([self.drives, self.loads, self.inertia])
         works, lost = (works_over(parameter, self.rate, values) for values in (parts, self.lost[:, None]))
         return float(_efficiency(works[None], lost)[0])
@@ -629,6 +646,7 @@ class Powers:
         """HELD (n) where loads and inertia would drive the mechanism without friction, and do not with it."""
         outer = (self.loads.sum(axis=1) + self.inertia) * self.rate
         driving = self.drives.sum(axis=1) * self.rate
+        # what may be the difference of great powers is rounding
         noise = NOISE * (np.abs(self.loads).sum(axis=1) + np.abs(self.inertia)) * np.abs(self.rate)
         with np.errstate(invalid="ignore"):
             held = (outer > noise) & (driving >= 0.0)
@@ -638,8 +656,9 @@ class Powers:
 def works_over(parameter: Array, rate: Array, moments: Array) -> Array:
     """Works (m) of moments (n, m) along a parameter, by the trapezoidal rule, in the sense in which `rate` goes.
 
-    The samples may be told backwards.
+    The samples may be in reverse order.
     """
+    # samples may run backwards: the way is counted as positive, in the sense of the rate
     way = np.abs(np.diff(parameter))[:, None]
     values = moments * np.sign(rate)[:, None]
     return np.asarray((0.5 * way * (values[1:] + values[:-1])).sum(axis=0))
@@ -675,17 +694,17 @@ def reversals(prepared: Ready, contacts: Sequence[Contact], first: float, last: 
 def friction_parts(rubbed: Rubbed, powers: Powers, mechanism: Mechanism) -> dict[str, Array]:
     """Variables of a dataset, samples first."""
     bearings = [k for k, contact in enumerate(rubbed.contacts) if isinstance(contact, HingeBearing)]
-    found = {
+    parts = {
         "friction_power": -rubbed.amounts * rubbed.slopes * powers.rate[:, None],
         "efficiency": powers.efficiency,
     }
     if bearings:
-        found["friction_moment"] = rubbed.amounts[:, bearings]
+        parts["friction_moment"] = rubbed.amounts[:, bearings]
     if len(bearings) < len(rubbed.contacts):
-        found["friction_force"] = np.zeros((len(rubbed.amounts), len(mechanism.guides)))
+        parts["friction_force"] = np.zeros((len(rubbed.amounts), len(mechanism.guides)))
         for k, guide in _guide_contacts(rubbed, mechanism):
-            found["friction_force"][:, guide] = rubbed.amounts[:, k]
-    return found
+            parts["friction_force"][:, guide] = rubbed.amounts[:, k]
+    return parts
 
 
 def _guide_contacts(rubbed: Rubbed, mechanism: Mechanism) -> list[tuple[int, int]]:

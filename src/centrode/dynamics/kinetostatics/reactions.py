@@ -122,17 +122,18 @@ def find(
     system = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth)
     outer = outer_of(state, burden, pace.acceleration, state.exists)
     forces, sides = system.forces(outer.pulls), sides_of(prepared.mechanism)
+    # without friction first: what acts decides neither on statuses nor on what is undetermined
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))
     undetermined = undetermined_parts(system, sides, status, residual)
-    found = ReactionSolution(pace, outer, forces, sides, reactions_of(forces, sides), undetermined, status)
-    return _with_friction(found, solved, burden, state, contacts) if contacts else found
+    solution = ReactionSolution(pace, outer, forces, sides, reactions_of(forces, sides), undetermined, status)
+    return _with_friction(solution, solved, burden, state, contacts) if contacts else solution
 
 
 def _with_friction(
     found: ReactionSolution, solved: Solved, burden: MassesAndLoads, state: State, contacts: Sequence[Contact]
 ) -> ReactionSolution:
-    """The same with friction, which is as great as the reactions that it changes make it."""
+    """A solution with friction, which is as great as the reactions that it changes make it."""
     refuse_undetermined(contacts, found.undetermined, found.sides, solved.ready.mechanism)
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
     sizes = friction_of_contacts(state, found.forces, contacts, found.pace.acceleration, useful)
@@ -147,6 +148,7 @@ def _with_friction(
     status[sizes.solution.outcome == Outcome.LOCKED] = Status.SELF_LOCKING
     status[sizes.solution.outcome == Outcome.LOST] = Status.UNCONVERGED
     by_time = solved.ready.kinematics.path.by_time
+    # with several drives the parameter is time, and moments along it are powers
     drives = parts["balancing"] * rates_of(solved, found.pace) if by_time else parts["balancing"]
     powers = Powers.of(drives, burden.loads, without.shares, without.moment, sizes, found.pace.moving.rate)
     parts |= friction_parts(sizes, powers, state.mechanism)
@@ -169,10 +171,10 @@ def totals_of(found: ReactionSolution) -> dict[str, Array]:
     """Inertia forces of the links, forces and moments on the frame, (samples, ...)."""
     inertia, samples = found.outer.inertia, found.forces.system.shape[-1]
     origin = found.forces.system.equilibrium.origin
-    shaking = [pull for one in inertia for pull in one.pulls]
-    moments = [components(one.moment) for one in inertia]
+    shaking = [pull for action in inertia for pull in action.pulls]
+    moments = [components(action.moment) for action in inertia]
     return {
-        "inertia_force": tables([one.force for one in inertia], len(origin), samples),
+        "inertia_force": tables([action.force for action in inertia], len(origin), samples),
         "inertia_moment": _moments(moments, len(origin), samples),
         **_sums("frame", found.forces.on_frame, origin, samples),
         **_sums("shaking", shaking, origin, samples),
@@ -181,8 +183,8 @@ def totals_of(found: ReactionSolution) -> dict[str, Array]:
 
 def _moments(moments: Sequence[Vector], axes: int, samples: int) -> Array:
     """Moments of links: one number each in the plane, three on the sphere."""
-    found = tables(moments, axes if axes == 3 else 1, samples)
-    return found if axes == 3 else found[:, :, 0]
+    table = tables(moments, axes if axes == 3 else 1, samples)
+    return table if axes == 3 else table[:, :, 0]
 
 
 def _sums(name: str, pulls: Sequence[Wrench], origin: Vector, samples: int) -> dict[str, Array]:
@@ -219,6 +221,7 @@ def checks_of(found: ReactionSolution, rates: Array) -> dict[str, float]:
 def _worst(found: ReactionSolution, missing: Array, size: Array) -> float:
     good = found.status == Status.OK
     with np.errstate(all="ignore"):
+        # nothing missing where nothing acts counts as zero, not as 0/0
         share = np.where(missing == 0.0, 0.0, missing / size)
     return float(np.max(share[good], initial=0.0))
 
@@ -235,6 +238,7 @@ def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
     for pull in forces.acting:
         if pull.body in sums:
             parts = system.on_link(pull.body.name, pull) if pull.body.kind == "link" else pull.force
+            # `strict=False`: a pin has two components in the plane, a link three
             sums[pull.body] = tuple(x + y for x, y in zip(sums[pull.body], parts, strict=False))
         size = _greater(_greater(size, pull.force, 1.0), components(pull.moment), system.scale)
     missing: Number = 0.0
@@ -270,6 +274,7 @@ def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
     given = found.parts["balancing"] * rates
     taken = found.outer.moment[0] * found.pace.moving.rate
     good = found.status == Status.OK
+    # over the greatest power of the motion: at single samples all powers may vanish together
     greatest = np.max((np.abs(given).sum(axis=-1) + np.abs(taken))[good], initial=0.0)
     return np.abs(given.sum(axis=-1) + taken), np.full(len(good), greatest)
 
@@ -289,7 +294,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     }
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
     works = np.where(whole and _friction_converged(rubbed), works, np.nan)
-    found = {
+    variables = {
         "friction_work": vocabulary_variable("friction_work", ("friction",), works),
         "friction_turns": vocabulary_variable(
             "friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)
@@ -299,15 +304,15 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     if not solved.ready.kinematics.path.by_time:
         first, last = float(np.min(parameter)), float(np.max(parameter))
         places = reversals(solved.ready, rubbed.contacts, first, last)
-        found["jumps"] = vocabulary_variable("jumps", ("jump",), places, solved.ready.parameter.units[0])
-    return found
+        variables["jumps"] = vocabulary_variable("jumps", ("jump",), places, solved.ready.parameter.units[0])
+    return variables
 
 
 def friction_coordinates(contacts: tuple[Contact, ...]) -> dict[str, Any]:
     """Labels of the contacts."""
     bearings = tuple(contact.label for contact in contacts if isinstance(contact, HingeBearing))
-    found = {"friction": labels_of(tuple(contact.label for contact in contacts))}
-    return found | ({"bearing": labels_of(bearings)} if bearings else {})
+    coordinates = {"friction": labels_of(tuple(contact.label for contact in contacts))}
+    return coordinates | ({"bearing": labels_of(bearings)} if bearings else {})
 
 
 def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Any]:
@@ -368,6 +373,7 @@ def reactions_dataset(
     undetermined = _mask_undetermined(parts, found)
     if "centre_force" in parts:
         parts["joint_moment"] = joint_moments(found, parts["joint_force"])
+    # after the checks, which look at numbers
     for values in parts.values():
         values[absent] = np.nan
     units = solved.ready.parameter.units
@@ -377,7 +383,7 @@ def reactions_dataset(
     }
     if len(set(units)) > 1:
         variables["balancing"][2]["units"] = ", ".join(
-            one.force_unit for one in solved.ready.parameter.drives
+            drive.force_unit for drive in solved.ready.parameter.drives
         )
     if not solved.ready.kinematics.path.by_time:
         variables["drive_rate"] = vocabulary_variable(
@@ -386,8 +392,9 @@ def reactions_dataset(
     variables |= _statuses(solved, found)
     sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
     variables["determined"] = vocabulary_variable("determined", ("side",), sides)
-    attributes = attributes_of(solved) | checks
+    attributes = attributes_of(solved, "reactions") | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
+    attributes["samples"] = "range" if whole else "single places"
     coordinates = _coordinates(solved, burden, found)
     if found.friction is not None:
         rubbed, powers = found.friction.rubbed, found.friction.powers
@@ -542,7 +549,7 @@ def reactions_at(
     contacts: tuple[Contact, ...] = (),
     whole: bool = True,
 ) -> xr.Dataset:
-    """The same for a motion solved before, of one mechanism, with friction in the contacts.
+    """Reactions at the samples of a solved motion of one mechanism, with friction in the contacts; see `reactions`.
 
     `whole` where its samples are a range, over which works have a sense.
     """

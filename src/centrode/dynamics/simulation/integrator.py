@@ -60,7 +60,7 @@ from centrode.numerics.search import bisect, root
 # The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates.
 
 TOLD = 256
-"""Steps after which it is told how far it is."""
+"""Steps between two reports of progress."""
 
 
 def fixed_steps(
@@ -73,28 +73,28 @@ def fixed_steps(
 ) -> Trajectory:
     """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
     step = duration / steps
-    found = np.empty((STATES, steps + 1))
+    states = np.empty((STATES, steps + 1))
     y: States = np.array([value, rate, *[0.0] * (STATES - 2)])
-    found[:, 0] = y
+    states[:, 0] = y
     done = 0
     ended: Ending = "duration"
     try:
         for k in range(steps):
             y = next_state(field, k * step, y, step)
             if not np.isfinite(y).all():
-                ended = field.tracks.ending(float(found[VALUE, done]))
+                ended = field.tracks.ending(float(states[VALUE, done]))
                 break
             if field.is_too_far(float(y[VALUE]), value):
                 raise too_far((k + 1) * step)
             done = k + 1
-            found[:, done] = y
+            states[:, done] = y
             if tell is not None and done % TOLD == 0:
                 tell(done / steps)
     except KeyboardInterrupt:
         if not done:
             raise
         ended = "interrupted"
-    return trajectory_of_states(field, found[:, : done + 1], step, ended, 4 * steps)
+    return trajectory_of_states(field, states[:, : done + 1], step, ended, 4 * steps)
 
 
 def trajectory_of_states(
@@ -110,6 +110,7 @@ def trajectory_of_states(
         )
 
     def slopes(t: float, y: States) -> States:
+        # at the end of the motion the interpolant may look a little beyond it
         inside = y.copy()
         inside[VALUE] = min(max(y[VALUE], field.tracks.low), field.tracks.high)
         return _rates(field, t, inside)
@@ -134,8 +135,9 @@ def next_state(field: Field, t: float, y: States, step: float) -> States:
     k2 = _rates(field, t + 0.5 * step, y + 0.5 * step * k1)
     k3 = _rates(field, t + 0.5 * step, y + 0.5 * step * k2)
     k4 = _rates(field, t + step, y + step * k3)
-    found = np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
-    return found if field.tracks.low <= found[VALUE] <= field.tracks.high else np.full(STATES, np.nan)
+    states = np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
+    # beyond the range there is no mechanism: NaN tells that the last step was one too many
+    return states if field.tracks.low <= states[VALUE] <= field.tracks.high else np.full(STATES, np.nan)
 
 
 def _rates(field: Field, t: float, y: States) -> States:
@@ -144,21 +146,22 @@ def _rates(field: Field, t: float, y: States) -> States:
     tracks = field.tracks
     if not np.isfinite(value) or not tracks.low <= value <= tracks.high:
         return np.full(STATES, np.nan)
+    # at rest loads act as they would when the drive sets out in its own sense
     sense = 1.0 if rate > 0.0 else -1.0 if rate < 0.0 else tracks.rows.sense
     forces = field.forces(field.leg_at(value, sense), t, value, rate)
-    found = np.array(
+    rates = np.array(
         [rate, forces.acceleration(rate), forces.driving * rate, forces.friction * rate, forces.other * rate]
     )
-    if not np.isfinite(found).all():
+    if not np.isfinite(rates).all():
         raise without_value(t, value)
-    return found
+    return rates
 
 
 # The fixed-step scheme as one scan over expressions: machine code where llvmlite is there.
 #
 # Positions are those of the closed forms, traced at each of the four stages: nothing is represented, so
-# nothing is
-# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.machine_code`).
+# nothing is approximated but by the scheme. That needs a mechanism without events, as sweeps do
+# (`kinematics.machine_code`).
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -196,6 +199,7 @@ class Compiled:
     def course(self, field: Field, value: float, rate: float, duration: float, steps: int) -> Trajectory:
         """The course of so many steps, up to where the motion ends."""
         states = self.states(value, rate, duration, steps)
+        # the scan has made all steps: where it went too far, or stopped, is looked up afterwards
         far = np.flatnonzero(np.abs(states[VALUE] - value) > MOST_TURNS * field.tracks.length)
         if len(far):
             raise too_far(duration / steps * int(far[0]))
@@ -233,6 +237,7 @@ def compile_scan(rows: ReducedFunctions, driving: Driving, executor: str) -> Com
         for name in NAMES
     }
     used = Graph(after).variables
+    # only times that are used become inputs: others would make every step another one
     return Compiled(Scan((STEP,), tuple(x for x in (BEGINNING,) if x in used), after, after), executor)
 
 
@@ -241,21 +246,21 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     reducer = rows.reducer
     # two samples whose times and rates differ: then these are variables
     span = SampleGrid(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
-    found = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
-    if found.steps:
+    traced = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
+    if traced.steps:
         raise Untraceable(mark("groups of higher class"))
     time, value, rate = (variable(name) for name in (TIME, PARAMETER, RATE_VARIABLE))
     mechanism = reducer.ready.mechanism
     burden = MassesAndLoads.of(mechanism, None, EXPRESSIONS)
-    state = state_of_nodes(found.solved, burden, DriveMotion(time, value, rate))  # type: ignore[arg-type]
+    state = state_of_nodes(traced.solved, burden, DriveMotion(time, value, rate))  # type: ignore[arg-type]
     inertia: Number = rows.added
     slope: Number = 0.0
     for mass in burden.masses:
         inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
     moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for one in sort_load_terms(mechanism, burden.loads):
-        along = one.effort.along(state)
-        moments[one.sort] = moments[one.sort] + one.effort.strength(state) * along
+    for term in sort_load_terms(mechanism, burden.loads):
+        along = term.effort.along(state)
+        moments[term.sort] = moments[term.sort] + term.effort.strength(state) * along
     driven = driving.over(EXPRESSIONS, time, value, rate)
     total = moments["stored"] + moments["friction"] + moments["other"] + driven
     powers = {"of drive": driven, "of friction": moments["friction"], "of others": moments["other"]}
@@ -283,19 +288,21 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
     reducer = rows.reducer
     path = reducer.ready.kinematics.path
     values = path.initial + np.linspace(0.0, tau, 721)
-    found: dict[str, float] = {}
+    turns: dict[str, float] = {}
     drive = path.driven[0].drive.id
     for link in reducer.ready.mechanism.link_names:
         names = centre_of(link), winding_of(link, drive)
         if not set(names) & set(graph.variables):
             continue
         angle = np.asarray(rows.state(values)[0].angle(link).value).reshape(-1)
+        # angles are taken to turn with the drive as often as they do over one turn
         winding = round(float(angle[-1] - angle[0]) / tau)
         rest = angle - winding * values
+        # around a fixed centre only less than half a turn either way is unambiguous
         if np.ptp(rest) >= tau / 2:
             raise Untraceable(mark("links that swing by half a turn or more"))
-        found |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
-    return found
+        turns |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
+    return turns
 
 
 # Where a step meets the end of its leg or a standstill, and when a mechanism at rest breaks loose.
@@ -303,7 +310,7 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
 State: TypeAlias = npt.NDArray[np.float64]
 
 REST_SCANS = 2000
-"""Instants at which a mechanism at rest is asked whether it breaks loose, where something depends on time."""
+"""Instants at which a mechanism at rest is checked for breaking loose, where something depends on time."""
 
 
 def break_loose_time(field: Field, value: float, first: float, last: float) -> float | None:
@@ -315,6 +322,7 @@ def break_loose_time(field: Field, value: float, first: float, last: float) -> f
             def rests(time: State) -> npt.NDArray[np.bool_]:
                 return np.asarray([field.leaving(float(t), value) == 0.0 for t in time])
 
+            # the first instant at which it does not rest any more
             return float(bisect(rests, np.array([before]), np.array([after]))[1][0])
     return None
 
@@ -323,12 +331,13 @@ def first_event(
     dense: Any, before: float, solver: Any, low: float, high: float, sense: float
 ) -> tuple[float, int, float] | None:
     """The first time in a step at which the value leaves its range or the rate (where a sense counts) its sense."""
-    found: list[tuple[float, int, float]] = []
+    events: list[tuple[float, int, float]] = []
     y = solver.y
     # at an end of its range a value that does not move outwards has not left it: from rest it may stay there for long
     above = y[VALUE] > high or (y[VALUE] == high and y[RATE] > 0.0)
     below = y[VALUE] < low or (y[VALUE] == low and y[RATE] < 0.0)
     targets = [(VALUE, high)] if above else [(VALUE, low)] if below else []
+    # the rate has the other sign, or is exactly zero, at the end of the step
     if sense and y[1] * sense <= 0.0:
         targets.append((1, 0.0))
     for component, target in targets:
@@ -337,6 +346,7 @@ def first_event(
             return float(dense(t)[component]) - target
 
         start = distance_to_target(before)
+        # a function that begins at zero, or does not change its sign, gives no bracket
         if start == 0.0 or start * distance_to_target(solver.t) > 0.0:
             when = (
                 solver.t
@@ -345,8 +355,8 @@ def first_event(
             )
         else:
             when = root(distance_to_target, before, solver.t)
-        found.append((when, component, target))
-    return min(found, default=None)
+        events.append((when, component, target))
+    return min(events, default=None)
 
 
 def _behind_start(missed: Callable[[float], float], first: float, last: float) -> float:
@@ -367,11 +377,13 @@ def refine_event(
     speed = float(slopes[component])
     if speed == 0.0:
         return t, y
+    # one Newton step in time: the place is very near already
     step = (target - float(y[component])) / speed
     moved = y + step * slopes
     if component == VALUE:
         moved[VALUE] = target
     else:
+        # the value is righted to second order, as the rate passes zero and the first order vanishes
         moved[VALUE] += 0.5 * slopes[1] * step * step
         moved[1] = target
     return t + step, moved
@@ -463,6 +475,8 @@ class Watch:
             forces: DriveForces = self.field.forces(leg, solver.t, value, speed)
             return float(forces.acceleration(speed))
 
+        # the derivative of the acceleration by the rate: its product with the step is what stability asks
+        # about
         damping = abs(slowness(more) - slowness(rate)) / (more - rate)
         held = damping * (solver.step_size or 0.0) > EDGE
         self.held_back = self.held_back + 1 if held else 0
@@ -519,12 +533,16 @@ class Solvers:
         if not np.isfinite(forces).all():
             raise without_value(t, float(begun[VALUE] + y[0]))
         unit = self.field.tracks.unit
+        # the speed gained by the present acceleration over a hundredth of a unit counts, so that a start from
+        # rest has a scale
         self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
         inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
+        # works are measured by the kinetic energy at the fastest speed so far
         energy = max(1e-300, inertia * self.fastest**2)
         scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
         kind = scipy.integrate.Radau if self.watch.stiff else scipy.integrate.DOP853
         limit = self.end if end is None else end
+        # SciPy takes no relative tolerance below 100 units of rounding
         return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
 
 
@@ -579,6 +597,7 @@ class Stepper:
             self._check_headway(t)
             if state[1] == 0.0:
                 sense = self.field.leaving(t, float(state[VALUE]))
+                # the sense before rest and the one after differ: it has turned round
                 if sense * self.sense < 0.0:
                     self._note("turns back", t, state)
                 if sense == 0.0:
@@ -598,6 +617,7 @@ class Stepper:
             t, state = self._pass(leg, t, state)
 
     def _at_limit(self, value: float, sense: float) -> bool:
+        # at the limit but for rounding: nothing lies ahead
         tracks = self.field.tracks
         near = AT_END * tracks.unit
         return value >= tracks.high - near if sense > 0.0 else value <= tracks.low + near
@@ -609,6 +629,7 @@ class Stepper:
     def _check_headway(self, t: float) -> None:
         """Refuse to go on where leg follows upon leg and no time passes."""
         self.idle = self.idle + 1 if t == self.last else 0
+        # the same time again: a leg was left as soon as it was entered
         self.last = t
         if self.idle > MOST_IDLE:
             raise MotionError(
@@ -647,9 +668,11 @@ class Stepper:
 
     def _pass(self, leg: FieldLeg, t: float, state: State) -> tuple[float, State]:
         """Go on to the end of a leg, a standstill, or the end of the run."""
+        # value and works count from the beginning of the leg, so that long runs lose no digits
         begun, y = state.copy(), state - state * _RELATIVE
         turning = self.field.turns_count
         low, high = leg.low - begun[VALUE], leg.high - begun[VALUE]
+        # the run ends at a way, which is an end of the range like any other
         if self.until.way is not None:
             gone = begun[VALUE] - self.start
             low, high = max(low, -self.until.way - gone), min(high, self.until.way - gone)
@@ -668,20 +691,24 @@ class Stepper:
                 t, y = solver.t, solver.y
                 if solver.status == "finished":
                     return t, y + begun * _RELATIVE
+                # the stiff scheme takes over in the middle of a leg, from the last good state
                 if self.watch.stiff and not isinstance(solver, scipy.integrate.Radau):
                     solver = self.solvers.solver(rates, t, y, begun, leg)
                 continue
             when, component, target = event
+            # from the beginning of the step once more, so that no stage looks beyond the event
             t, y = self._exactly(rates, before, y_before, when, begun, leg)
             t, y = refine_event(rates, t, y, component, target)
             ended = y + begun * _RELATIVE
             if component == VALUE:
                 ended[VALUE] = min(max(ended[VALUE], leg.low), leg.high)
+                # exactly the end of the leg, so that the next leg begins on the other side
                 edge = leg.high if leg.sense * (target + begun[VALUE] - leg.low) > 0.0 else leg.low
                 if abs(target + begun[VALUE] - edge) <= 1e-12 * max(1.0, abs(edge)):
                     ended[VALUE] = edge
             else:
                 ended[1] = 0.0
+            # the last piece ends short of the event by what was refined
             if not self.course.pieces or self.course.pieces[-1].last < t:
                 self._close(t, ended, leg.sense)
             return t, ended
@@ -708,8 +735,8 @@ class Stepper:
 
     def _add(self, first: float, last: float, dense: Any, begun: State, sense: float) -> None:
         def at(times: Array) -> Array:
-            found: Array = dense(times) + (begun * _RELATIVE)[:, None]
-            return found
+            states: Array = dense(times) + (begun * _RELATIVE)[:, None]
+            return states
 
         self.course.pieces.append(TrajectoryPiece(first, last, at, sense))
 

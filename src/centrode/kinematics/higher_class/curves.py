@@ -76,6 +76,7 @@ class CurvePlaces:
     def distance(self, numbers: Array) -> Array:
         """Distance of numbers (k, width + 1) along the curve's direction here."""
         own = self.first * self.weight**2
+        # the scalar product with the curve's direction, every number in its own measure
         return total(own * numbers) / total(own * self.first)
 
 
@@ -116,7 +117,7 @@ def reach(
     They are as good as it takes to foretell others at such strides; without these, to the last digit.
     """
     count, free = len(parameter), along.shape[1] - 1
-    found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
+    arrived, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, FAR), np.full(count, np.nan)
     for k in range(STEPS):
         system, linear, moved, rest, follow, matrix = bordered_equations(
@@ -128,22 +129,27 @@ def reach(
         size = size_of(system, moved, step)
         if k == 0:
             wrong = size
+        # a step of a radian, or of the greatest length, has nothing to do with the place foretold
         good = active & np.isfinite(size) & (size < 1.0)
         state = np.where(good[:, None], system.move(state, motion), state)
         parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
         with np.errstate(all="ignore"):
+            # without a stride to the last digit; with one, until the next step, foretold by quadratic
+            # convergence, is small beside it
             enough = (
                 is_rounding_step(last, size)
                 if stride is None
                 else size * (size / last) ** 2 <= ENOUGH * stride
             )
+        # steps have to shrink, or the place belongs to another curve; tiny ones are rounding and need not
         done = good & enough
-        found |= done
+        arrived |= done
         active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
         last = size
         if not active.any():
             break
     system, linear, _moved, _rest, follow, matrix = bordered_equations(around, lanes, parameter, state, along)
+    # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
     ahead = np.zeros((count, free + 1, 1))
     ahead[:, -1] = 1.0
     slope = solve_places(matrix, ahead)[:, :, 0]
@@ -158,13 +164,14 @@ def reach(
         )
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
-    found &= np.isfinite(inward[1]).all(axis=1)
-    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, found)
+    arrived &= np.isfinite(inward[1]).all(axis=1)
+    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, arrived)
 
 
 def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:
     """Taylor coefficients by the distance along a base's direction, from those by any other variable."""
     rate, bend = base.distance(first)[:, None], base.distance(second)[:, None]
+    # with the distance t = r s + b s^2, x = x1 s + x2 s^2 has x1 / r and x2 / r^2 - x1 b / r^3
     return first / rate, second / rate**2 - first * bend / rate**3
 
 
@@ -185,12 +192,14 @@ def _coefficients(
     still = {entity: (0.0,) * entity.unknowns for entity in follow}
     one = motion_along(linear, still, follow, slope)
     zero = np.zeros(len(parameter))
+    # along the tangent alone the equations fail in second order: by how much is the right side of the second
+    # coefficient
     straight = GroupMotion(
         {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()},
         [Jet((zero, x, zero)) for x in one.free],
     )
     values = system.residual(JETS, system.at(JETS, known, state, straight))
-    moved, rest = linear.reduced([-x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+    moved, rest = linear.reduce([-x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
     right = np.concatenate([system.stack(rest), zero[:, None]], axis=1)
     bend = solve_places(matrix, right[:, :, None])[:, :, 0]
     two = motion_along(linear, moved, follow, bend)
@@ -213,6 +222,8 @@ def quintic(base: CurvePlaces, reached: ReachedPlace) -> Array:
 
     Values, first and second derivatives agree at both ends; the parameter is that beyond the base.
     """
+    # c0, c1, c2 match the base; a, b, c are what these leave of value, slope and second derivative at the
+    # other end
     arc = reached.arc[:, None]
     c1, c2 = base.first * arc, base.second * arc**2
     d, e = reached.first * arc, 2.0 * reached.second * arc**2
@@ -220,6 +231,7 @@ def quintic(base: CurvePlaces, reached: ReachedPlace) -> Array:
     b, c = d - c1 - 2.0 * c2, e - 2.0 * c2
     c3, c4, c5 = 10.0 * a - 4.0 * b + 0.5 * c, -15.0 * a + 7.0 * b - c, 6.0 * a - 3.0 * b + 0.5 * c
     start = base.numbers.copy()
+    # the parameter counts from the base, so that a short piece far out loses no digits
     start[:, -1] = 0.0
     return np.stack([start, c1, c2, c3, c4, c5], axis=1)
 
@@ -256,6 +268,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
         state = around.blank(lanes).normalise(value[:, :-1])
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
+            # at a limit the parameter's first coefficient is zero: Newton's step of that along the arc
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
             change = np.where(np.isfinite(change), np.clip(change, -LONGEST, LONGEST), np.inf)
         if arrived.all():
@@ -268,41 +281,40 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
 
 def _first_turn(coefficients: Array) -> Array:
     """The first share in [0, 1] at which polynomials (k, 6) turn back."""
-    found = np.full(len(coefficients), 0.5)
+    # where the polynomial has no turn, its middle: Newton's method goes on from there
+    earliest = np.full(len(coefficients), 0.5)
     for k, c in enumerate(coefficients):
         roots = np.polynomial.Polynomial(c).deriv().roots()
         real = np.sort(roots.real[np.abs(roots.imag) < 1e-6])
         inside = real[(real >= -1e-6) & (real <= 1.0 + 1e-6)]
-        found[k] = inside[0] if len(inside) else 0.5
-    return found
+        earliest[k] = inside[0] if len(inside) else 0.5
+    return earliest
 
 
 def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:
     """By how much rounding of the equations may shift a limit along the path."""
     parameter, state = places.parameter, places.state
     system, linear, _moved, _rest, _follow, matrix = bordered_equations(around, lanes, parameter, state, None)
-    values = system.residual(ROUNDED, system.at(ROUNDED, around.bounded(parameter, lanes), state))
+    values = system.residual(ROUNDED, system.at(ROUNDED, around.with_bounds(parameter, lanes), state))
     zero = np.zeros(len(parameter))
-    _moved, rest = linear.reduced([Rounded(zero, zero + Rounded.of(x).bound) for x in values])
+    _moved, rest = linear.reduce([Rounded(zero, zero + Rounded.of(x).bound) for x in values])
     bounds = system.stack([Rounded.of(x).bound for x in rest])
     with np.errstate(all="ignore"):
         # the combination of equations that does not feel the group's own motion there tells the parameter
         least = np.linalg.svd(np.where(np.isfinite(matrix), matrix, 0.0)[:, :, :-1])[0][:, :, -1]
         pushed = np.abs(total(least * matrix[:, :, -1]))
         shift = around.unit * total(np.abs(least) * bounds) / pushed
+    # as near as this to a limit the parameter itself has no digits to tell the places apart
     spacing = LEAST_MARGIN * np.spacing(np.maximum(np.abs(parameter), 1e-3 * around.unit))
     return np.asarray(np.fmax(SAFETY * shift, spacing), dtype=np.float64)
 
 
-# Where two curves of a group of higher class meet: a change point, told from a near miss.
+# Where two curves of a group of higher class meet: a change point, distinguished from a near miss.
 #
 # At a change point the equations are dependent, parameter included. Seen along the two directions in which
-# they
-# tell least, the worst equation has a saddle there; its value at the saddle is to a group of higher class
-# what the
-# radicand is to a dyad: zero within its rounding error at a change point, anything else a near miss
-# (Golubitsky
-# and Schaeffer, Singularities and Groups in Bifurcation Theory I, 1985, chapter 1).
+# they tell least, the worst equation has a saddle there; its value at the saddle is to a group of higher
+# class what the radicand is to a dyad: zero within its rounding error at a change point, anything else a near
+# miss (Golubitsky and Schaeffer, Singularities and Groups in Bifurcation Theory I, 1985, chapter 1).
 
 CROSSING_STEPS = 20
 GREATEST = 0.05
@@ -328,10 +340,14 @@ class _Saddle:
             self.around, self.lane, self.parameter, self.state, None
         )
         left, values, right = np.linalg.svd(matrix[0])
+        # the combination of equations that changes least, and the two directions in which anything changes
+        # least
         least, plane = left[:, -1], right[-2:]
         bends = [self._bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
+        # by polarisation: B(p + q) - B(p) - B(q) = 2 B(p, q)
         mixed = 0.5 * (bends[2] - bends[0] - bends[1])
         hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
+        # in the plane to where the worst equation has no slope; square to it to where the others hold
         inside = -np.linalg.solve(hessian, plane @ matrix[0].T @ least)
         back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest[0]) / values[:-1])
         step = plane.T @ inside + back
@@ -339,6 +355,7 @@ class _Saddle:
         step *= min(1.0, GREATEST / size)
         self.state = system.move(self.state, motion_along(linear, moved, follow, step[None, :]))
         self.parameter = self.parameter + self.around.unit * step[-1]
+        # a saddle is met by two curves; a top or a bottom is an isolated point or nothing
         return size, bool(np.linalg.det(hessian) < 0.0)
 
     def _bend(self, least: Array, direction: Array) -> float:
@@ -354,7 +371,7 @@ class _Saddle:
         ahead = Jet((self.parameter, zero + self.around.unit * direction[-1], zero))
         known = self.around.known(ahead, self.lane)
         values = system.residual(JETS, system.at(JETS, known, self.state, straight))
-        _moved, rest = linear.reduced([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+        _moved, rest = linear.reduce([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
         return 2.0 * float(least @ system.stack(rest)[0])
 
     def value(self) -> tuple[float, float]:
@@ -363,15 +380,16 @@ class _Saddle:
             self.around, self.lane, self.parameter, self.state, None
         )
         least = np.linalg.svd(matrix[0])[0][:, -1]
-        known = self.around.bounded(self.parameter, self.lane)
+        known = self.around.with_bounds(self.parameter, self.lane)
         values = system.residual(ROUNDED, system.at(ROUNDED, known, self.state))
-        _moved, bounds = linear.reduced([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
+        _moved, bounds = linear.reduce([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
         bound = float(np.abs(least) @ np.array([float(np.max(Rounded.of(x).bound)) for x in bounds]))
         return float(least @ rest[0]), bound
 
 
 def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: ReachedPlace) -> float | None:
     """The parameter at which curves cross between two places; None if they do not."""
+    # where the determinant, taken for straight, is zero; the polynomial has the state there
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
     middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
     system = around.blank(lane)
@@ -388,5 +406,6 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
         return None
     parameter = float(saddle.parameter[0])
     away = abs(parameter - float(base.parameter[0])) / around.unit
+    # the saddle has to be found, near by, with a value that its rounding error explains
     met = crosses and size <= 1e-7 and away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
     return parameter if met else None

@@ -26,8 +26,7 @@ from centrode.structure.groups import Newton
 # Starting places for groups that no chain of initial angles reaches, such as a platform on three cylinders.
 #
 # Their links know their angles and no place. So the first of them is tried at many places about what is
-# known; of
-# what closes, the positions count that have the angles given.
+# known; of what closes, the positions count that have the angles given.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -59,16 +58,19 @@ def closing_states(
 
     One if its angles are much nearer to those given than the angles of all others.
     """
+    # all starts are places of one system, so that Newton's method runs once
     many = GroupSystem(system.group, system.numbers, system.known, len(starts))
     with np.errstate(all="ignore"):
-        found = newton(many, np.concatenate(starts), steps)
+        converged = newton(many, np.concatenate(starts), steps)
     states: list[Array] = []
-    for k in np.nonzero(found.found)[0]:
-        state = found.state[k : k + 1]
+    for k in np.nonzero(converged.found)[0]:
+        state = converged.state[k : k + 1]
+        # several starts lead to the same position
         if all(_apart(system, state, other) > SAME for other in states):
             states.append(state)
     near = [(_misfit(mechanism, system, state), state) for state in states]
     near = sorted((pair for pair in near if pair[0] <= NEAR), key=lambda pair: pair[0])
+    # a position much nearer to the angles given than any other is the one meant
     if len(near) > 1 and near[0][0] < CLEARLY * near[1][0]:
         near = near[:1]
     return [state for _off, state in near]
@@ -106,10 +108,10 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     system = GroupSystem(group, numbers, at.copy(), 1)
     start = _start(mechanism, system, at)
     with np.errstate(all="ignore"):
-        found = newton(system, start, STEPS)
-        if not found.found[0]:
+        converged = newton(system, start, STEPS)
+        if not converged.found[0]:
             raise _does_not_close(system, start)
-        closed = system.at(ARRAYS, at, found.state)
+        closed = system.at(ARRAYS, at, converged.state)
         values = np.linalg.svd(system.linear(closed).matrix[0], compute_uv=False)
     if values[-1] <= SINGULAR * values[0]:
         raise InputError(
@@ -134,10 +136,12 @@ def bound_higher(system: GroupSystem, at: Positions, bounded: Positions) -> None
     known = bounded.map_numbers(
         lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
     )
-    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).map_numbers(within(_single))
-    bounded.points.update(found.points)
-    bounded.poses.update(found.poses)
-    bounded.angles.update(found.angles)
+    with_bounds = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).map_numbers(
+        within(_single)
+    )
+    bounded.points.update(with_bounds.points)
+    bounded.poses.update(with_bounds.poses)
+    bounded.angles.update(with_bounds.angles)
 
 
 def _as_float(x: Number) -> float:
@@ -171,7 +175,7 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
         return [guess]
     if _adrift(mechanism, left) is None:
         raise _missing_angle_error(mechanism, group, left or list(group.links))
-    found = []
+    trials = []
     origin = (0.0, 0.0) if mechanism.space == "plane" else (1.0, 0.0, 0.0)
     for place in scatter_places(numbers, at, origin):
         trial, rest = guess.copy(), left
@@ -187,8 +191,8 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
                 trial.points.setdefault(point, place)
         if rest or any(point not in trial.points for point in group.points):
             raise _missing_angle_error(mechanism, group, rest or left)
-        found.append(trial)
-    return found
+        trials.append(trial)
+    return trials
 
 
 def _adrift(mechanism: Mechanism, links: Sequence[str]) -> str | None:
@@ -225,6 +229,7 @@ def _pose_link(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Posi
     if link in numbers.ends and is_measured(numbers, guess, link):
         cosine, sine = rotor_of_angle(ARRAYS, numbers, guess, link)
         near = angle or 0.0
+        # the angle keeps the turn of the initial angle that was given
         guess.angles[link] = near + remainder(float(np.arctan2(sine, cosine)) - near, tau)
     for point, at_rest in local.items():
         if point not in guess.points:

@@ -49,7 +49,7 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
     state = start.copy()
     going = np.nonzero(np.isfinite(start).all(axis=1))[0]
-    found = np.zeros(len(start), dtype=bool)
+    converged = np.zeros(len(start), dtype=bool)
     sizes = np.full((steps, len(start)), np.nan)
     last = np.full(len(start), np.inf)
     for k in range(steps):
@@ -58,6 +58,7 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
         part = system if len(going) == len(start) else system.take(going)
         motion, size = step_at(part, state[going])
         sizes[k, going] = size
+        # a step of a thousand radians comes from a singular matrix: the place is given up
         good = np.isfinite(size) & (size < 1.0e3)
         state[going[good]] = part.move(state[going], motion)[good]
         # next to a limit rounding makes steps that are not small; they do not shrink any more
@@ -66,16 +67,16 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
             | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
         )
         last[going] = size
-        found[going[done]] = True
+        converged[going[done]] = True
         going = going[good & ~done]
-    return Converged(state, found, sizes)
+    return Converged(state, converged, sizes)
 
 
 def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> tuple[GroupMotion, Array]:
     """A Newton step from a state, and its size."""
     at = system.at(ARRAYS, system.known, state)
     linear = system.linear(at) if linear is None else linear
-    moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
+    moved, rest = linear.reduce([-x for x in system.residual(ARRAYS, at)])
     free = solve_places(linear.matrix, system.stack(rest)[:, :, None])[:, :, 0]
     return GroupMotion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
 
@@ -97,6 +98,7 @@ def is_rounding_step(last: Array, size: Array) -> Mask:
     cannot give more digits.
     """
     with np.errstate(all="ignore"):
+        # quadratic: the next step is C size^2 with C = size / last^2
         next_size = size * (size / last) ** 2
         return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
 
@@ -118,10 +120,12 @@ def bordered_equations(
     system = around.system(known, lanes)
     linear = system.linear(system.at(JETS, system.known, state))
     values = system.residual(JETS, system.at(JETS, known, state))
+    # jets of first order: values are the residual, slopes how the equations move with the parameter
     jets = [x if isinstance(x, Jet) else Jet((x, 0.0)) for x in values]
-    moved, rest = linear.reduced([-x.coefficients[0] for x in jets])
-    # how unknowns and right sides move with one unit of the parameter
-    follow, pushed = linear.reduced([_times(x.coefficients[1], -around.unit) for x in jets])
+    moved, rest = linear.reduce([-x.coefficients[0] for x in jets])
+    # how unknowns and right sides move with one unit of the parameter in units of the path, so that the
+    # parameter's column is of the size of the others
+    follow, pushed = linear.reduce([_times(x.coefficients[1], -around.unit) for x in jets])
     count, free = len(parameter), linear.pattern.free
     rows = free if along is None else free + 1
     matrix = np.empty((count, rows, free + 1))

@@ -41,10 +41,9 @@ from centrode.structure.groups import Newton
 # out.
 #
 # A link that hangs on a known point has one free coordinate, its turn about that point; a point of such a
-# link has
-# none. Only the equations that are left over have to be solved together (tearing; Cellier and Kofman,
-# Continuous
-# System Simulation, 2006, section 7). The order of elimination follows from the group alone.
+# link has none. Only the equations that are left over have to be solved together (tearing; Cellier and
+# Kofman, Continuous System Simulation, 2006, section 7). The order of elimination follows from the group
+# alone.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -84,6 +83,7 @@ class Pattern:
 @lru_cache(maxsize=256)
 def pattern_of(group: Newton) -> Pattern:
     """In which order the unknowns of a group follow."""
+    # hinges whose two rows both belong to the group tie all that a point has
     whole = [
         c
         for c, row in group.equations
@@ -94,9 +94,11 @@ def pattern_of(group: Newton) -> Pattern:
     used: set[PointInLink] = set()
     free = 0
     while left:
-        found = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
-        entity = left[0] if found is None else found[0]
-        by = None if found is None else found[1]
+        # what follows from something known goes first; without such, the coordinates of the next unknown are
+        # free
+        hinge = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
+        entity = left[0] if hinge is None else hinge[0]
+        by = None if hinge is None else hinge[1]
         follows.append(Follow(entity, by, free))
         left.remove(entity)
         if by is None:
@@ -104,6 +106,7 @@ def pattern_of(group: Newton) -> Pattern:
         else:
             used.add(by)
             free += entity.kind == "link"
+    # both rows of a hinge that an unknown follows from hold by construction, and are not solved
     kept = tuple(i for i, (c, _row) in enumerate(group.equations) if c not in used)
     return Pattern(tuple(follows), kept)
 
@@ -129,8 +132,8 @@ class Linear:
     def __init__(self, group: Newton, numbers: Dimensions, at: Positions, places: int) -> None:
         self.group, self.numbers, self.places = group, numbers, places
         self.pattern = pattern_of(group)
-        found = {c: c.rows(numbers, at) for c, _row in group.equations}
-        self.rows = [found[c][row] for c, row in group.equations]
+        rows = {c: c.rows(numbers, at) for c, _row in group.equations}
+        self.rows = [rows[c][row] for c, row in group.equations]
         self.number = {equation: i for i, equation in enumerate(group.equations)}
         self.tangents: dict[Entity, dict[int, Shift]] = {}
         self._inverses: dict[Entity, Block] = {}
@@ -157,6 +160,7 @@ class Linear:
         if entity.kind == "link":
             pivot = at.points[by.point]
             self._shifts[entity] = space.shifts(ARRAYS, pivot, 1.0)[:2]
+            # how the hinge's two rows change as the link shifts: its inverse makes the link follow its pivot
             block = [[_dot(row[entity], shift) for shift in self._shifts[entity]] for row in (one, other)]
         else:
             block = [[row[entity][0], row[entity][1]] for row in (one, other)]
@@ -173,7 +177,7 @@ class Linear:
         return self.rows[self.number[by, 0]], self.rows[self.number[by, 1]]
 
     def _answer(self, entity: Entity, right: Sequence[Number]) -> Shift:
-        """How an unknown moves so that the two rows of its hinge give what is asked."""
+        """How an unknown moves so that the two rows of its hinge give the requested displacements."""
         (a, b), (c, d) = self._inverses[entity]
         pair = _dot((a, b), right), _dot((c, d), right)
         if entity.kind == "point":
@@ -192,7 +196,7 @@ class Linear:
                     matrix[:, i, j] += _dot(slopes, shift) * unit
         return matrix
 
-    def reduced(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
+    def reduce(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
         """What right sides of all equations ask for at no free motion, and the right sides left over."""
         moved: dict[Entity, Shift] = {}
         for entity, by, _first in self.pattern.follows:
@@ -214,25 +218,26 @@ class Linear:
         return moved, rest
 
     def whole(self, moved: Mapping[Entity, Shift], free: Sequence[Number]) -> dict[Entity, Shift]:
-        """How all unknowns move: as asked for at no free motion, and with free coordinates."""
-        found: dict[Entity, Shift] = {}
+        """How all unknowns move: as requested at no free motion, and with free coordinates."""
+        shifts: dict[Entity, Shift] = {}
         for entity, tangents in self.tangents.items():
             total = moved.get(entity, (0.0,) * entity.unknowns)
             for j, shift in tangents.items():
                 total = tuple(_sum(t, _dot((x,), (free[j],))) for t, x in zip(total, shift, strict=True))
-            found[entity] = total
-        return found
+            shifts[entity] = total
+        return shifts
 
 
 def solve_places(matrix: Array, right: Array) -> Array:
     """Solution (k, n, m) of the equations at every place; NaN where the matrix is singular."""
     try:
+        # NumPy refuses all places where one is singular: the others are solved without it
         return np.asarray(np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError:
         sign, _size = np.linalg.slogdet(matrix)
-        found = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
-        found[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
-        return found
+        solution = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
+        solution[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
+        return solution
 
 
 def _sum(a: Number, b: Number) -> Number:
@@ -295,7 +300,7 @@ class GroupSystem:
     places: int
 
     def take(self, which: npt.NDArray[np.intp]) -> GroupSystem:
-        """The same equations at some of the places."""
+        """The system of equations at the places with these numbers (n,)."""
 
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
@@ -383,6 +388,7 @@ class GroupSystem:
             at.poses[name] = space.normalise(ARRAYS, at.poses[name])
         for name in self._turns:
             near = at.angles[name]
+            # measured from the angle before, so that turns stay counted
             at.angles[name] = near + space.turn(
                 ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None
             )
@@ -390,12 +396,12 @@ class GroupSystem:
 
     def residual(self, m: Namespace, at: Positions) -> list[Number]:
         """Left sides of the equations."""
-        found: dict[Constraint, list[Number]] = {}
+        residuals: dict[Constraint, list[Number]] = {}
         values = []
         for constraint, row in self.group.equations:
-            if constraint not in found:
-                found[constraint] = constraint.residual(m, self.numbers, at)
-            values.append(found[constraint][row])
+            if constraint not in residuals:
+                residuals[constraint] = constraint.residual(m, self.numbers, at)
+            values.append(residuals[constraint][row])
         return values
 
     def linear(self, at: Positions) -> Linear:
@@ -411,24 +417,25 @@ class GroupSystem:
 
     def stack(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""
-        found = np.empty(
+        stacked = np.empty(
             (len(values), self.places), dtype=np.result_type(np.float64, *map(np.asarray, values))
         )
-        for row, value in zip(found, values, strict=True):
+        for row, value in zip(stacked, values, strict=True):
             row[:] = value
-        return found.T
+        return stacked.T
 
     def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> GroupMotion:
         """Taylor coefficients of the motion from a converged state, by the variable of the known jets."""
         zero = np.zeros(self.places)
         shifts = {f.entity: [[zero] for _ in range(f.entity.unknowns)] for f in linear.pattern.follows}
         free = [[zero] for _ in range(self.free)]
+        # the matrix is the same for every order, so it is inverted once
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         for k in range(1, order + 1):
             motion = _as_jets(shifts, free, k)
             below = known.map_numbers(lambda x, k=k: truncate_jet(x, k))  # type: ignore[misc]
             values = self.residual(JETS, self.at(JETS, below, state, motion))
-            moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
+            moved, rest = linear.reduce([_minus_coefficient(x, k) for x in values])
             freely = list(times(inverse, self.stack(rest)).T)
             for entity, shift in linear.whole(moved, freely).items():
                 for c, x in zip(shifts[entity], shift, strict=True):
@@ -441,7 +448,8 @@ class GroupSystem:
         """The motion zero with the bound of the state's rounding error."""
         values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
         zero = np.zeros(self.places)
-        moved, rest = linear.reduced([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
+        # a converged state leaves a residual: that is part of the error as well
+        moved, rest = linear.reduce([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         bound = times(np.abs(inverse), self.stack([Rounded.of(x).bound for x in rest]))
         free = [Rounded(zero, column) for column in bound.T]
@@ -472,10 +480,10 @@ def _minus_coefficient(x: Number, k: int) -> Number:
 
 def total(columns: Array) -> Array:
     """Sum over the second axis, added up in one order whatever the number of places."""
-    found = columns[:, 0].copy()
+    summed = columns[:, 0].copy()
     for j in range(1, columns.shape[1]):
-        found += columns[:, j]
-    return found
+        summed += columns[:, j]
+    return summed
 
 
 def times(matrix: Array, vector: Array) -> Array:
@@ -489,11 +497,9 @@ def times(matrix: Array, vector: Array) -> Array:
 # A group of higher class by its free coordinates alone: everything else follows, link by link, from what is
 # known.
 #
-# A link that hangs on a point that is known is told by its rotor; its points follow, and from these the links
-# that
-# hang on them. So the equations that `reduction` eliminates hold by construction, and only those left over
-# are
-# solved. In the plane.
+# A link that hangs on a point that is known is given by its rotor; its points follow, and from these the links
+# that hang on them. So the equations that `reduction` eliminates hold by construction, and only those left
+# over are solved. In the plane.
 
 
 @dataclass(frozen=True)
@@ -546,14 +552,17 @@ class LinkChain:
         """The links whose turns are found last."""
         follows = {f.entity.name: f for f in self.pattern.follows if f.entity.kind == "link" and f.by}
         spoken = [body for c, row in self.group.equations if row == 0 for body in c.bodies]
-        found = []
+        leaves = []
         for number, (c, row) in enumerate(self.kept):
             if row or not isinstance(c, PointInLink) or c.link not in follows or (c, 1) not in self.kept:
+                # of two rows of the point both have to be left over, and the link one that follows from a
+                # hinge
                 continue
             # the link is spoken of by its hinge and by this constraint, and by nothing else
             if sum(body.kind == "link" and body.name == c.link for body in spoken) == 2:
-                found.append(Leaf(c, follows[c.link].turn, (number, self.kept.index((c, 1)))))
-        return tuple(found)
+                leaves.append(Leaf(c, follows[c.link].turn, (number, self.kept.index((c, 1)))))
+        # by the hinge and by the point it has to reach: two constraints speak of it
+        return tuple(leaves)
 
     def posture(self, at: Positions) -> Posture:
         """The free coordinates of positions."""
@@ -612,11 +621,11 @@ class LinkChain:
     def arms(self, posture: Posture) -> list[Vector]:
         """The arms of all leaves as they lie, in `unit`."""
         over = 1.0 / self.unit
-        found = []
+        arms = []
         for leaf in self.leaves:
             x, y = rotate_vector(self.arm(leaf), posture.rotors[leaf.constraint.link])
-            found.append((x * over, y * over))
-        return found
+            arms.append((x * over, y * over))
+        return arms
 
     def equations(self, m: Namespace, at: Positions, arms: Sequence[Vector]) -> list[Number]:
         """Left sides of the equations left over, those of leaves along and across given arms, in rad and `unit`."""
@@ -638,6 +647,7 @@ def _moves(x: Number) -> bool:
     return isinstance(x, Jet)
 
 
+# (cos, sin) of r t + b t^2 up to second order
 def _rotor_of_zero(turn: Jet) -> Vector:
     """Rotor of a jet of first or second order whose value is zero."""
     rate = turn.coefficients[1]
@@ -678,7 +688,7 @@ class Surroundings:
         return needed_positions(self.equations, at)
 
     def known_at(self, parameter: Array, lanes: Lanes) -> Positions:
-        """The same at plain parameters."""
+        """Positions that the group's equations need, at plain parameters (k,)."""
         return needed_positions(self.equations, self.before(parameter, lanes))
 
     def before(self, parameter: Array, lanes: Lanes) -> Positions:
@@ -689,8 +699,8 @@ class Surroundings:
             used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
         return at
 
-    def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
-        """The same with bounds of rounding errors."""
+    def with_bounds(self, parameter: Array, lanes: Lanes) -> Positions:
+        """Positions that the group's equations need, with bounds of their rounding errors, at parameters (k,)."""
         used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = used.frame(ROUNDED, Rounded.of(parameter))
@@ -704,7 +714,7 @@ class Surroundings:
         )
 
     def with_numbers(self, numbers: Dimensions, lanes: Lanes) -> Surroundings:
-        """The same part of the plan with other dimensions of some mechanisms, which are counted anew."""
+        """The plan up to the group with other dimensions of some mechanisms, numbered from 0 in this selection."""
 
         def hooks(m: Namespace, parameter: Array, which: Lanes) -> EvaluationPolicy:
             return self.hooks(m, parameter, lanes[which])

@@ -65,7 +65,7 @@ MOST_FREE = 9
 
 
 class Untraceable(Exception):
-    """The plan does something that expressions cannot say; `reason` is told to the user."""
+    """The plan does something that expressions cannot say; `reason` is shown to the user."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
@@ -107,6 +107,7 @@ class Deciding(EvaluationPolicy):
         return divisor
 
     def continue_angle(self, group: int, key: str, angle: Number) -> Number:
+        # turns are counted from place to place, and without a walk there is no place before
         if not self.chains:
             raise Untraceable(mark("gears or wheels whose turns are counted"))
         value = plain(angle)
@@ -126,6 +127,8 @@ class Deciding(EvaluationPolicy):
 def refuse_untraceable(ready: Ready, span: SampleGrid) -> None:
     """Raise Untraceable for what is known before the plan is run."""
     kinematics = ready.kinematics
+    # refused here is what a straight line of operations cannot say, or what would cost more to compile than
+    # it saves
     for group in ready.structure.groups:
         if isinstance(group, Newton):
             if kinematics.path.by_time:
@@ -187,11 +190,11 @@ class Traced:
     @property
     def standing(self) -> dict[str, Node]:
         """Name -> what jumps, or is found by iteration: derivatives by dimensions take it as given."""
-        found = {f"turns {link}": node for link, node in self.turns.items()}
-        found |= {f"turns counted {key}": turns for key, (turns, _angle) in self.counted.items()}
+        nodes = {f"turns {link}": node for link, node in self.turns.items()}
+        nodes |= {f"turns counted {key}": turns for key, (turns, _angle) in self.counted.items()}
         for step in self.steps.values():
-            found |= step.standing
-        return found
+            nodes |= step.standing
+        return nodes
 
 
 def trace_motion(
@@ -210,6 +213,7 @@ def trace_motion(
     refuse_untraceable(ready, span)
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, ORDERS - 1)
+    # phases of gears belong to the initial position of the description, as in `of_batch`
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
     chains = chains_of(ready, kinematics.numbers)
     hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable)
@@ -245,8 +249,8 @@ def _columns(numbers: Sequence[Number]) -> Nodes:
 
 
 def _derivative(x: Number, order: int) -> Operand:
-    found: Operand = x.derivative(order) if isinstance(x, Jet) else x if order == 0 else 0.0
-    return found
+    value: Operand = x.derivative(order) if isinstance(x, Jet) else x if order == 0 else 0.0
+    return value
 
 
 def _angles(
@@ -257,22 +261,24 @@ def _angles(
     turns: Turns,
 ) -> tuple[Nodes, dict[str, tuple[Operand, Operand]]]:
     """Angles with their derivatives as `turning.fill_angles` has them: (3, angles); rotors of those that may turn."""
-    found = np.empty((ORDERS, len(layout.angles)), dtype=object)
+    nodes = np.empty((ORDERS, len(layout.angles)), dtype=object)
     turning: dict[str, tuple[Operand, Operand]] = {}
     for k, link in enumerate(layout.angles):
+        # on some layouts the plan counts the turns itself
         if layout.runs_on and link in at.angles:
-            found[:, k] = [_derivative(at.angles[link], order) for order in range(ORDERS)]
+            nodes[:, k] = [_derivative(at.angles[link], order) for order in range(ORDERS)]
             continue
         cosine, sine = columns[:, layout.rotor(link)].T
         if isinstance(cosine[0], float) and isinstance(sine[0], float):
-            found[:, k] = 0.0
-            found[0, k] = _constant_angle(cosine[0], sine[0], start[link])
+            nodes[:, k] = 0.0
+            nodes[0, k] = _constant_angle(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
-        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
+        nodes[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
         for order in (1, 2):
-            found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
-    return found, turning
+            # with c c + s s = 1 the angle's derivatives are c s' - s c' and c s'' - s c''
+            nodes[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
+    return nodes, turning
 
 
 def _constant_angle(cosine: float, sine: float, start: float) -> float:
@@ -317,10 +323,11 @@ def _motion_of_parts(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
 
 def _worst(kinematics: Kinematics, at: Positions, scale: Operand) -> Operand:
     """The greatest residual. Lengths are divided together: a greater number has no lesser quotient, to the last bit."""
-    found: dict[bool, Operand] = {}
+    worst: dict[bool, Operand] = {}
     for _kept, size, angular in each_residual(kinematics, EXPRESSIONS, at):
-        found[angular] = EXPRESSIONS.max(found[angular], size) if angular in found else size
-    if False in found:
-        found[False] = found[False] / scale
+        worst[angular] = EXPRESSIONS.max(worst[angular], size) if angular in worst else size
+    if False in worst:
+        # one division by the scale for all lengths, see above
+        worst[False] = worst[False] / scale
     least: Operand = 0.0
-    return functools.reduce(EXPRESSIONS.max, found.values(), least)
+    return functools.reduce(EXPRESSIONS.max, worst.values(), least)

@@ -34,10 +34,10 @@ ALONG = (PARAMETER, TIME, RATE, SECOND_RATE, STEP, SHARE, FIRST, SAMPLE)
 
 def box_array(values: Sequence[Any]) -> Nodes:
     """An array of nodes and floats."""
-    found = np.empty(len(values), dtype=object)
+    boxed = np.empty(len(values), dtype=object)
     for k, value in enumerate(values):
-        found[k] = value
-    return found
+        boxed[k] = value
+    return boxed
 
 
 @dataclass(frozen=True)
@@ -57,14 +57,15 @@ class Varied:
 
     def values(self, numbers: Dimensions) -> dict[str, Array]:
         """What the variables stand for in a batch of the same kind: name -> (lanes,)."""
-        found = dict(zip(self.names, arrays_of(numbers), strict=True))
+        values = dict(zip(self.names, arrays_of(numbers), strict=True))
         if not isinstance(self.scale, float):
-            found[SCALE] = np.asarray(numbers.scale, dtype=np.float64)
-        return found
+            values[SCALE] = np.asarray(numbers.scale, dtype=np.float64)
+        return values
 
 
 def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
     """The numbers of a batch as variables; those that are a varied value itself are called by its path."""
+    # identity of arrays, not equality: values that happen to be equal vary on their own
     known = {id(value): path for path, value in values.items()}
     names: list[str] = []
 
@@ -87,15 +88,15 @@ def take_lanes(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
 
 def arrays_of(numbers: Dimensions) -> list[Array]:
     """The arrays of a batch's numbers, in the order in which `map_numbers` meets them."""
-    found: list[Array] = []
+    arrays: list[Array] = []
 
     def seen(x: Number) -> Number:
         if not isinstance(x, float):
-            found.append(x)
+            arrays.append(x)
         return x
 
     numbers.map_numbers(seen)
-    return found
+    return arrays
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,7 @@ def grid_of_variables(span: SampleGrid) -> TracedGrid:
     accelerates = span.accelerates
 
     def row(name: str, values: Array) -> Any:
+        # what is the same everywhere stays a number, so that zeros among them drop out of the plan
         return values[:1] if (values == values[0]).all() else box_array([variable(name)])
 
     second = row(SECOND_RATE, span.second_rate) if accelerates else np.zeros(1)
@@ -133,8 +135,7 @@ def times_of(span: SampleGrid) -> dict[str, Array]:
 # Several drives in a traced plan: their values and rates are variables of a place on the path.
 #
 # A law is not traced: what it gives at the places is computed by the arrays, once for all mechanisms.
-# Derivatives that
-# are the same everywhere stay numbers, so that plans skip their zeros as the arrays do.
+# Derivatives that are the same everywhere stay numbers, so that plans skip their zeros as the arrays do.
 
 Namespace: TypeAlias = Any
 
@@ -170,14 +171,14 @@ def traced_path(path: Path, parameter: Array, order: int) -> Path:
 
 def places_of(path: Path, parameter: Array, order: int) -> dict[str, Array]:
     """What the variables of places on the path stand for at parameters: name -> (n,)."""
-    found = {PARAMETER: parameter}
+    places = {PARAMETER: parameter}
     if not path.by_time:
-        return found
+        return places
     for drive, value in _jets(path, parameter, order).items():
         if isinstance(value, Jet):
             rows = (np.broadcast_to(x, parameter.shape) for x in value.coefficients)
-            found |= {_name(drive, k): row for k, row in enumerate(rows)}
-    return found
+            places |= {_name(drive, k): row for k, row in enumerate(rows)}
+    return places
 
 
 def inputs_of(path: Path, span: SampleGrid) -> dict[str, Array]:
@@ -190,7 +191,9 @@ def winders_of(path: Path) -> dict[str, Operand]:
     if not path.by_time:
         return {path.driven[0].drive.id: variable(PARAMETER)}
     values = path.drive_values(None, variable(PARAMETER))
-    return {one.drive.id: values[one.drive.id] for one in path.driven if one.drive.kind == "angle"}
+    return {
+        driven.drive.id: values[driven.drive.id] for driven in path.driven if driven.drive.kind == "angle"
+    }
 
 
 def _jets(path: Path, parameter: Array, order: int) -> dict[str, Number]:
@@ -206,7 +209,7 @@ def _name(drive: str, k: int) -> str:
     return f"drive {drive}, {k}"
 
 
-# Turns of angles as expressions: told by a centre that may run on with the drive, or by the place before.
+# Turns of angles as expressions: found from a centre that may run on with the drive, or by the place before.
 
 TURN = 2.0 * math.pi
 WHOLE = 1.5 * 2.0**52
@@ -219,6 +222,7 @@ AWAY = 0.2
 
 def whole_turns(near: Number, angle: Number) -> Number:
     """The turns to add to an angle to come as close as may be to another, over any algebra."""
+    # rounding to even of a sum beside 2^52: the operations and so the bits are the same on every executor
     return ((near - angle) * (1.0 / TURN) + WHOLE) - WHOLE
 
 
@@ -293,6 +297,7 @@ class Pass:
         parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
         inputs = np.stack([self.places[name] for name in scan.inputs]) if scan.inputs else None
         lanes = len(next(iter(values.values())))
+        # every lane starts alike
         start = np.repeat([[value] for value in self.reduction.start.values()], lanes, axis=1)
         run = runner(scan, kernels, threads=threads)
         state = run(parameters, inputs, start, steps=None if scan.inputs else steps).state
@@ -311,7 +316,7 @@ def least(name: str, value: Node) -> Reduction:
 
 def least_of(values: Sequence[Node]) -> Node:
     """The least of several; NaN where one is."""
-    found = values[0]
+    least = values[0]
     for value in values[1:]:
-        found = as_node(m.min(found, value))
-    return found
+        least = as_node(m.min(least, value))
+    return least

@@ -44,21 +44,22 @@ def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
 
 def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
     """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg"); not too far away."""
-    found = ready.parameter.drive(drive.id).read(value, where)
-    way = abs(found - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
+    reading = ready.parameter.drive(drive.id).read(value, where)
+    # as for samples: the mesh of nodes between both has to stay small
+    way = abs(reading - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
     if way > tau * MAX_TURNS:
         raise InputError(
             where,
             _("it reaches too far: {turns:.3g} turns").format(turns=way / tau),
             _("ask for at most {most:g}").format(most=MAX_TURNS),
         )
-    return found
+    return reading
 
 
 def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value] | None) -> dict[str, float]:
     """Values of all drives but the moving ones; those not named keep their initial ones."""
     mechanism = ready.mechanism
-    found = {name: value for name, value in initial_values(ready).items() if name not in moving}
+    values = {name: value for name, value in initial_values(ready).items() if name not in moving}
     for name, value in (held or {}).items():
         drive = named_drive(mechanism, name, "hold")
         if name in moving:
@@ -67,12 +68,12 @@ def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value]
                 _("drive {name} is the one that moves").format(name=name),
                 _("hold the others"),
             )
-        found[name] = value_of(ready, drive, value, f"hold {name}")
-        if drive.kind == "distance" and found[name] <= 0.0:
+        values[name] = value_of(ready, drive, value, f"hold {name}")
+        if drive.kind == "distance" and values[name] <= 0.0:
             raise InputError(
                 f"hold {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
             )
-    return found
+    return values
 
 
 def initial_values(ready: Ready) -> dict[str, float]:
@@ -83,9 +84,9 @@ def initial_values(ready: Ready) -> dict[str, float]:
 def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float | Array]) -> Path:
     """The path of one drive's value; the values held may be arrays (lanes, 1)."""
     path = ready.kinematics.path
-    one = next(one for one in path.driven if one.drive.id == drive)
-    unit, parameter = unit_of(one.drive, path.scale), path.parameter.along(drive)
-    return Path((one,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
+    driven = next(driven for driven in path.driven if driven.drive.id == drive)
+    unit, parameter = unit_of(driven.drive, path.scale), path.parameter.along(drive)
+    return Path((driven,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
 
 
 def starting_at(ready: Ready, path: Path) -> BranchedPlan:
@@ -97,6 +98,7 @@ def starting_at(ready: Ready, path: Path) -> BranchedPlan:
     target: dict[str, float] = {path.driven[0].drive.id: path.initial, **path.held}
     kinematics = replace(ready.kinematics, path=path)
     start = ready.assembled
+    # where the signs tell, the position follows from values alone, and no way is walked
     if _needs_a_way(ready) and target != initial_values(ready):
         start = _brought(ready, target)
     smooth = ready.mechanism.assembly.continuation == "smooth"
@@ -134,7 +136,9 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     start = initial_values(ready)
     ways = {name: target[name] - value for name, value in start.items()}
     driven = tuple(
-        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
+        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id])
+        for one in old.driven
+        # all drives arrive at time 1
     )
     fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
     pace = TimeScale.of(lambda times: np.full(len(times), fastest))
@@ -144,6 +148,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     first = ready.assembled
     branches = branches_at_start(path, first.signs, first.angles, smooth)
     continuation = BranchedPlan(kinematics, branches, first.positions, kinematics.numbers)
+    # a limit on the way would leave the branch
     EventScan(continuation, mesh_of(path, np.ones(1))).run()
     if branches.reach(0)[1] < 1.0:
         raise InputError(
@@ -151,6 +156,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
             _("on the straight way there from the initial position the mechanism locks"),
             _("hold values nearer to the initial ones, or let the description begin elsewhere"),
         )
+    # positions at the end of the way, with the turns counted on it
     arriving = _Arriving(continuation, np.ones((1, 1)))
     positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).map_numbers(_as_float)
     signs = {group: float(branches.sign(group, np.ones(1))[0, 0]) for group in branches.signs}
@@ -292,12 +298,13 @@ def limits_met(mechanism: Mechanism, status: npt.NDArray[np.int8]) -> tuple[End,
 
 
 def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: float) -> Limits:
-    """The same for a mechanism made ready before."""
+    """Limits of a drive about its value `about` [rad or m], the values of the others held; see `limits`."""
     path = held_path(prepared, drive, about, held)
     continuation = starting_at(prepared, path)
     angular = path.driven[0].drive.kind == "angle"
     extent = 2.0 * pi * TURNS if angular else SEARCH * path.unit
     EventScan(continuation, mesh_of(path, np.array([about - extent, about + extent]))).run()
+    # after the search, as it needs the events
     check_closed(continuation)
     low, high = continuation.branches.reach(0)
     if path.driven[0].drive.kind == "distance":
@@ -315,11 +322,12 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
         if event.kind == "change point" and low <= event.at <= high and abs(event.at - about) <= extent
     ]
     unit = path.parameter.variable.unit
-    found = tuple(sorted(inside, key=lambda one: one.value))
-    return Limits(prepared.mechanism, drive, unit, about, dict(held), end(low), end(high), found)
+    limits = tuple(sorted(inside, key=lambda one: one.value))
+    return Limits(prepared.mechanism, drive, unit, about, dict(held), end(low), end(high), limits)
 
 
 def _groups(prepared: Ready, events: list[Event], value: float) -> str:
     """Names of the groups that lock at a value."""
+    # several groups may lock at one value: to the last bit the same event
     which = dict.fromkeys(event.group for event in events if event.kind == "limit" and event.at == value)
     return ", ".join(name_of(prepared.structure.groups[group]) for group in which)
