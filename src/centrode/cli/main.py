@@ -22,9 +22,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.animate import animate
 from centrode.cli.cam import cam
-from centrode.cli.describe import describe
 from centrode.cli.draw import draw
-from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.report import report
@@ -43,8 +41,6 @@ from centrode.topics.registry import TOPICS
 OWN: tuple[click.Command, ...] = (
     report,
     animate,
-    describe,
-    equations,
     variants,
     cam,
     sweep,

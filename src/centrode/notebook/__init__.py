@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import mechanism_html, motion_html, result_html
-    from centrode.present.equations.latex import equations_markdown
+    from centrode.notebook.display import equations_markdown, mechanism_html, motion_html, result_html
 
 __all__ = ["equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
 
@@ -38,7 +37,11 @@ def register() -> None:
     if shell is None:
         return
     results = [topic.result for topic in importlib.import_module("centrode.topics.registry").TOPICS]
-    own = [("text/html", result.module, result.name, "result_html") for result in results]
+    own = [
+        ("text/html", result.module, result.name, "result_html")
+        for result in results
+        if (result.module, result.name) not in {one[1:3] for one in SHOWN}
+    ]
     for kind, module, name, function in (*own, *SHOWN):
         shell.display_formatter.formatters[kind].for_type_by_name(module, name, _later(function))
 

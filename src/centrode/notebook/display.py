@@ -11,14 +11,14 @@ from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.present.displayed_units import shown_as
-from centrode.present.equations.latex import equations_markdown
 from centrode.sheets.linkages import MechanismPicture
 from centrode.sheets.texts import Sentence
-from centrode.topics.presentation import display_of, is_result, sheet_of
+from centrode.topics.presentation import display_of, is_result, page, sheet_of
 
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.equations.derivation import Equations
     from centrode.model.mechanism import Mechanism
 
 __all__ = ["equations_markdown", "mechanism_html", "motion_html", "result_html"]
@@ -62,6 +62,11 @@ def motion_html(dataset: xarray.Dataset) -> str:
         return _drawing(mechanism, dataset) + own
     except (CentrodeError, LookupError, ValueError):  # parts of a motion may lack what a drawing needs
         return own
+
+
+def equations_markdown(equations: Equations) -> str:
+    """The equations of a mechanism as Markdown, their formulas as LaTeX between dollar signs."""
+    return page(equations, "md")
 
 
 def _is_motion(dataset: xarray.Dataset) -> bool:

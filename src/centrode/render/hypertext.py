@@ -14,7 +14,7 @@ from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.render.figures import figures_of
 from centrode.render.spelling import PlainSpelling
-from centrode.render.terminal import fact_rows, notes_of, table_cells
+from centrode.render.terminal import block_text, fact_rows, notes_of, symbol_texts, table_cells
 from centrode.sheets.linkages import MotionPlayer
 from centrode.sheets.sheet import (
     Block,
@@ -23,9 +23,11 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
+    LinearEquations,
     Listing,
     Paragraph,
     Section,
+    SymbolList,
     Table,
 )
 
@@ -78,7 +80,7 @@ def rows_html(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def _block(block: Block, spelling: PlainSpelling, display: Display) -> str:
-    """A block of a sheet; formulas, pictures and checks belong to documents."""
+    """A block of a sheet; pictures and checks belong to documents."""
     match block:
         case FactTable(facts):
             return rows_html((), fact_rows(facts, display))
@@ -91,7 +93,11 @@ def _block(block: Block, spelling: PlainSpelling, display: Display) -> str:
             heading = spelling.text(block.heading) if isinstance(block, Listing) else ""
             items = "".join(f"<li>{html.escape(spelling.text(item))}</li>" for item in texts)
             return f"{_paragraph(heading)}<ul>{items}</ul>"
-        case Formula() | Illustration() | Check() | MotionPlayer():
+        case Formula() | LinearEquations():
+            return f"<pre>{html.escape(block_text(block, spelling))}</pre>"
+        case SymbolList(symbols):
+            return rows_html((), [symbol_texts(one, spelling) for one in symbols])
+        case Illustration() | Check() | MotionPlayer():
             return ""
         case _:
             assert_never(block)

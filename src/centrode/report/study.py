@@ -218,7 +218,7 @@ class ReportStudy:
         if self.wishes.points is not None:
             return self.wishes.points
         try:
-            return self.equations.sliding
+            return self.equations.points
         except CentrodeError:  # there are none in symbols
             guides = self.mechanism.guides
             return tuple(dict.fromkeys(guide.point for guide in guides if guide.on == FRAME))

@@ -24,6 +24,8 @@ READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
 
+WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
+
 INTEGRATE = Topic(
     name="integrate",
     compute=Lazily("centrode.equations.integration", "integration_results"),
@@ -596,6 +598,64 @@ CHECK = Topic(
     document=InDocuments(chapters=(ChapterOfTopic("structure", mark("Structure")),), instants=False),
 )
 
+EQUATIONS = Topic(
+    name="equations",
+    compute=Lazily("centrode.equations.instants", "equation_results"),
+    result=Lazily("centrode.equations.derivation", "Equations"),
+    view=Lazily("centrode.views.equations", "sheet"),
+    command=Command(
+        help=mark("Write the constraint equations in symbols, solved."),
+        options=(
+            ValueOption(
+                "point",
+                mark("NAME"),
+                mark(
+                    "A point whose velocity is asked for, again for more; those on guides of the frame if left out."
+                ),
+                several=True,
+                parameter="points",
+            ),
+        ),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("equations", mark("Constraint equations")),
+            ChapterOfTopic("derivation", mark("Velocities and accelerations")),
+        ),
+        points=True,
+        may_be_left_out=True,
+        may_be_incomplete=True,
+    ),
+)
+
+DESCRIBE = Topic(
+    name="describe",
+    compute=Lazily("centrode.analysis.operation", "principle_of_operation"),
+    result=Lazily("centrode.analysis.operation", "PrincipleOfOperation"),
+    view=Lazily("centrode.views.words", "sheet"),
+    command=Command(
+        help=mark("Say in words how a mechanism works."),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("words", mark("How it works")),), instants=False),
+)
+
+GIVEN_MASSES = Topic(
+    name="masses",
+    compute=Lazily("centrode.dynamics.masses", "link_masses"),
+    result=Lazily("centrode.dynamics.masses", "LinkMasses"),
+    view=Lazily("centrode.views.masses_and_loads", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("masses-and-loads", mark("Masses and loads")),), instants=False
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -618,5 +678,8 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     RUN,
     CHECK,
+    GIVEN_MASSES,
+    DESCRIBE,
+    EQUATIONS,
 )
 """Every topic."""

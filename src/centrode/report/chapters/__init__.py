@@ -27,13 +27,9 @@ from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
-from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
-from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.spherical_linkages import (
     sphere_data_chapter,
-    sphere_equations_chapter,
 )
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
@@ -65,10 +61,6 @@ OWN: Mapping[str, Kind] = {
         mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
     ),
     "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
-    "words": Kind(mark("How it works"), words_chapter),
-    "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
-    "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
-    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),

@@ -6,11 +6,8 @@ from collections.abc import Iterator
 from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
-from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Link, Mechanism
-from centrode.present.equations import page
-from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
@@ -20,9 +17,7 @@ from centrode.render.document.blocks import (
     shown,
 )
 from centrode.render.document.numbers import Numbers
-from centrode.report.equations import section_of
 from centrode.report.study import ReportStudy
-from centrode.report.topics import left_out
 
 if TYPE_CHECKING:
     pass
@@ -162,24 +157,3 @@ def _law(drive: Drive, numbers: Numbers) -> str:
     if drive.law is not None:
         return _("{formula}, in SI").format(formula=shown(drive.law))
     return _("table of {count} rows").format(count=len(drive.table or ()))
-
-
-# Equations of a linkage on the sphere, as `centrode equations` prints them.
-
-
-def sphere_equations_chapter(study: ReportStudy) -> ChapterBlocks | None:
-    """Closures of the dyads, their derivatives, Cramer's rule, normal form, accelerations."""
-    if not study.is_spherical:
-        return None
-    try:
-        found = page.sections(study.equations, TypstSpelling(), study.points)
-    except CentrodeError as reason:
-        if study.wishes.chapters is not None:
-            raise
-        return left_out("equations", _("Constraint equations"), reason)
-    text = _(
-        "Each dyad brings a new point: the law of cosines in the triangle of its two centres and that point gives its"
-        " angle, the angle of its other arc to its path follows."
-    )
-    sections = [SectionBlocks("", (ParagraphBlock(text),)), *map(section_of, found)]
-    return ChapterBlocks("equations", _("Constraint equations"), tuple(sections))
