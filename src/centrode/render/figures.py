@@ -17,6 +17,7 @@ from centrode.render.force_pages import group_page
 from centrode.render.instant_pages import instant_figure
 from centrode.render.levers import lever_page
 from centrode.render.linkages import mechanism_figure, paths_figure
+from centrode.render.outline_drawings import outline_figure, path_figure
 from centrode.render.panel_grids import grid_figure
 from centrode.render.plots import diagram_figure, plot_figure
 from centrode.render.position_pages import positions_figure
@@ -27,6 +28,7 @@ from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture
+from centrode.sheets.outlines import OutlineDrawing, PathDrawing
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
     AreaDiagram,
@@ -108,5 +110,9 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return mechanism_figure(picture, display)
             case PathsPicture():
                 return paths_figure(picture, display)
+            case OutlineDrawing():
+                return outline_figure(picture, display)
+            case PathDrawing():
+                return path_figure(picture, display)
             case _:
                 assert_never(picture)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
+from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -40,6 +41,8 @@ Picture: TypeAlias = (
     | VectorDiagramPage
     | MechanismPicture
     | PathsPicture
+    | OutlineDrawing
+    | PathDrawing
 )
 Part = TypeVar("Part")
 
@@ -291,6 +294,7 @@ class Sheet:
     failure : what ends a command after everything is shown and written; None if nothing does
     notes : what a reader should know besides; a terminal prints them behind all
     brief : what a result that has this one as a part shows of it among its own facts; without it, all its facts below
+    outlines : name of a file without its ending -> outlines, as SVG and DXF
     """
 
     facts: tuple[Fact, ...] = ()
@@ -304,6 +308,7 @@ class Sheet:
     record: Mapping[str, Any] | None = None
     failure: Failure | None = None
     heading: Text = NOTHING
+    outlines: Mapping[str, OutlineSet] = field(default_factory=dict)
     notes: tuple[Text, ...] = ()
     brief: tuple[Fact, ...] = ()
 
@@ -325,6 +330,7 @@ class Sheet:
             pictures=_merge(sheet.pictures for sheet in sheets),
             printed=(*self.printed, *below),
             files=_merge(sheet.files for sheet in sheets),
+            outlines=_merge(sheet.outlines for sheet in sheets),
             notes=tuple(note for sheet in sheets for note in sheet.notes),
         )
 

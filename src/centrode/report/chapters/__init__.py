@@ -7,7 +7,7 @@ raises CentrodeError where it cannot be made.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
@@ -15,22 +15,13 @@ from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
     cam_choice_chapter,
     cam_contact_chapter,
-    cam_data_chapter,
     cam_motion_chapter,
-    cam_path_chapter,
     cam_profile_chapter,
-    cam_routes_chapter,
     cam_walking_chapter,
 )
-from centrode.report.chapters.followers.base_radius import base_radius_chapter
-from centrode.report.chapters.followers.forces import cam_forces_chapter
-from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.spherical_linkages import (
-    sphere_data_chapter,
-)
+from centrode.report.chapters.spherical_linkages import sphere_data_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -57,35 +48,26 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
-    "data": Kind(
-        mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
-    ),
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
     "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
-    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
-    "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
-    "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
-    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
-    "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
+    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
 
-def _of_topics() -> Iterator[tuple[str, Kind]]:
-    """The chapters of the topics; several topics may have a chapter of one name, for linkages and for cams."""
+def with_topics(own: Mapping[str, Kind]) -> dict[str, Kind]:
+    """Chapters with those of the topics; a chapter that several make is that of the first with something to tell."""
+    kinds = dict(own)
     for topic in TOPICS:
         for chapter in topic.document.chapters:
-            yield chapter.name, Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
+            make: Make = functools.partial(topic_chapter, topic, chapter)
+            if chapter.name in kinds:
+                make = either(kinds[chapter.name].make, make)
+            kinds[chapter.name] = Kind(chapter.title, make)
+    return kinds
 
 
-def _together(entries: Iterable[tuple[str, Kind]]) -> dict[str, Kind]:
-    """Chapters by name; of those of one name the first that has something to tell."""
-    found: dict[str, Kind] = {}
-    for name, kind in entries:
-        found[name] = Kind(kind.title, either(found[name].make, kind.make)) if name in found else kind
-    return found
-
-
-CHAPTERS: Mapping[str, Kind] = in_order(_together([*OWN.items(), *_of_topics()]), order.CHAPTERS)
+CHAPTERS: Mapping[str, Kind] = in_order(with_topics(OWN), order.CHAPTERS)
 """Those of the topics among the others."""
