@@ -16,9 +16,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
-from centrode.present.figures import read_scene
-from centrode.present.pictures import draw, initial_sample
 from centrode.present.sphere.globe import Globe
+from centrode.render.linkages import draw, initial_sample, read_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 FOLDER = DOCS / "images" / "gallery"

@@ -37,7 +37,7 @@ from .model.classics import four_bar as four_bar
 from .model.classics import slider_crank as slider_crank
 
 # Structure and motion
-from .study.check import check as check
+from .kinematics.check import check as check
 from .kinematics.motion import motion as motion
 from .kinematics.several_inputs.coefficients import kinematic_coefficients as kinematic_coefficients
 from .kinematics.several_inputs.limits import limits as limits
@@ -62,12 +62,8 @@ from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
 from .analysis.transmission import transmission_results as transmission_results
 from .study.run import study as study
-from .study.limits import limits_sentence as limits_sentence
-from .study.run import range_value as range_value
-from .study.limits import repair_of_range as repair_of_range
-from .study.run import with_range as with_range
-from .study.summary import check_rows as check_rows
-from .study.summary import motion_rows as motion_rows
+from .dynamics.motion_results import MotionResults as MotionResults
+from .kinematics.check import MechanismCheck as MechanismCheck
 
 # Forces
 from .dynamics.reduction import reduce as reduce
@@ -198,7 +194,6 @@ from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
 from .present import sweep_csv as sweep_csv
-from .present import write_motion_csv as write_motion_csv
 from .render.netcdf import write_motion_netcdf as write_motion_netcdf
 from .study.among import motion_among as motion_among
 from .study.among import moving_points as moving_points
@@ -207,14 +202,11 @@ from .present import drawing_svg as drawing_svg
 from .present import write_drawing_svg as write_drawing_svg
 from .present import write_drawing_dxf as write_drawing_dxf
 from .present import mjcf_text as mjcf_text
-from .present import write_motion_xlsx as write_motion_xlsx
 from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
 from .present import TableSpelling as TableSpelling
-from .present import write_coefficients_csv as write_coefficients_csv
 from .present import darkened as darkened
 from .report.variants.folders import write_variants as write_variants
-from .present import motion_figures as motion_figures
 from .present import save_figures as save_figures
 
 # Reports

@@ -72,3 +72,5 @@ class Status(IntEnum):
 
 STATUSES_OF_MOTION = tuple(status for status in Status if status is not Status.SELF_LOCKING)
 """Those that a motion itself can have; friction adds one to reactions."""
+STATUSES_NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
+"""Those of samples that a mechanism does not reach from its initial position."""

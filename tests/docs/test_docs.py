@@ -98,7 +98,7 @@ def test_statuses_are_told(status: ct.Status) -> None:
 def test_scalars_are_told(name: str) -> None:
     page = TEXTS[ROOT / "docs" / "results.md"]
     study = ct.study(ct.example(name), samples=2)
-    assert [scalar for scalar in study.scalars if f"`{scalar}`" not in page] == []
+    assert [scalar for scalar in ct.sheet_of(study).scalars if f"`{scalar}`" not in page] == []
 
 
 @pytest.mark.parametrize("name", ct.example_names("cam"))

@@ -127,7 +127,9 @@ def test_words_and_numbers() -> None:
     scalars = sheet_of(results).scalars
     assert scalars["greatest_joint_force_O/crank"].unit == "N"
     assert scalars["greatest_joint_force_O/crank_at"].unit == "rad"
-    assert ct.study(engine, 37).scalars["mean_joint_force_B/rod"] == scalars["mean_joint_force_B/rod"]
+    assert (
+        sheet_of(ct.study(engine, 37)).scalars["mean_joint_force_B/rod"] == scalars["mean_joint_force_B/rod"]
+    )
 
 
 def test_samples_that_are_not_reached_are_left_out() -> None:

@@ -72,7 +72,7 @@ def test_a_rocker_on_the_sphere() -> None:
 
 def test_a_crank_without_limits_makes_one_turn() -> None:
     for name in ("crank-rocker", "galloway", "spherical-four-bar"):
-        mechanism = ct.with_range(ct.example(name), "reachable")
+        mechanism = ct.example(name).with_range("reachable")
         first, last = first_and_last(mechanism)
         assert last - first == pytest.approx(math.tau, abs=4 * EPS * math.tau)
 
@@ -91,9 +91,9 @@ def test_the_word_is_read_and_written_back() -> None:
     assert ct.parse_mechanism(text) == mechanism
     assert ct.mechanism_schema()["$defs"]["Study"]["properties"]["range"]["enum"] == ["reachable"]
     own = rocker_driven(2.0).model_copy(update={"study": ct.Study(start=1.9, stop=2.0, samples=7)})
-    other = ct.with_range(own, "reachable")
+    other = own.with_range("reachable")
     assert (other.study.range, other.study.start, other.study.samples) == ("reachable", None, 7)
-    assert ct.with_range(other, None) is other
+    assert other.with_range(None) is other
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_words_that_do_not_fit_are_refused(study: dict[str, Any], told: str) -> 
 
 
 def test_a_range_of_time_has_no_reachable_values() -> None:
-    mechanism = ct.with_range(ct.example("five-bar-two-drives"), "reachable")
+    mechanism = ct.example("five-bar-two-drives").with_range("reachable")
     with pytest.raises(ct.InputError, match=r"\[study\] range: the reachable range is that of one drive"):
         ct.motion(mechanism)
     assert ct.motion(mechanism, samples=3, start=0.0, stop=0.1).sizes["sample"] == 3

@@ -13,7 +13,7 @@ import xarray as xr
 from tools.notebook import CELLS, TARGET, executed
 
 import centrode as ct
-from centrode import notebook
+from centrode import notebook, render
 from centrode.topics.registry import TOPICS
 
 HOSTILE = '<script>alert("x")</script>'
@@ -49,15 +49,16 @@ def test_what_does_not_assemble_says_why() -> None:
 
 def test_hostile_text_is_shown_as_text() -> None:
     mechanism = ct.example("crank-rocker").model_copy(update={"title": HOSTILE})
-    for shown in (notebook.mechanism_html(mechanism), notebook.check_html(ct.check(mechanism))):
+    for shown in (notebook.mechanism_html(mechanism), notebook.result_html(ct.check(mechanism))):
         assert "<script" not in shown
         page(shown)
 
 
 def test_a_structure_is_a_table() -> None:
     checked = ct.check(ct.example("slider-between-cranks"))
-    rows = [[cell.text or "" for cell in row] for row in page(notebook.check_html(checked)).iter("tr")]
-    assert rows == [list(row) for row in ct.check_rows(checked)]
+    rows = [[cell.text or "" for cell in row] for row in page(notebook.result_html(checked)).iter("tr")]
+    facts = render.fact_rows(ct.sheet_of(checked).facts, checked.mechanism.display)
+    assert rows == [list(row) for row in facts]
 
 
 def test_a_motion_is_a_drawing_over_xarrays_view() -> None:
@@ -93,7 +94,6 @@ def test_ipython_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         result: Any = {"Mechanism": ct.Mechanism, "Dataset": xr.Dataset}.get(name)
         if result is not None:
             assert (result.__module__, result.__name__) == (module, name)
-    assert type(ct.check(ct.example("crank-rocker"))).__module__ == "centrode.study.check"
     assert type(ct.equations(ct.example("crank-rocker"))).__name__ == "Equations"
 
 

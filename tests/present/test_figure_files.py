@@ -10,8 +10,9 @@ import matplotlib
 import pytest
 from matplotlib.figure import Figure
 
-from centrode import locale, present
+from centrode import locale, present, render
 from centrode.errors import InputError
+from shown_motion import motion_figures
 
 
 def lines(figure: Figure, name: str, panel: int = 0):
@@ -24,7 +25,7 @@ def test_files_repeat_their_bytes(make, tmp_path):
     for folder in ("one", "two"):
         (tmp_path / folder).mkdir()
         mechanism, dataset = make("press", samples=31)
-        figures = present.motion_figures(mechanism, dataset)
+        figures = motion_figures(mechanism, dataset)
         chosen = {name: figures[name] for name in ("mechanism", "velocities")}
         written.append(present.save_figures(chosen, tmp_path / folder))
         present.save_figures(chosen, tmp_path / folder)
@@ -43,7 +44,7 @@ def test_the_users_settings_are_left_alone_and_do_not_matter(make):
     mechanism, dataset = make("worked", samples=11)
     with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0}):
         before = matplotlib.rcParams.copy()
-        figures = present.motion_figures(mechanism, dataset)
+        figures = motion_figures(mechanism, dataset)
         assert matplotlib.rcParams.copy() == before
     assert lines(figures["angles"], "OA")[0].get_linewidth() == 1.5
 
@@ -51,33 +52,34 @@ def test_the_users_settings_are_left_alone_and_do_not_matter(make):
 def test_figures_speak_the_chosen_language(make, monkeypatch):
     monkeypatch.setattr(locale._catalogue, "gettext", lambda message: f"«{message}»", raising=False)
     mechanism, dataset = make("worked", samples=11)
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     assert figures["angles"].get_suptitle().startswith("«Angles of the links»")
 
 
 def test_tables_import_no_matplotlib():
     code = (
-        "import sys; from centrode import present; present.motion_table;"
+        "import sys; from centrode import render; render.write_tables;"
         "assert not {'matplotlib', 'pint'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_missing_matplotlib_is_told_with_its_repair(monkeypatch):
-    for name in [name for name in sys.modules if name.startswith(("matplotlib", "centrode.present."))]:
+    loaded = ("matplotlib", "centrode.present.", "centrode.render.")
+    for name in [name for name in sys.modules if name.startswith(loaded)]:
         monkeypatch.delitem(sys.modules, name)
-    for name in ("motion_figures", "save_figures"):
-        monkeypatch.delitem(present.__dict__, name, raising=False)
+    for name in ("figures_of", "figure_of", "write_pictures"):
+        monkeypatch.delitem(render.__dict__, name, raising=False)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(InputError, match=r'pip install "centrode\[figures\]"'):
-        _ = present.motion_figures
+        _ = render.figures_of
 
 
 def test_pyplot_is_never_loaded():
     """Loading it would choose a backend, which may want a display."""
     code = (
-        "import sys; from matplotlib.figure import Figure; from centrode import present;"
-        "present.motion_figures, present.save_figures({'empty': Figure()}, sys.argv[1]);"
+        "import sys; from matplotlib.figure import Figure; from centrode import present, render;"
+        "render.figures_of, present.save_figures({'empty': Figure()}, sys.argv[1]);"
         "assert 'matplotlib.pyplot' not in sys.modules"
     )
     with tempfile.TemporaryDirectory() as folder:

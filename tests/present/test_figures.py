@@ -11,6 +11,7 @@ from centrode import present
 from centrode.present import curves
 from centrode.present.style import PALETTE, pens
 from centrode.views.motion_plots import deal_to_panels
+from shown_motion import motion_figures
 
 ALWAYS = [
     "mechanism",
@@ -34,14 +35,14 @@ def legend_texts(figure: Figure) -> set[str]:
 
 
 def test_every_figure_is_there(make):
-    assert list(present.motion_figures(*make("press"))) == [*ALWAYS, "slides", "kinematic-coefficients"]
-    assert list(present.motion_figures(*make("jansen"))) == [*ALWAYS, "kinematic-coefficients"]
-    assert list(present.motion_figures(*make("five_bar"))) == ALWAYS
+    assert list(motion_figures(*make("press"))) == [*ALWAYS, "slides", "kinematic-coefficients"]
+    assert list(motion_figures(*make("jansen"))) == [*ALWAYS, "kinematic-coefficients"]
+    assert list(motion_figures(*make("five_bar"))) == ALWAYS
 
 
 def test_curves_hold_the_values_in_display_units(make):
     mechanism, dataset = make("press")
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     x = np.degrees(dataset["drive_value"].values[:, 0])
     eps = 4 * np.finfo(float).eps
     for link in ("OA", "AB", "rocker", "DH"):
@@ -61,7 +62,7 @@ def test_curves_hold_the_values_in_display_units(make):
 
 
 def test_axes_name_quantity_and_unit(make):
-    figures = present.motion_figures(*make("press"))
+    figures = motion_figures(*make("press"))
     assert figures["angles"].axes[0].get_xlabel() == r"angle $\varphi$ of link OA, deg"
     assert figures["angles"].axes[0].get_ylabel() == r"$\varphi$, deg"
     assert [axes.get_ylabel() for axes in figures["velocities"].axes] == [
@@ -80,13 +81,13 @@ def test_axes_name_quantity_and_unit(make):
 
 
 def test_links_that_cannot_turn_have_no_curve(make):
-    figures = present.motion_figures(*make("press"))
+    figures = motion_figures(*make("press"))
     assert legend_texts(figures["angles"]) == {"OA", "AB", "rocker", "DH"}
 
 
 def test_a_gap_is_not_bridged(make):
     mechanism, dataset = make("worked", locked=True)
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     known = np.isfinite(dataset["position"].sel(point="B", axis="x").values)
     assert not known.all()
     (regular,) = lines(figures["paths"], "B")
@@ -105,7 +106,7 @@ def test_a_gap_between_two_samples_parts_them(make):
     dataset = dataset.drop_dims("event").assign(
         event_value=("event", [2.0, 2.1]), event_kind=("event", np.zeros(2, dtype=np.int8))
     )
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     (line,) = lines(figures["angles"], "AC")
     before = int(np.searchsorted(dataset["time"].values, 2.0))
     assert np.flatnonzero(np.isnan(line.get_ydata())).tolist() == [before]
@@ -115,7 +116,7 @@ def test_a_gap_between_two_samples_parts_them(make):
 def test_events_are_marked_in_every_panel(make):
     mechanism, dataset = make("worked", locked=True)
     events = dataset["event_value"].values
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     for name in ALWAYS[2:]:
         for axes in figures[name].axes:
             upright = [line.get_xdata()[0] for line in axes.get_lines() if len(line.get_xdata()) == 2]
@@ -124,7 +125,7 @@ def test_events_are_marked_in_every_panel(make):
 
 def test_events_of_a_law_stand_at_the_times_it_passes_them(make):
     mechanism, dataset = make("slotted")
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     axes = figures["angles"].axes[0]
     assert axes.get_xlabel() == "time $t$, s"
     upright = [line.get_xdata()[0] for line in axes.get_lines() if len(line.get_xdata()) == 2]
@@ -137,7 +138,7 @@ def test_events_of_a_law_stand_at_the_times_it_passes_them(make):
 
 def test_names_of_any_alphabet_are_drawn(make, tmp_path):
     mechanism, dataset = make("slotted")
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     texts = {text.get_text() for text in figures["mechanism"].axes[0].texts}
     assert {"O", "A", "C", "Б’"} <= texts
     assert "кулиса" in legend_texts(figures["angles"])
@@ -147,7 +148,7 @@ def test_names_of_any_alphabet_are_drawn(make, tmp_path):
 
 def test_one_colour_everywhere(make):
     mechanism, dataset = make("worked")
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     for kept, names in (
         (mechanism.link_names, ["angles", "angular-velocities", "kinematic-coefficients", "mechanism"]),
         (mechanism.moving_points, ["paths", "velocities", "accelerations"]),
@@ -160,7 +161,7 @@ def test_one_colour_everywhere(make):
 
 
 def test_few_curves_in_one_panel(make):
-    figures = present.motion_figures(*make("jansen"))
+    figures = motion_figures(*make("jansen"))
     for axes in figures["angular-velocities"].axes:
         assert len(axes.get_lines()) <= len(PALETTE)
     names = [f"P{k}" for k in range(20)]
@@ -171,7 +172,7 @@ def test_few_curves_in_one_panel(make):
 
 
 def test_curves_that_coincide_all_show(make):
-    figure = present.motion_figures(*make("jansen"))["angular-velocities"]
+    figure = motion_figures(*make("jansen"))["angular-velocities"]
     widths = [lines(figure, name)[0].get_linewidth() for name in ("ZB", "BC", "ZC")]
     assert widths == sorted(widths, reverse=True)
     assert len(set(widths)) == 3
@@ -182,20 +183,20 @@ def test_rounding_is_not_blown_up(make):
     dataset["angular_acceleration"][:] = 1e-16 * np.sin(
         np.arange(dataset["angular_acceleration"].size)
     ).reshape(dataset["angular_acceleration"].shape)
-    low, high = present.motion_figures(mechanism, dataset)["angular-accelerations"].axes[0].get_ylim()
+    low, high = motion_figures(mechanism, dataset)["angular-accelerations"].axes[0].get_ylim()
     assert high - low > 1e-9
 
 
 def test_what_runs_to_infinity_leaves_the_rest_readable(make):
     mechanism, dataset = make("worked", locked=True)
     greatest = float(np.nanmax(np.abs(dataset["acceleration"].values)))
-    low, high = present.motion_figures(mechanism, dataset)["accelerations"].axes[0].get_ylim()
+    low, high = motion_figures(mechanism, dataset)["accelerations"].axes[0].get_ylim()
     assert high - low < greatest
 
 
 def test_instants_are_drawn_where_asked(make):
     mechanism, dataset = make("press")
-    figure = present.motion_figures(mechanism, dataset, [np.radians(99.0), np.radians(-30.0)])["mechanism"]
+    figure = motion_figures(mechanism, dataset, [np.radians(99.0), np.radians(-30.0)])["mechanism"]
     assert len(figure.axes) == 2
     for axes, degrees in zip(figure.axes, (99, -30), strict=True):
         assert f"{degrees} deg".replace("-", "−") in axes.get_title()
@@ -207,7 +208,7 @@ def test_instants_are_drawn_where_asked(make):
 
 def test_two_drives_are_drawn_over_time(make):
     mechanism, dataset = make("five_bar")
-    figures = present.motion_figures(mechanism, dataset, [0.5])
+    figures = motion_figures(mechanism, dataset, [0.5])
     assert figures["angles"].axes[0].get_xlabel() == "time $t$, s"
     np.testing.assert_array_equal(lines(figures["angles"], "AB")[0].get_xdata(), dataset["time"].values)
     assert "0.5 s" in figures["mechanism"].axes[0].get_title()
@@ -216,7 +217,7 @@ def test_two_drives_are_drawn_over_time(make):
 def test_shuffled_samples_are_drawn_in_order(make):
     mechanism, dataset = make("worked", samples=50)
     shuffled = dataset.isel(sample=np.random.default_rng(0).permutation(50))
-    first, second = (present.motion_figures(mechanism, each)["angles"] for each in (dataset, shuffled))
+    first, second = (motion_figures(mechanism, each)["angles"] for each in (dataset, shuffled))
     np.testing.assert_array_equal(lines(first, "CB")[0].get_ydata(), lines(second, "CB")[0].get_ydata())
 
 
@@ -239,7 +240,7 @@ def test_any_size(make, tmp_path, scale):
     ]
     drives = [{"link": "OA", "start": mechanism.drives[0].start, "speed": -1.0}]
     scaled = type(mechanism)(frame=frame, links=links, guides=guides, drives=drives)
-    figures = present.motion_figures(scaled, small)
+    figures = motion_figures(scaled, small)
     low, high = figures["mechanism"].axes[0].get_xlim()
     assert 1 < (high - low) / scale < 10
     present.save_figures({"mechanism": figures["mechanism"]}, tmp_path)
@@ -247,7 +248,7 @@ def test_any_size(make, tmp_path, scale):
 
 @pytest.mark.parametrize("name", ["press", "worked", "slotted", "jansen", "five_bar"])
 def test_one_sample(make, tmp_path, name):
-    figures = present.motion_figures(*make(name, samples=1))
+    figures = motion_figures(*make(name, samples=1))
     present.save_figures({kept: figures[kept] for kept in ("mechanism", "angles")}, tmp_path)
     line = next(line for line in figures["angles"].axes[0].get_lines() if line.get_label() == "OA")
     assert line.get_marker() == "o"
@@ -259,7 +260,7 @@ def test_nothing_known(make, tmp_path):
         if "sample" in dataset[variable].dims and variable != "status":
             dataset[variable] = dataset[variable] * np.nan
     dataset["status"] = (dataset["status"] * 0 + 1).astype(np.int8)
-    figures = present.motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset)
     assert "(open)" in figures["mechanism"].axes[0].get_title()
     for name in ("paths", "angles", "velocities"):
         assert "no sample has a value here" in [text.get_text() for text in figures[name].axes[0].texts]

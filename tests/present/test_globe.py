@@ -8,11 +8,11 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from centrode import present
 from centrode.errors import Status
 from centrode.model.files import parse_mechanism
 from centrode.present.sphere.globe import HIDDEN, WHOLE, draw_globe, globe_of, great_arc
 from centrode.quantities import QUANTITIES
+from shown_motion import columns_of, motion_figures
 
 TEXT = """
 title = "Crank on the sphere"
@@ -151,7 +151,7 @@ def test_a_small_linkage_fills_the_drawing():
 
 def test_figures_of_a_spherical_motion():
     mechanism, dataset = made(gap=True)
-    figures = present.motion_figures(mechanism, dataset, [0.0, 1.0])
+    figures = motion_figures(mechanism, dataset, [0.0, 1.0])
     assert list(figures) == [
         "mechanism", "paths", "joint-angles", "joint-velocities", "joint-accelerations", "angular-velocities",
         "angular-accelerations", "velocities", "accelerations", "slides", "kinematic-coefficients",
@@ -167,7 +167,7 @@ def test_figures_of_a_spherical_motion():
 
 def test_tables_have_a_column_for_each_axis():
     mechanism, dataset = made(samples=5)
-    headers, _columns = present.motion_table(dataset, mechanism.display, mechanism.moving_points)
+    headers, _columns = columns_of(dataset, mechanism.display, mechanism.moving_points)
     assert headers[:5] == [
         "time [s]", "drive_crank [deg]", "angular_velocity_crank_x [deg/s]", "angular_velocity_crank_y [deg/s]",
         "angular_velocity_crank_z [deg/s]",

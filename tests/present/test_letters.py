@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import centrode as ct
-from centrode.present import motion_figures, save_figures
+from centrode.present import save_figures
+from shown_motion import motion_figures
 
 
 def test_letters_that_the_font_lacks_are_drawn_without_a_warning(tmp_path: Path) -> None:

@@ -11,9 +11,10 @@ import pytest
 import xarray
 
 import centrode as ct
-from centrode import present
 from centrode.errors import Status
 from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset
+from centrode.views.columns import motion_table
+from shown_motion import columns_of, write_motion
 
 
 def read(path: Path) -> tuple[list[str], list[list[str]]]:
@@ -24,7 +25,7 @@ def read(path: Path) -> tuple[list[str], list[list[str]]]:
 
 def test_headers_name_quantity_owner_and_unit(make):
     mechanism, dataset = make("worked")
-    headers, _columns = present.motion_table(dataset, points=mechanism.moving_points)
+    headers, _columns = columns_of(dataset, points=mechanism.moving_points)
     assert headers[:4] == ["time [s]", "drive_OA [rad]", "angle_OA [rad]", "angle_AC [rad]"]
     for header in (
         "angular_velocity_AC [rad/s]",
@@ -42,7 +43,7 @@ def test_headers_name_quantity_owner_and_unit(make):
 
 def test_display_units_replace_metres_and_radians(make):
     mechanism, dataset = make("press")
-    headers, columns = present.motion_table(dataset, mechanism.display)
+    headers, columns = columns_of(dataset, mechanism.display)
     table = dict(zip(headers, columns, strict=True))
     assert (
         table["position_H_x [mm]"] == (dataset["position"].sel(point="H", axis="x") * 1000.0).values.tolist()
@@ -56,7 +57,7 @@ def test_display_units_replace_metres_and_radians(make):
 
 def test_coefficients_stay_per_radian(make):
     mechanism, dataset = make("press")
-    headers, columns = present.motion_table(dataset, mechanism.display)
+    headers, columns = columns_of(dataset, mechanism.display)
     table = dict(zip(headers, columns, strict=True))
     assert table["angular_velocity_coefficient_AB"] == (
         dataset["angular_velocity_coefficient"].sel(link="AB").values.tolist()
@@ -67,9 +68,9 @@ def test_coefficients_stay_per_radian(make):
 def test_csv_reads_back_bit_for_bit(make, tmp_path):
     _mechanism, dataset = make("worked", locked=True)
     path = tmp_path / "motion.csv"
-    present.write_motion_csv(dataset, path)
+    write_motion(dataset, path)
     headers, rows = read(path)
-    expected_headers, columns = present.motion_table(dataset)
+    expected_headers, columns = columns_of(dataset)
     assert headers == expected_headers
     assert len(rows) == dataset.sizes["sample"]
     for number, column in enumerate(columns):
@@ -87,7 +88,7 @@ def test_csv_reads_back_bit_for_bit(make, tmp_path):
 
 def test_status_is_a_word(make, tmp_path):
     _mechanism, dataset = make("worked", locked=True)
-    present.write_motion_csv(dataset, tmp_path / "motion.csv")
+    write_motion(dataset, tmp_path / "motion.csv")
     headers, rows = read(tmp_path / "motion.csv")
     words = [row[headers.index("status")] for row in rows]
     assert set(words) == {"ok", "open", "cut off"}
@@ -98,7 +99,7 @@ def test_line_ends_and_quotes(make, tmp_path):
     _mechanism, dataset = make("slotted")
     dataset = dataset.assign_coords(link=["OA", 'a,"b"'])
     path = tmp_path / "motion.csv"
-    present.write_motion_csv(dataset, path)
+    write_motion(dataset, path)
     assert b"\r" not in path.read_bytes()
     headers, rows = read(path)
     assert 'angle_a,"b" [rad]' in headers
@@ -109,7 +110,7 @@ def test_line_ends_and_quotes(make, tmp_path):
 def test_no_field_is_a_spreadsheet_formula(make, tmp_path):
     for name in ("press", "worked", "slotted"):
         _mechanism, dataset = make(name)
-        present.write_motion_csv(dataset, tmp_path / "motion.csv")
+        write_motion(dataset, tmp_path / "motion.csv")
         headers, rows = read(tmp_path / "motion.csv")
         assert not any(cell.startswith(("=", "@", "+")) for row in [headers, *rows] for cell in row)
 
@@ -117,7 +118,7 @@ def test_no_field_is_a_spreadsheet_formula(make, tmp_path):
 def test_a_batch_is_refused(make):
     _mechanism, dataset = make("press", samples=5)
     with pytest.raises(ValueError, match="variant"):
-        present.motion_table(xarray.concat([dataset, dataset], dim="variant", join="exact"))
+        motion_table(xarray.concat([dataset, dataset], dim="variant", join="exact"))
 
 
 def test_netcdf_reads_back_equal(make, tmp_path):
@@ -149,6 +150,6 @@ def test_netcdf_repeats_its_bytes(make, tmp_path):
 
 def test_two_drives_have_two_columns(make):
     _mechanism, dataset = make("five_bar")
-    headers, columns = present.motion_table(dataset)
+    headers, columns = columns_of(dataset)
     assert headers[:3] == ["time [s]", "drive_OA [rad]", "drive_DC [rad]"]
     assert columns[2] == dataset["drive_value"].values[:, 1].tolist()

@@ -10,8 +10,9 @@ import openpyxl
 import pytest
 
 import centrode as ct
-from centrode import present
+from centrode.present.spelled_tables import TableSpelling
 from centrode.present.workbooks import MOST_COLUMNS, MOST_ROWS, workbook_of_csv, write_workbook
+from shown_motion import columns_of, write_motion
 
 SIXTEEN_DIGITS = 5e-16 + 2.0**-53
 """Half a unit of the sixteenth digit of a number that begins with 1, and the rounding of what is read, relatively."""
@@ -25,8 +26,9 @@ def sheets(path: Path) -> dict[str, list[tuple[object, ...]]]:
 def test_every_number_of_the_table_is_on_its_sheet(make, tmp_path: Path) -> None:
     mechanism, dataset = make("worked")
     path = tmp_path / "motion.xlsx"
-    ct.write_motion_xlsx(dataset, path, mechanism.display, mechanism.moving_points)
-    headers, columns = present.motion_table(dataset, mechanism.display, mechanism.moving_points)
+    points = mechanism.moving_points
+    write_motion(dataset, path.with_suffix(".csv"), mechanism.display, points, TableSpelling(xlsx=True))
+    headers, columns = columns_of(dataset, mechanism.display, points)
     table = dict(zip(headers, columns, strict=True))
     found = sheets(path)
     assert {"angle", "velocity", "slide_acceleration", "velocity_coefficient"} <= found.keys()
@@ -48,7 +50,7 @@ def test_every_number_of_the_table_is_on_its_sheet(make, tmp_path: Path) -> None
 
 def test_samples_without_a_number_are_empty_cells(tmp_path: Path) -> None:
     dataset = ct.motion(ct.example("slider-between-cranks-locked"), 37)
-    ct.write_motion_xlsx(dataset, tmp_path / "motion.xlsx")
+    write_motion(dataset, tmp_path / "motion.csv", spelling=TableSpelling(xlsx=True))
     head, *rows = sheets(tmp_path / "motion.xlsx")["angle"]
     last = dict(zip(head, rows[18], strict=True))
     assert last["angle_CB [rad]"] is None

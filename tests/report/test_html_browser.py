@@ -14,11 +14,11 @@ from fontTools.ttLib import TTFont
 import centrode as ct
 from centrode.locale import speaking
 from centrode.render.document import blocks
+from centrode.render.document.cam_player import moving_wheel
 from centrode.render.document.chapters import document_chapter
+from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers
 from centrode.report.html.page import FONT, HERE, html_page
-from centrode.report.player_cams import moving_wheel
-from centrode.report.player_linkages import moving_of
 from centrode.views.equations import sheet
 
 from .browser import Seen, browser, frames, opened, until

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.render.document.linkage_player import moving_of
 from centrode.report.html.stage import UNIT, stage_of
-from centrode.report.player_linkages import moving_of
 
 from .made import HOSTILE, moving
 

@@ -11,10 +11,12 @@ import pytest
 
 import centrode as ct
 from centrode.errors import Status
+from centrode.kinematics.rigid_body_checks import rigid_body_checks
 from centrode.render.document.blocks import ChapterBlocks, CheckBlock, ParagraphBlock, TableBlock
-from centrode.report.chapters.linkages.tables import ROWS, WIDE, chosen_rows, identity_checks, off_rigid
 from centrode.report.document import report
 from centrode.report.study import ReportOptions, ReportStudy, moments_of, settle_options
+from centrode.views.columns import rows_shown
+from centrode.views.motion_tables import ROWS, WIDE
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 EPS = float(np.finfo(float).eps)
@@ -96,10 +98,7 @@ def test_statuses_are_told_where_not_all_is_reached() -> None:
 
 def test_rows_are_even_with_both_ends() -> None:
     for samples in (1, 2, 36, 101, 361, 362, 360, 1000):
-        mechanism = ct.example("crank-rocker")
-        one = study_of(mechanism)
-        one._made["study"] = ct.study(mechanism, samples=samples)
-        rows = chosen_rows(one)
+        rows = rows_shown(samples, ROWS)
         assert rows[0] == 0 and rows[-1] == samples - 1 and 1 <= len(rows) <= max(ROWS, 1)
         assert max(np.diff(rows), default=1) - min(np.diff(rows), default=1) <= 1
 
@@ -123,17 +122,19 @@ def test_what_stays_the_same_is_a_sentence() -> None:
 @pytest.mark.parametrize("name", ["six-bar-press", "jansen-leg", "planetary-gear-train", "kite"])
 def test_identities_notice_a_wrong_rate(name: str) -> None:
     mechanism = ct.example(name)
-    study = study_of(mechanism)
-    assert all(check.holds for check in identity_checks(study))
-    right = study.motion
+    right = ct.motion(mechanism)
+    checks = rigid_body_checks(mechanism, right)
+    assert all(one.difference <= one.bound * one.size for one in checks)
     reached = right.isel(sample=np.flatnonzero(right["status"].to_numpy() == Status.OK))
-    for order, variable in ((1, "velocity"), (2, "acceleration")):
+    assert {one.identity for one in checks} == {"velocity", "acceleration"}
+    for variable in ("velocity", "acceleration"):
         point = mechanism.moving_points[-1]
         size = float(np.nanmax(np.abs(reached[variable])))
         pushed = reached[variable].copy()
         pushed.loc[{"point": point, "axis": "x"}] += 1e-4 * size
-        off = off_rigid(mechanism, reached.assign({variable: pushed}), order)
-        assert off is not None and off > 1e-5
+        pushed_rates = reached.assign({variable: pushed})
+        wrong = {one.identity: one for one in rigid_body_checks(mechanism, pushed_rates)}[variable]  # type: ignore[index]
+        assert wrong.difference > 1e-5 * wrong.size
 
 
 def test_moments_are_exact_and_told() -> None:

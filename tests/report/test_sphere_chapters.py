@@ -12,7 +12,6 @@ import pytest
 import centrode as ct
 from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBlock, TableBlock
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.spherical_linkages import sphere_tables_chapter
 from centrode.report.document import report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from report.texts import texts_of
@@ -50,7 +49,7 @@ def half_unit(text: str) -> float:
 
 def test_the_table_is_that_of_the_closed_form() -> None:
     """cos BC = cos AB sin psi + sin AB cos psi sin beta, and psi' from its derivative (thesis, corrected)."""
-    table = tables_of(sphere_tables_chapter(study_of("spherical-crank-rocker")))[-1]
+    table = tables_of(CHAPTERS["tables"].make(study_of("spherical-crank-rocker")))[-1]
     assert len(table.rows) == 37
     rate = math.degrees(2.94)
     for beta_, _beta, _rate, psi_, speed_ in table.rows:
@@ -99,7 +98,7 @@ def test_a_wrong_motion_is_found(
 ) -> None:
     study = study_of("spherical-crank-rocker")
     study.motion[variable][...] = wrong(study.motion[variable].to_numpy())
-    holds = [one.holds for one in checks_of(sphere_tables_chapter(study))]
+    holds = [one.holds for one in checks_of(CHAPTERS["tables"].make(study))]
     assert holds[which] is False
 
 

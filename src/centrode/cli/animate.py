@@ -132,7 +132,7 @@ def _in_range(
 ) -> ct.Mechanism | ct.Cam | ct.PlateCam:
     """A linkage with the range asked for by a word."""
     if isinstance(description, ct.Mechanism):
-        return ct.with_range(description, ranged)
+        return description.with_range(ranged)
     if ranged is None:
         return description
     raise InputError("--range", _("it belongs to a linkage; a cam turns round"), _("take it out"))
@@ -171,7 +171,7 @@ def _end(description: ct.Mechanism | ct.Cam | ct.PlateCam, text: str | None, whe
         return None
     if isinstance(description, ct.Cam | ct.PlateCam):
         raise InputError(where, _("a cam is shown as a whole"), _("take it out"))
-    return ct.range_value(description, text, where)
+    return description.motion_parameter.instant.read(text, where)
 
 
 def _rows(made: ct.Animation) -> list[tuple[str, str]]:

@@ -71,10 +71,14 @@ def draw(
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
     description = ct.load(mechanism)
     announce_size(description, samples)
-    description = ct.with_range(description, ranged)
-    place = ct.initial_place(description) if instant is None else ct.range_value(description, instant, "--at")
-    first = None if start is None else ct.range_value(description, start, "--from")
-    last = None if stop is None else ct.range_value(description, stop, "--to")
+    description = description.with_range(ranged)
+    place = (
+        ct.initial_place(description)
+        if instant is None
+        else description.motion_parameter.instant.read(instant, "--at")
+    )
+    first = None if start is None else description.motion_parameter.instant.read(start, "--from")
+    last = None if stop is None else description.motion_parameter.instant.read(stop, "--to")
     with about(mechanism):
         course = ct.motion(description, samples, first, last)
         motion, sample = ct.motion_among(description, course, place)

@@ -22,12 +22,10 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.animate import animate
 from centrode.cli.cam import cam
-from centrode.cli.check import check
 from centrode.cli.draw import draw
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.report import report
-from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
@@ -41,10 +39,8 @@ from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
 
 OWN: tuple[click.Command, ...] = (
-    run,
     report,
     animate,
-    check,
     variants,
     cam,
     sweep,

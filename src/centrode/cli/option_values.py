@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-import centrode as ct
 from centrode.errors import InputError
 from centrode.locale import _
 
@@ -67,7 +66,7 @@ def read_ranges(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict
 
 def read_instant(mechanism: Mechanism, text: str, where: str) -> float:
     """A value of the drive [rad or m], or a time [s] where the drive is a law."""
-    return ct.range_value(mechanism, text, where)
+    return mechanism.motion_parameter.instant.read(text, where)
 
 
 def read_pairs_of_bodies(
@@ -86,7 +85,7 @@ def read_pairs_of_bodies(
 
 def read_instants(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[float]:
     """Values of the drive [rad or m], or times [s] where the drive is a law."""
-    return [ct.range_value(mechanism, text, where) for text in texts]
+    return [mechanism.motion_parameter.instant.read(text, where) for text in texts]
 
 
 def read_varied(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, tuple[str, str] | None]:

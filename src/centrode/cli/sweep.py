@@ -116,7 +116,7 @@ def _damage_told() -> Iterator[None]:
 def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
     with about(study), Progress() as progress:
         start, stop = (
-            None if end is None else ct.range_value(asked.mechanism, end, key)
+            None if end is None else asked.mechanism.motion_parameter.instant.read(end, key)
             for key, end in (("from", asked.start), ("to", asked.stop))
         )
 

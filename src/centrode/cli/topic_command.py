@@ -28,6 +28,7 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, chosen_language, mark, speaking
+from centrode.topics.sheets import sheet_with_parts
 from centrode.topics.topic import (
     ChoiceOption,
     Command,
@@ -49,7 +50,7 @@ force_option = click.option("--force", is_flag=True, help=mark("Replace FILE whe
 def topic_command(topic: Topic, command: Command) -> click.Command:
     """The command of a topic: `centrode TOPIC MECHANISM [options] [--out DIR]`."""
 
-    def run(mechanism: str, out: Path | None, **given: Any) -> None:
+    def run(mechanism: str, out: Path | None = None, **given: Any) -> None:
         description = ct.load(mechanism)
         samples = given.pop("samples") if command.samples else None
         if command.samples and command.extent is None:
@@ -66,7 +67,12 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
                 _written_page(topic, command, mechanism, description, arguments, out, written["force"])
             )
             return
-        if command.kinds:
+        files = ""
+        if command.prints_only:
+            with about(mechanism), Progress() as progress:
+                result = _result(topic, command, description, arguments, progress)
+                sheet = sheet_with_parts(topic, result)
+        elif command.kinds:
             result, sheet, files = _beside_file(
                 topic, command, mechanism, description, arguments, out, written["force"]
             )
@@ -93,6 +99,8 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
     yield from parameters_of([mechanism_argument])
     for option in command.options:
         yield from option_parameters(option)
+    if command.prints_only:
+        return
     if command.kinds or command.pages:
         file_option = click.option(
             "--out",
@@ -157,10 +165,10 @@ def option_name(name: str) -> str:
 
 def _in_range(mechanism: Mechanism, given: dict[str, Any]) -> Mechanism:
     """The mechanism in the range of `--range`; `--from` and `--to` are read into SI."""
-    mechanism = ct.with_range(mechanism, given.pop("ranged", None))
+    mechanism = mechanism.with_range(given.pop("ranged", None))
     for name, where in (("start", "--from"), ("stop", "--to")):
         if isinstance(given.get(name), str):
-            given[name] = ct.range_value(mechanism, given[name], where)
+            given[name] = mechanism.motion_parameter.instant.read(given[name], where)
     return mechanism
 
 
@@ -183,7 +191,7 @@ def _check_instants(
     if other is not None:
         raise InputError(other, _("instants are asked for with --at"), _("take one of the two out"))
     for text in places:
-        ct.range_value(mechanism, text, "--at")
+        mechanism.motion_parameter.instant.read(text, "--at")
 
 
 def option_arguments(command: Command, mechanism: Any, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -231,13 +239,13 @@ def _beside_folder(
             if command.complete:
                 arguments = arguments | {command.complete: False}
             result = _result(topic, command, mechanism, arguments, progress)
-            return result, topic.view(result), ""
+            return result, sheet_with_parts(topic, result), ""
     # a folder that cannot be written is refused before anything is computed
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         with about(name):
             result = _result(topic, command, mechanism, arguments, progress)
-        sheet = topic.view(result)
+        sheet = sheet_with_parts(topic, result)
         figures = command.pictures and not written["no_figures"]
         write_sheet(sheet, draft, mechanism.display, progress, figures=figures, dark=written["dark"])
         if command.summary and sheet.scalars:
@@ -265,7 +273,7 @@ def _beside_file(
     with about(name), Progress() as progress:
         kind = None if out is None else _kind(out, command.kinds)
         result = _result(topic, command, mechanism, arguments, progress)
-        sheet = topic.view(result)
+        sheet = sheet_with_parts(topic, result)
         if kind is None or out is None:
             return result, sheet, ""
         known = tuple(_kinds_of(sheet))
@@ -275,9 +283,9 @@ def _beside_file(
         english = sheet
         if chosen_language() != "en":
             with speaking("en"):  # what files hold is English
-                english = topic.view(_result(topic, command, mechanism, arguments, progress))
+                english = sheet_with_parts(topic, _result(topic, command, mechanism, arguments, progress))
     with output.output_table(out, force=force) as draft:
-        if kind == "json":
+        if kind == "json" and english.record is not None:
             render.write_record(english.record, draft)
         elif kind == "csv":
             (table,) = english.tables.values()

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from centrode.dynamics.link_motions import LinkMotion, motions_of_links
 from centrode.dynamics.reduction import reduce
 from centrode.kinematics.motion import motion
+from centrode.kinematics.several_inputs.limits import End, limits_met
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,6 +58,7 @@ class ReductionResults:
         way, else over time, by the trapezoidal rule
     instants : dataset of `reduce` at the instants; None without any, and with several drives
     links : in the plane, motion of every link with mass at each of the instants
+    limits : what bounds the motion where samples are not reached; none where all are
     """
 
     mechanism: Mechanism
@@ -64,11 +66,7 @@ class ReductionResults:
     extremes: tuple[PartExtremes, ...]
     instants: xr.Dataset | None
     links: tuple[tuple[LinkMotion, ...], ...]
-
-    @property
-    def status(self) -> xr.DataArray:
-        """(sample) what each sample is worth."""
-        return self.reduction["status"]
+    limits: tuple[End, ...]
 
 
 def reduction_results(
@@ -110,8 +108,9 @@ def reduction_results(
 
 
 def results_of_reduction(mechanism: Mechanism, reduction: xr.Dataset) -> ReductionResults:
-    """A dataset of `reduce` with the extremes of each part."""
-    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), None, ())
+    """A dataset of `reduce` with the extremes of each part, and with the limits where it has some."""
+    bounds = limits_met(mechanism, reduction["status"].to_numpy())
+    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), None, (), bounds)
 
 
 def _extremes(reduction: xr.Dataset) -> Iterator[PartExtremes]:

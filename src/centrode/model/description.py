@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, model_validator
 
@@ -101,6 +101,16 @@ class Description(DescriptionPart):
     def motion_parameter(self) -> MotionParameter:
         """What a motion is a function of: the value of the one drive, or time; its unit and how instants are stated."""
         return motion_parameter_of(self.drives, self.space)
+
+    def with_range(self, word: str | None) -> Self:
+        """The mechanism whose study has a range by a word ("reachable") in place of its own; itself without a word.
+
+        Raises InputError for another word.
+        """
+        if word is None:
+            return self
+        study = Study(samples=self.study.samples, instants=self.study.instants, range=word)
+        return self.model_copy(update={"study": study})
 
     @property
     def link_names(self) -> tuple[str, ...]:

@@ -13,26 +13,17 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import (
-        check_html,
-        equations_markdown,
-        mechanism_html,
-        motion_html,
-        result_html,
-    )
+    from centrode.notebook.display import equations_markdown, mechanism_html, motion_html, result_html
 
-__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
+__all__ = ["equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
 
 __getattr__, __dir__, _names = lazy_loader.attach(
     __name__,
-    submod_attrs={
-        "display": ["check_html", "equations_markdown", "mechanism_html", "motion_html", "result_html"]
-    },
+    submod_attrs={"display": ["equations_markdown", "mechanism_html", "motion_html", "result_html"]},
 )
 
 SHOWN = (
     ("text/html", "centrode.model.mechanism", "Mechanism", "mechanism_html"),
-    ("text/html", "centrode.study.check", "MechanismCheck", "check_html"),
     ("text/html", "xarray.core.dataset", "Dataset", "motion_html"),
     ("text/html", "centrode.topics.presentation", "Result", "result_html"),
     ("text/markdown", "centrode.equations.derivation", "Equations", "equations_markdown"),

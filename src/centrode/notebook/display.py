@@ -11,10 +11,8 @@ from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.present.displayed_units import shown_as
-from centrode.present.figures import read_scene
-from centrode.present.pictures import mechanism_figure
-from centrode.present.style import house_style
-from centrode.study.summary import check_rows
+from centrode.sheets.linkages import MechanismPicture
+from centrode.sheets.texts import Sentence
 from centrode.topics.presentation import display_of, is_result, page, sheet_of
 
 if TYPE_CHECKING:
@@ -22,9 +20,8 @@ if TYPE_CHECKING:
 
     from centrode.equations.derivation import Equations
     from centrode.model.mechanism import Mechanism
-    from centrode.study.check import MechanismCheck
 
-__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "result_html"]
+__all__ = ["equations_markdown", "mechanism_html", "motion_html", "result_html"]
 
 SAMPLES = 73
 
@@ -38,12 +35,6 @@ def mechanism_html(mechanism: Mechanism) -> str:
     rows = [(name, *_link(mechanism, name)) for name in mechanism.links]
     heads = (_("link"), _("points"), _("length"))
     return drawing + render.rows_html(heads, rows)
-
-
-def check_html(checked: MechanismCheck) -> str:
-    """A structure as a table: mobility, redundant constraints, loops, groups, initial position."""
-    title = html.escape(_(checked.title))
-    return (f"<h4>{title}</h4>" if title else "") + render.rows_html((), check_rows(checked))
 
 
 def result_html(result: Any) -> str:
@@ -91,8 +82,8 @@ def _is_motion(dataset: xarray.Dataset) -> bool:
 
 def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:
     """The mechanism over fading pictures of its motion, as SVG within a page."""
-    with house_style():
-        return render.figure_html(mechanism_figure(read_scene(mechanism, dataset), dataset, []))
+    picture = MechanismPicture(Sentence("Mechanism"), mechanism, dataset)
+    return render.figure_html(render.figure_of(picture, mechanism.display))
 
 
 def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:

@@ -1,19 +1,14 @@
 # The names of presentations by subject, for type checkers and for lazy_loader, which imports by it.
 
 # Tables
-from .tables import motion_table as motion_table
-from .tables import write_motion_csv as write_motion_csv
 from .workbooks import workbook_of_csv as workbook_of_csv
-from .workbooks import write_motion_xlsx as write_motion_xlsx
 from .spelled_tables import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling
-from .tables import write_coefficients_csv as write_coefficients_csv
 from .tables import sweep_csv as sweep_csv
 
 # Figures of motions
 from .figure_files import save_figures as save_figures
 from .style import darkened as darkened
-from .figures import motion_figures as motion_figures
 from .linkage_scene import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
 

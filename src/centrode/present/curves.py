@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -17,21 +17,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 from numpy.typing import NDArray
 
-from centrode.errors import Status
 from centrode.locale import _
-from centrode.present.displayed_units import formula, label_with_unit, plain, shown_as
+from centrode.present.displayed_units import plain
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, Pen
-from centrode.quantities import QUANTITIES
-from centrode.views.abscissa import CHANGE_POINT, LIMIT, events, in_time, limits_between, passings, within
-from centrode.views.motion_plots import MAGNITUDE, component, deal_to_panels, great_value, turning_links
-
-if TYPE_CHECKING:
-    import xarray
-
-    from centrode.model.mechanism import Mechanism
-    from centrode.model.motion_parameter import DriveCoordinate
-
-# What curves are drawn over: the drive's value or time, the gaps in it, the events along it, and its ticks.
+from centrode.sheets.plots import EventKind
 
 Array = NDArray[np.float64]
 STEPS = {
@@ -62,7 +51,7 @@ class DrawnAbscissa:
     order: NDArray[np.intp]
     breaks: NDArray[np.intp]
     cut: NDArray[np.bool_]
-    marks: tuple[tuple[float, int], ...]
+    marks: tuple[tuple[float, EventKind], ...]
     label: str
     unit: str
 
@@ -76,54 +65,6 @@ class DrawnAbscissa:
     def drawn(self) -> Array:
         """The values with the gaps of `parts` put in."""
         return np.insert(self.values, self.breaks, np.nan)
-
-
-def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> DrawnAbscissa:
-    """The drive's value if one drive turns or moves uniformly, else time."""
-    return over_drive(mechanism, dataset) if mechanism.motion_parameter.is_uniform else over_time(dataset)
-
-
-def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> DrawnAbscissa:
-    """The value of the only drive, in the unit of the display."""
-    coordinate = mechanism.motion_parameter.drives[0]
-    factor, unit = shown_as(coordinate.unit, mechanism.display)
-    text = text_of_drive(coordinate)
-    values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
-    marks = within(values, events(dataset))
-    return DrawnAbscissa(
-        factor * values,
-        order,
-        limits_between(dataset, values),
-        dataset["status"].to_numpy() == Status.CUT_OFF,
-        tuple((factor * value, kind) for value, kind in marks),
-        label_with_unit(text, unit),
-        unit,
-    )
-
-
-def text_of_drive(coordinate: DriveCoordinate) -> str:
-    """What a drive gives, with its symbol."""
-    text = {
-        "angle": _("angle {symbol} of link {name}"),
-        "displacement": _("displacement {symbol} along guide {name}"),
-        "distance": _("distance {symbol} of {name}"),
-    }[coordinate.driven]
-    return text.format(symbol=formula(coordinate.symbol), name=plain(coordinate.name))
-
-
-def over_time(dataset: xarray.Dataset) -> DrawnAbscissa:
-    """Time; events stand where the only drive passes them, with several drives at their own times."""
-    times, order = in_time(dataset, dataset["time"].to_numpy())
-    if dataset.sizes["drive"] == 1:
-        values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
-        breaks = limits_between(dataset, values)
-        marks = [(time, kind) for value, kind in events(dataset) for time in passings(times, values, value)]
-    else:
-        breaks, marks = limits_between(dataset, times), events(dataset)
-    cut = dataset["status"].to_numpy() == Status.CUT_OFF
-    quantity = QUANTITIES["time"]
-    label = label_with_unit(f"{quantity.title} {formula(quantity.symbol)}", quantity.unit)
-    return DrawnAbscissa(times, order, breaks, cut, tuple(within(times, marks)), label, quantity.unit)
 
 
 def angle_ticks(axis: Axis, low: float, high: float, unit: str, most: int) -> None:
@@ -155,7 +96,7 @@ ROUNDING = 1e-9
 PANEL_INCHES = 2.35
 ENTRIES_PER_INCH = 4.9
 CUT_DASHES = (0, (3, 2))
-MARK_DASHES = {LIMIT: (0, (6, 2, 1.5, 2)), CHANGE_POINT: (0, (1, 1.5))}
+MARK_DASHES = {EventKind.LIMIT: (0, (6, 2, 1.5, 2)), EventKind.CHANGE_POINT: (0, (1, 1.5))}
 WILD = 8.0  # a curve that runs to infinity at a limit is shown up to this many times its upper decile
 
 
@@ -302,7 +243,7 @@ def set_range(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> None:
     heights = heights[np.isfinite(heights)]
     if not heights.size:
         return
-    low, high = readable(heights, any(kind == LIMIT for _value, kind in abscissa.marks))
+    low, high = readable(heights, any(kind is EventKind.LIMIT for _value, kind in abscissa.marks))
     greatest = max(abs(low), abs(high))
     if greatest <= ROUNDING * panel.scale:
         low, high = -panel.scale or -1.0, panel.scale or 1.0
@@ -338,10 +279,11 @@ def say_nothing_known(axes: Axes) -> None:
 def draw_key(abscissa: DrawnAbscissa, panel: Panel) -> list[tuple[Artist, str]]:
     """Entries of the legend for what is not a curve of its own."""
     kinds = {kind for _value, kind in abscissa.marks}
-    words = {LIMIT: _("limit"), CHANGE_POINT: _("change point")}
+    words = {EventKind.LIMIT: _("limit"), EventKind.CHANGE_POINT: _("change point")}
     key: list[tuple[Artist, str]] = [
         (Line2D([], [], color=INK, linewidth=0.9, linestyle=MARK_DASHES[kind]), words[kind])
-        for kind in sorted(kinds)
+        for kind in EventKind
+        if kind in kinds
     ]
     if any(np.isfinite(abscissa.parts(curve)[1]).any() for curve in panel.curves.values()):
         key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT_DASHES), _("cut off")))
@@ -377,98 +319,3 @@ def legend_width(names: Sequence[str], inches: float = PANEL_INCHES) -> float:
     """Room [inch] for a legend of these names that may be this high, the events included."""
     texts = [*names, _("limit"), _("change point"), _("cut off")]
     return legend_columns(len(texts), inches) * (0.65 + 0.085 * max(map(len, texts)))
-
-
-# From a motion to the panels of its figures: which curves stand together, with which texts.
-
-Rows = list[list[Panel]]
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A motion and what its figures share: a pen for each link, point and guide, and the abscissa."""
-
-    mechanism: Mechanism
-    dataset: xarray.Dataset
-    abscissa: DrawnAbscissa
-    pens: Mapping[str, Mapping[str, Pen]]
-
-    @property
-    def axes(self) -> int:
-        """Number of components of a place."""
-        return int(self.dataset.sizes["axis"])
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Their names."""
-        return tuple(self.dataset["axis"].to_numpy().tolist())
-
-
-def of_links(motion: Motion, variable: str) -> Rows:
-    """One panel below another, with as many links each as can be told apart; magnitudes of vectors."""
-    part = MAGNITUDE if "axis" in motion.dataset[variable].dims else ""
-    groups = deal_to_panels(turning_links(motion.mechanism))
-    return [[panel(motion, variable, "link", names, part)] for names in groups]
-
-
-def of_joints(motion: Motion, variable: str) -> Rows:
-    """Links whose angle is measured from a reference arc."""
-    groups = deal_to_panels(motion.dataset["joint"].to_numpy().tolist())
-    return [[panel(motion, variable, "joint", names)] for names in groups]
-
-
-def of_points(motion: Motion, variable: str) -> Rows:
-    """Components and magnitude below each other; further points in further columns."""
-    groups = deal_to_panels(motion.pens["point"])
-    parts = (*motion.components, MAGNITUDE)
-    return [
-        [panel(motion, variable, "point", names, part, part == "x") for names in groups] for part in parts
-    ]
-
-
-def of_guides(motion: Motion) -> Rows:
-    """Displacement, velocity and acceleration along the guides below each other."""
-    groups = deal_to_panels(motion.pens["guide"])
-    variables = ("slide", "slide_velocity", "slide_acceleration")
-    return [
-        [panel(motion, name, "guide", names, legend=name == "slide") for names in groups]
-        for name in variables
-    ]
-
-
-def of_coefficients(motion: Motion) -> Rows:
-    """Velocity coefficients at the left, acceleration coefficients at the right: links, points, guides."""
-    points = deal_to_panels(motion.pens["point"])
-    turning = deal_to_panels(turning_links(motion.mechanism))
-    if motion.axes > 2:
-        joints = deal_to_panels(motion.dataset["joint"].to_numpy().tolist())
-        first = [both(motion, "joint_", "joint", names) for names in joints]
-    else:
-        first = [both(motion, "angular_", "link", names) for names in turning]
-    rows = [
-        *first,
-        *(both(motion, "", "point", names, part) for part in motion.components for names in points),
-        *(both(motion, "slide_", "guide", names) for names in deal_to_panels(motion.pens["guide"])),
-    ]
-    return [row for row in rows if row[0].curves]
-
-
-def both(motion: Motion, prefix: str, dim: str, names: Sequence[str], part: str = "") -> list[Panel]:
-    """A panel of velocity coefficients and one of acceleration coefficients, with one legend."""
-    return [
-        panel(motion, f"{prefix}velocity_coefficient", dim, names, part, legend=False),
-        panel(motion, f"{prefix}acceleration_coefficient", dim, names, part),
-    ]
-
-
-def panel(
-    motion: Motion, variable: str, dim: str, names: Iterable[str], part: str = "", legend: bool = True
-) -> Panel:
-    """Curves of one variable along `dim` ("link", "point" or "guide"), of one component or the magnitude."""
-    values = motion.dataset[variable]
-    unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
-    factor, shown = shown_as(unit, motion.mechanism.display)
-    curves = {name: factor * component(values.sel({dim: name}), part) for name in names}
-    text = formula(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "")
-    scale = factor * great_value(motion.dataset, variable)
-    return Panel(label_with_unit(text, shown), shown, curves, motion.pens[dim], scale, legend)

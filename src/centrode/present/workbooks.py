@@ -14,14 +14,10 @@ import xlsxwriter
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.present.tables import motion_table
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    import xarray
     from xlsxwriter.worksheet import Worksheet
-
-    from centrode.model.mechanism import Display
 
 Column: TypeAlias = Sequence[float | str] | Sequence[float] | Sequence[str]
 
@@ -40,21 +36,6 @@ CREATED = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
 NONE = "table"
 """The sheet of what is of no known quantity."""
 WIDTH = 14
-
-
-def write_motion_xlsx(
-    dataset: xarray.Dataset,
-    path: str | Path,
-    display: Display | None = None,
-    points: Sequence[str] | None = None,
-) -> None:
-    """Write a motion's table as a workbook with a sheet for each quantity.
-
-    Parameters are those of `motion_table`. Numbers have 16 digits; one that does not exist is an empty cell. Raises
-    InputError for more rows or columns than a sheet holds. Needs the extra `tables`.
-    """
-    headers, columns = motion_table(dataset, display, points)
-    write_workbook(path, headers, columns)
 
 
 def workbook_of_csv(source: Path, path: Path) -> None:

@@ -72,12 +72,16 @@ def write_table(table: Table, path: Path, display: Display, spelling: TableSpell
         for first in range(0, len(table.columns[0].values), BLOCK):
             fields = [_fields(column, slice(first, first + BLOCK), words, mark) for column in table.columns]
             writer.writerows(zip(*fields, strict=True))
-    spelling.write_workbook(
-        path.with_suffix(".xlsx"), headers, lambda: [_cells(column, words) for column in table.columns]
-    )
+    spelling.write_workbook(path.with_suffix(".xlsx"), headers, lambda: shown_columns(table, display))
 
 
-def header(column: Column, display: Display) -> str:
+def shown_columns(table: Table, display: Display | None) -> list[list[float] | list[str]]:
+    """The columns of a table: numbers in the units of the display, in SI without one, and texts."""
+    words = PlainSpelling(display)
+    return [_cells(column, words) for column in table.columns]
+
+
+def header(column: Column, display: Display | None) -> str:
     """Name of a column with the unit it is shown in: "velocity_B_x [mm/s]"."""
     unit = _shown(column, display)[1]
     return f"{column.name} [{unit}]" if unit not in ("", "1") else column.name

@@ -15,11 +15,11 @@ from centrode.present.diagram_drawing import arrow, flat
 from centrode.present.displayed_units import shown_as
 from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Array, Page, PageView, new_page
-from centrode.present.pictures import caption
 from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.render.force_groups import draw_group
 from centrode.render.force_signs import force_name
 from centrode.render.levers import lever_column
+from centrode.render.linkages import caption
 from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
 from centrode.render.spelling import DrawingSpelling
 from centrode.sheets.force_pages import GroupPage

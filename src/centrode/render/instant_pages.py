@@ -21,12 +21,12 @@ from centrode.present.displayed_units import plain, shown_as
 from centrode.present.drawing import draw_drive, draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Array, Page, PageView, new_page
-from centrode.present.pictures import caption
 from centrode.present.scene import LinkageScene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.present.tags import lines
 from centrode.quantities import typeset_unit
+from centrode.render.linkages import caption
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:

@@ -13,10 +13,10 @@ from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset
 from centrode.present.displayed_units import shown_as
 from centrode.present.page import Page, PageView, new_page
-from centrode.present.pictures import caption
 from centrode.present.scene import corners
 from centrode.present.style import INK, pens
 from centrode.render.force_signs import force_arrows, moment_arc
+from centrode.render.linkages import caption
 from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
 from centrode.render.spelling import DrawingSpelling
 

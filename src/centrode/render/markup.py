@@ -10,7 +10,8 @@ from centrode.locale import _
 from centrode.render.latex import LatexSpelling, aligned_relations, escape, linear_system
 from centrode.render.spelling import PlainSpelling
 from centrode.render.symbolic import spell_symbolic
-from centrode.render.terminal import sheet_text, symbol_texts, table_cells
+from centrode.render.terminal import notes_of, sheet_text, symbol_texts, table_cells
+from centrode.sheets.linkages import MotionPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -107,6 +108,7 @@ class MarkupPage(PlainSpelling):
                 yield from map(self._block, block.blocks)
             else:
                 yield self._block(block)
+        yield from map(self.paragraph, notes_of(sheet, self))
 
     def _facts(self, facts: Sequence[Fact]) -> str:
         return self.table((), [(self.text(fact.label), self.text(fact.value)) for fact in facts])
@@ -136,7 +138,7 @@ class MarkupPage(PlainSpelling):
                 return self.displayed(linear_system(entries, *sides))
             case SymbolList(symbols):
                 return self.table((_("symbol"), _("value"), _("meaning")), self._symbols(symbols))
-            case Illustration() | Check():
+            case Illustration() | Check() | MotionPlayer():
                 return ""
             case _:
                 assert_never(block)

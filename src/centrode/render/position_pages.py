@@ -17,12 +17,12 @@ from centrode.present.displayed_units import plain, shown_as
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Page, PageView, new_page
-from centrode.present.pictures import instant_text
 from centrode.present.scene import LinkageScene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.spelled_figures import AS_WRITTEN
 from centrode.present.style import INK, MUTED, pens
 from centrode.present.tags import lines
+from centrode.render.linkages import instant_text
 from centrode.render.spelling import FigureSpelling
 
 if TYPE_CHECKING:

@@ -17,7 +17,6 @@ from centrode.present.curves import write_title
 from centrode.present.displayed_units import plain
 from centrode.present.drawing import draw_mechanism
 from centrode.present.linkage_scene import scene_of
-from centrode.present.pictures import caption, initial_sample, label_lengths
 from centrode.present.scene import Array
 from centrode.present.scene import LinkageScene as Sheet
 from centrode.present.sphere.globe import (
@@ -33,6 +32,7 @@ from centrode.present.sphere.globe import (
 from centrode.present.style import INK, MUTED, pens
 from centrode.present.tags import Tag, lines, write_tags
 from centrode.present.window import carried_by, segments_of, widen, within
+from centrode.render.linkages import caption, initial_sample, label_lengths
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.scenes import ChordKind, CurveKind, LineKind, Mark, MarkKind
 

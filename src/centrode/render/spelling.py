@@ -24,6 +24,7 @@ from centrode.sheets.texts import (
     Part,
     Place,
     Sentence,
+    Slanted,
     Symbol,
     Text,
     Title,
@@ -57,7 +58,7 @@ class Spelling(ABC):
         if isinstance(text, SymbolicLeaf):
             return self.symbolic(text)
         match text:
-            case Name(what):
+            case Name(what) | Slanted(what):
                 return self.name(what)
             case Title(what):
                 return self.name(_(what))

@@ -6,10 +6,12 @@ import textwrap
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
+from centrode.locale import _
 from centrode.quantities import typeset_unit
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
 from centrode.render.plain_table import WIDTH, aligned, listing
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.linkages import MotionPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -49,18 +51,27 @@ def plain_text(text: Text, display: Display) -> str:
 
 
 def sheet_text(sheet: Sheet, display: Display) -> str:
-    """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts."""
+    """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts.
+
+    Notes stand right below the last part.
+    """
     spelling = PlainSpelling(display)
     heading = spelling.text(sheet.heading)
     parts = [heading] if heading else []
     parts += [facts_text(sheet.facts, display)] if sheet.facts else []
     for block in sheet.printed:
-        text = _section(block, spelling) if isinstance(block, Section) else block_text(block, spelling)
+        text = _section(block, spelling) if isinstance(block, Section) else _block(block, spelling)
         if isinstance(block, Items) and parts:
             parts[-1] += "\n" + text  # what is above them is their heading
         else:
             parts.append(text)
-    return "\n\n".join(parts)
+    notes = notes_of(sheet, spelling)
+    return "\n".join(["\n\n".join(parts), *notes] if parts else notes)
+
+
+def notes_of(sheet: Sheet, spelling: PlainSpelling) -> list[str]:
+    """What a reader should know besides, a line each."""
+    return [_("note: {note}").format(note=spelling.text(note)) for note in sheet.notes]
 
 
 def _section(section: Section, spelling: PlainSpelling) -> str:
@@ -70,14 +81,14 @@ def _section(section: Section, spelling: PlainSpelling) -> str:
 
 def _part(block: Block, spelling: PlainSpelling) -> str:
     """A block below the title of a section: sentences and formulas are indented."""
-    text = block_text(block, spelling)
+    text = _block(block, spelling)
     if not isinstance(block, Paragraph | Formula | LinearEquations | SymbolList):
         return text
     text = textwrap.indent(text, "  ")
     return f"{text}\n" if isinstance(block, LinearEquations) else text
 
 
-def block_text(block: Block, spelling: PlainSpelling) -> str:
+def _block(block: Block, spelling: PlainSpelling) -> str:
     """A block as lines; pictures and checks belong to documents."""
     match block:
         case FactTable(facts):
@@ -98,7 +109,7 @@ def block_text(block: Block, spelling: PlainSpelling) -> str:
             return "\n".join(system_lines(entries, *sides))
         case SymbolList(symbols):
             return "\n".join(symbol_lines([symbol_texts(one, spelling) for one in symbols]))
-        case Illustration() | Check():
+        case Illustration() | Check() | MotionPlayer():
             return ""
         case _:
             assert_never(block)

@@ -22,9 +22,9 @@ from centrode.present.diagram_drawing import (
 )
 from centrode.present.displayed_units import shown_as
 from centrode.present.page import Array, Page, PageView, new_page
-from centrode.present.pictures import caption
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.quantities import typeset_unit
+from centrode.render.linkages import caption
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar, cast
 
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.motion_results import MotionResults, instants_of, study
 from centrode.equations.derivation import Equations, equations
-from centrode.errors import InputError, Status
-from centrode.kinematics.motion import initial_place, motion
+from centrode.errors import CentrodeError, InputError, Status
+from centrode.kinematics.check import MechanismCheck, check
+from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.motion_parameter import ANGLE
 from centrode.model.reading import nearest, value_text
 from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
-from centrode.study.check import MechanismCheck, check
-from centrode.study.run import StudyResults, study
 
 # What a report is to hold: the wishes of the description's [report], and those of the caller, which go before
 # them.
@@ -192,9 +192,14 @@ class ReportStudy:
         return self.once("check", lambda: check(self.mechanism))
 
     @property
-    def study(self) -> StudyResults:
+    def study(self) -> MotionResults:
         """Everything that `run` computes."""
         return self.once("study", lambda: study(self.mechanism))
+
+    @property
+    def results(self) -> Mapping[str, Any]:
+        """Results of topics by their names: that of a run, and its parts."""
+        return {"run": self.study, **self.study.parts}
 
     @property
     def motion(self) -> xr.Dataset:
@@ -209,7 +214,13 @@ class ReportStudy:
     @property
     def points(self) -> tuple[str, ...]:
         """Points whose velocities and paths are told: those asked for, else those on guides of the frame."""
-        return self.equations.points if self.wishes.points is None else self.wishes.points
+        if self.wishes.points is not None:
+            return self.wishes.points
+        try:
+            return self.equations.points
+        except CentrodeError:  # there are none in symbols
+            guides = self.mechanism.guides
+            return tuple(dict.fromkeys(guide.point for guide in guides if guide.on == FRAME))
 
 
 class _Failed:
@@ -263,17 +274,7 @@ def moments_of(study: ReportStudy) -> tuple[Moment, ...]:
 
 def _moments(study: ReportStudy) -> list[Moment]:
     mechanism = study.mechanism
-    wished = dict.fromkeys(study.wishes.instants)
-    parameter = mechanism.motion_parameter
-    if not wished:
-        places = [initial_place(mechanism)]
-    elif not parameter.states_instants:
-        # a law may pass a value more than once, so the nearest samples have to do
-        values = parameter.values(study.motion)
-        nearest = dict.fromkeys(int(np.argmin(np.abs(values - value))) for value in wished)
-        places = [float(study.motion["time"][sample]) for sample in nearest]
-    else:
-        places = list(wished)
+    places = instants_of(mechanism, study.motion, study.wishes.instants)
     data = motion(mechanism, at=places)
     return [Moment(data, k, at, _title(study, data, k)) for k, at in enumerate(places)]
 

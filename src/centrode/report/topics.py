@@ -46,12 +46,13 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
         if any(chapter.name in (study.wishes.chapters or ()) for chapter in document.chapters):
             arguments |= document.chosen_arguments
         if document.instants:
+            wished = study.is_cam or document.wished
             arguments["instants"] = (
-                study.wishes.instants if study.is_cam else tuple(moment.at for moment in moments_of(study))
+                study.wishes.instants if wished else tuple(moment.at for moment in moments_of(study))
             )
         if document.points:
             arguments["points"] = study.points
-        done = None if document.add_instants is None else study.study.results.get(topic.name)
+        done = None if document.add_instants is None else study.results.get(topic.name)
         if document.add_instants is not None and done is not None:
             return cast("Sheet", topic.view(document.add_instants(done, **arguments)))
         return cast("Sheet", topic.view(topic.compute(study.description, **arguments)))

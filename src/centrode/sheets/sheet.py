@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
 from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
@@ -37,6 +39,8 @@ Picture: TypeAlias = (
     | PositionsPage
     | InstantPage
     | VectorDiagramPage
+    | MechanismPicture
+    | PathsPicture
     | OutlineDrawing
     | PathDrawing
     | WheelPositions
@@ -124,9 +128,10 @@ class Table:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Sentences of a document."""
+    """Sentences of a document; of a `clause` it makes a sentence, with a capital letter and a full stop."""
 
     text: Text
+    clause: bool = False
 
 
 @dataclass(frozen=True)
@@ -232,6 +237,7 @@ Block: TypeAlias = (
     | Listing
     | LinearEquations
     | SymbolList
+    | MotionPlayer
 )
 
 
@@ -288,6 +294,8 @@ class Sheet:
     files : name of a further file -> its text
     record : the result as JSON holds it, in SI and in English; None where a result has no such form
     failure : what ends a command after everything is shown and written; None if nothing does
+    notes : what a reader should know besides; a terminal prints them behind all
+    brief : what a result that has this one as a part shows of it among its own facts; without it, all its facts below
     outlines : name of a file without its ending -> outlines, as SVG and DXF
     """
 
@@ -303,6 +311,30 @@ class Sheet:
     failure: Failure | None = None
     heading: Text = NOTHING
     outlines: Mapping[str, OutlineSet] = field(default_factory=dict)
+    notes: tuple[Text, ...] = ()
+    brief: tuple[Fact, ...] = ()
+
+    def with_parts(self, parts: Iterable[Sheet]) -> Sheet:
+        """A sheet with what the sheets of the parts of its result have for a terminal and for files.
+
+        Chapters are its own. The parts of a part are in its sheet already. What a part falls short of is no failure of
+        the whole.
+        """
+        parts = tuple(parts)
+        sheets = (self, *parts)
+        below = (FactTable(part.facts) for part in parts if part.facts and not part.brief)
+        return replace(
+            self,
+            facts=(*self.facts, *(fact for part in parts for fact in part.brief)),
+            scalars={name: scalar for sheet in sheets for name, scalar in sheet.scalars.items()},
+            tables=_merge(sheet.tables for sheet in sheets),
+            datasets=_merge(sheet.datasets for sheet in sheets),
+            pictures=_merge(sheet.pictures for sheet in sheets),
+            printed=(*self.printed, *below),
+            files=_merge(sheet.files for sheet in sheets),
+            outlines=_merge(sheet.outlines for sheet in sheets),
+            notes=tuple(note for sheet in sheets for note in sheet.notes),
+        )
 
 
 class Deferred(Mapping[str, Part]):
@@ -327,6 +359,11 @@ class Deferred(Mapping[str, Part]):
 
     def __contains__(self, name: object) -> bool:
         return name in self._makers
+
+
+def _merge(mappings: Iterable[Mapping[str, Part]]) -> Mapping[str, Part]:
+    """All entries by name; what costs is still made when it is looked up."""
+    return Deferred({name: partial(mapping.__getitem__, name) for mapping in mappings for name in mapping})
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

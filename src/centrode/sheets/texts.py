@@ -197,6 +197,13 @@ class Indexed:
     index: str
 
 
+@dataclass(frozen=True)
+class Slanted:
+    """What a user called something, as the index of a formula's letter: Latin letters slanted, as in equations."""
+
+    text: str
+
+
 @dataclass(frozen=True, init=False)
 class VectorNotation:
     """A relation between vectors, their lengths and angular rates, as constructions on paper write it.
@@ -218,12 +225,13 @@ class VectorNotation:
 
 
 Leaf: TypeAlias = (
-    "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed | VectorNotation | SymbolicLeaf"
+    "str | Number | Factor | Name | Slanted | Expression | Sentence | Symbol | Indexed | VectorNotation"
+    " | SymbolicLeaf"
 )
 """A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
 Text: TypeAlias = (
     "Name | Title | Number | Sentence | Counted | Joined | Symbol"
-    " | Expression | Unit | Part | Place | Indexed | VectorNotation | SymbolicLeaf"
+    " | Expression | Unit | Part | Place | Indexed | VectorNotation | Slanted | SymbolicLeaf"
 )
 
 NOTHING = Joined(())

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from centrode.dynamics.motion_results import MotionResults, study
 from centrode.equations.integration import integrate
 from centrode.errors import InputError
 from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, mark, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import Rotation, rotation_of
-from centrode.study.run import StudyResults, study
 from centrode.study.variant_tables import Table, Variant, read_variants
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class VariantResults:
 
     row: VariantRow
     mechanism: Mechanism | None = None
-    study: StudyResults | None = None
+    study: MotionResults | None = None
     integration: xr.Dataset | None = None
     note: str = ""
 
@@ -117,15 +117,15 @@ def compute_variant(topology: Mechanism, variant: Variant) -> VariantResults:
         return VariantResults(_row(variant.name, rotation, results), mechanism, results, integration, note)
 
 
-def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, StudyResults, Rotation]:
+def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, MotionResults, Rotation]:
     """A variant's mechanism, its study and rotatability; raises InputError where it is none that moves."""
     mechanism = variant.of(topology)
     prepared = ready(mechanism)
     return mechanism, study(mechanism), rotation_of(prepared)
 
 
-def _row(name: str, rotation: Rotation, results: StudyResults) -> VariantRow:
-    status = COMPUTED if results.failure is None else LOCKS
+def _row(name: str, rotation: Rotation, results: MotionResults) -> VariantRow:
+    status = LOCKS if results.unreached else COMPUTED
     cause = cause_of(rotation)
     return VariantRow(
         name, rotation.turns_fully, rotation.limit, rotation.unit, rotation.group, cause, status

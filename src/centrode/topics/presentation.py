@@ -15,6 +15,7 @@ from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
 from centrode.locale import _, mark
 from centrode.topics.registry import TOPICS
+from centrode.topics.sheets import sheet_with_parts, topic_of
 from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
@@ -96,24 +97,15 @@ def _incomplete(absent: Exception) -> InputError:
 
 
 def sheet_of(result: Any) -> Sheet:
-    """What there is to say about a result, as data; InputError for what is no result of a topic."""
+    """What there is to say about a result and its parts, as data; InputError for what is no result of a topic."""
     dataset, result = result, restored_result(result)
-    kind = type(result)
-    names = {(one.__module__, one.__qualname__) for one in kind.__mro__}
-    for topic in TOPICS:
-        if (topic.result.module, topic.result.name) in names:
-            try:
-                return cast("Sheet", topic.view(result))
-            except KeyError as absent:
-                if result is dataset:  # of a result that was computed nothing is missing
-                    raise
-                raise _incomplete(absent) from absent
-    known = ", ".join(topic.result.name for topic in TOPICS)
-    raise InputError(
-        kind.__name__,
-        _("is not a result that can be shown"),
-        _("show one of {known}").format(known=known),
-    )
+    topic = topic_of(result)
+    try:
+        return sheet_with_parts(topic, result)
+    except KeyError as absent:
+        if result is dataset:  # of a result that was computed nothing is missing
+            raise
+        raise _incomplete(absent) from absent
 
 
 def display_of(result: Any) -> Display:

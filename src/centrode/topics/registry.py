@@ -154,7 +154,6 @@ REDUCTION = Topic(
     command=Command(
         help=mark("Reduce masses and loads to the drive, part by part."),
         options=(RangeOptions(),),
-        ending=Lazily("centrode.study.limits", "check_reached"),
     ),
     document=InDocuments(chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),)),
 )
@@ -242,7 +241,6 @@ REACTIONS = Topic(
             FlagOption("frictionless", mark("Leave out friction that is given by coefficients.")),
             RangeOptions(),
         ),
-        ending=Lazily("centrode.study.run", "refuse_unreached"),
         summary=False,
         complete="complete",
     ),
@@ -577,6 +575,42 @@ DIAGRAMS = Topic(
     ),
 )
 
+RUN = Topic(
+    name="run",
+    compute=Lazily("centrode.dynamics.motion_results", "study"),
+    result=Lazily("centrode.dynamics.motion_results", "MotionResults"),
+    view=Lazily("centrode.views.motion", "sheet"),
+    command=Command(
+        help=mark("Compute the motion of a mechanism: tables and pictures."),
+        options=(RangeOptions(),),
+        folder="result",
+        animation=Lazily("centrode.present.animations.animate", "animate_results"),
+        animation_help=mark("Also write an animation of the motion."),
+        animation_file="motion.gif",
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("motion", mark("Motion")),
+            ChapterOfTopic("tables", mark("Tables of the motion")),
+            ChapterOfTopic("plots", mark("Plots of the motion")),
+        ),
+        add_instants=Lazily("centrode.dynamics.motion_results", "with_instants"),
+        wished=True,
+        points=True,
+    ),
+)
+
+CHECK = Topic(
+    name="check",
+    compute=Lazily("centrode.kinematics.check", "check"),
+    result=Lazily("centrode.kinematics.check", "MechanismCheck"),
+    view=Lazily("centrode.views.structure", "sheet"),
+    command=Command(
+        help=mark("Check a mechanism: mobility, loops, groups, plan."), samples=False, prints_only=True
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("structure", mark("Structure")),), instants=False),
+)
+
 EQUATIONS = Topic(
     name="equations",
     compute=Lazily("centrode.equations.instants", "equation_results"),
@@ -791,6 +825,8 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    RUN,
+    CHECK,
     GIVEN_MASSES,
     DESCRIBE,
     BASE_RADIUS,

@@ -129,6 +129,7 @@ class Command:
     animation_file : its name, that of the topic as a GIF if empty
     animation_help : what the animation shows, marked for the catalogues
     file_help : what the one file holds, marked for the catalogues; JSON or CSV if empty
+    prints_only : it writes no files
     """
 
     help: str
@@ -150,6 +151,7 @@ class Command:
     animation_file: str = ""
     animation_help: str = ""
     file_help: str = ""
+    prints_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -178,7 +180,8 @@ class InDocuments:
     arguments : of the computation
     chosen_arguments : further ones where somebody has chosen one of its chapters by name
     instants : whether the computation takes the instants of the document
-    add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
+    wished : it takes the instants that somebody wishes, none without, in place of those that a document chooses then
+    add_instants : (result, instants=..., **arguments) -> result: a document goes on with a result that it has already
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     may_be_incomplete : so is one whose description lacks what the computation needs
     points : whether the computation takes the points that the document is about
@@ -187,6 +190,7 @@ class InDocuments:
     chapters: tuple[ChapterOfTopic, ...] = ()
     arguments: Mapping[str, Any] = field(default_factory=dict)
     instants: bool = True
+    wished: bool = False
     add_instants: Lazily | None = None
     may_be_left_out: bool = False
     may_be_incomplete: bool = False
@@ -202,7 +206,7 @@ class Topic:
     ----------
     name : of the command
     compute : (mechanism or cam, samples=..., instants=..., **arguments) -> result
-    result : class of what is computed
+    result : class of what is computed; `parts` of it, where it has some, are name -> result of another topic
     view : result -> Sheet
     concerns : whether a mechanism has what the topic is about; every one has if None
     command : None where only documents and Python have the topic

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import product
+from itertools import combinations_with_replacement, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -131,6 +131,44 @@ def motion_table(dataset: xarray.Dataset, points: Sequence[str] | None = None) -
     columns = [Column(name, values.to_numpy(), unit) for name, unit, values in numeric_columns(selected)]
     residual = Column("residual", dataset["residual"].to_numpy())
     return Table((*columns, status_column(dataset["status"]), residual))
+
+
+def coefficients_table(dataset: xarray.Dataset, points: Sequence[str]) -> Table:
+    """The table of kinematic coefficients by each drive, one row a sample; of the points named."""
+    chosen = dataset.sel(point=list(points))
+    columns = [Column(name, values.to_numpy(), unit) for name, unit, values in _coefficient_columns(chosen)]
+    return Table((*columns, status_column(dataset["status"])))
+
+
+def _coefficient_columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """Header without unit, SI unit and values of every column: "velocity_coefficient_C_x_by_OA".
+
+    Of a pair of mixed derivatives, which are equal, there is one column.
+    """
+    yield "time", unit_of(dataset["time"]), dataset["time"]
+    names = [str(name) for name in dataset["drive"].values]
+    for number, name in enumerate(names):
+        yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
+    for variable, values in dataset.data_vars.items():
+        if "drive" not in values.dims:
+            continue
+        twice = "drive_2" in values.dims
+        units = _units_by_drive(values, len(names) ** (2 if twice else 1))
+        dims = [str(dim) for dim in values.dims if dim not in ("sample", "drive", "drive_2")]
+        for labels in product(*(values[dim].values.tolist() for dim in dims)):
+            one = values.sel(dict(zip(dims, labels, strict=True)))
+            header = "_".join([str(variable), *map(str, labels)])
+            for pair in combinations_with_replacement(range(len(names)), 2 if twice else 1):
+                by = "_".join(names[k] for k in pair)
+                unit = units[pair[0] * len(names) + pair[1] if twice else pair[0]]
+                place = dict(zip(("drive", "drive_2"), pair, strict=False))
+                yield f"{header}_by_{by}", unit, one.isel(place)
+
+
+def _units_by_drive(values: xarray.DataArray, count: int) -> list[str]:
+    """SI unit of each drive, or pair of drives: `units` names one for all, or all of them."""
+    units = ["" if unit == "1" else unit for unit in str(values.attrs.get("units", "")).split(", ")]
+    return units * count if len(units) == 1 else units
 
 
 def status_column(status: xarray.DataArray) -> Column:

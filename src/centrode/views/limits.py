@@ -1,4 +1,4 @@
-"""Limits of one drive, the others held: what the terminal and the files show."""
+"""Limits of one drive, the others held: what the terminal and the files show; how motions fall short of their range."""
 
 from __future__ import annotations
 
@@ -6,12 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.sheets.sheet import Column, Fact, Sheet, Table
-from centrode.sheets.texts import Joined, Name, Sentence, Text
+from centrode.errors import STATUSES_NOT_REACHED
+from centrode.sheets.sheet import Column, Fact, Failure, Sheet, Table
+from centrode.sheets.texts import Counted, Joined, Name, Number, Sentence, Text
 from centrode.views.instants import place_number
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import xarray as xr
+
     from centrode.kinematics.several_inputs.limits import End, Limits
+    from centrode.model.mechanism import Mechanism
 
 
 def sheet(limits: Limits) -> Sheet:
@@ -53,4 +59,50 @@ def _table(limits: Limits) -> Table:
             Column(f"drive_{limits.drive}", values, limits.unit, unit_fixed=True),
             Column("group", tuple(Name("" if end is None else end.group) for _event, end in ends)),
         )
+    )
+
+
+# Samples that are not reached
+
+
+def unreached_failure(
+    mechanism: Mechanism, status: xr.DataArray, limits: Sequence[End], *, single: bool = False
+) -> Failure | None:
+    """Why a motion is not whole, with the limits that bound it; None where all samples (n) are reached.
+
+    `single` places were asked for, not a range.
+    """
+    missing = int(np.isin(status.to_numpy(), STATUSES_NOT_REACHED).sum())
+    if not missing:
+        return None
+    text: Text = Counted(
+        "the mechanism locks: {missing} of {all} samples is not reached",
+        "the mechanism locks: {missing} of {all} samples are not reached",
+        missing,
+        missing=Number(missing, digits="d"),
+        all=Number(status.size, digits="d"),
+    )
+    unit = mechanism.motion_parameter.variable.unit
+    bounds = [
+        Sentence(
+            "limit at {value}, where {group} is a dead point",
+            value=place_number(end.value, unit),
+            group=Name(end.group),
+        )
+        for end in limits
+    ]
+    if bounds:
+        text = Sentence("{value} ({remark})", value=text, remark=Joined(bounds, "; "))
+    if single:
+        return Failure(text, Sentence("ask for places between the limits"))
+    return Failure(text, _repair(mechanism))
+
+
+def _repair(mechanism: Mechanism) -> Sentence:
+    """What to ask for: the range between the limits, by a word where one drive has them."""
+    if not mechanism.motion_parameter.is_uniform:
+        return Sentence("ask for a range between the limits, or change the dimensions")
+    return Sentence(
+        'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
+        "change the dimensions"
     )

@@ -34,7 +34,7 @@ class PlottedMotion:
     Attributes
     ----------
     mechanism, dataset : the motion
-    places : "link", "point", "guide" -> name -> its place, which gives it the same pen in every figure
+    places : "link", "joint", "point", "guide" -> name -> its place, which gives it the same pen in every figure
     """
 
     mechanism: Mechanism
@@ -45,6 +45,7 @@ class PlottedMotion:
         """Places of links, points and guides among their kind."""
         kinds = {
             "link": self.mechanism.link_names,
+            "joint": self.mechanism.link_names,
             "point": self.mechanism.moving_points,
             "guide": [guide.id for guide in self.mechanism.guides],
         }
@@ -54,6 +55,11 @@ class PlottedMotion:
     def components(self) -> tuple[str, ...]:
         """Names of the components of a place."""
         return tuple(self.dataset["axis"].to_numpy().tolist())
+
+    @property
+    def joints(self) -> list[str]:
+        """Links whose angle is measured from a reference arc."""
+        return self.dataset["joint"].to_numpy().tolist() if "joint" in self.dataset.dims else []
 
 
 def panels_of_links(motion: PlottedMotion, variable: str) -> Rows:
@@ -78,6 +84,36 @@ def panels_of_guides(motion: PlottedMotion, variables: Sequence[str]) -> Rows:
     return tuple(
         tuple(_panel(motion, name, "guide", names, legend=name == variables[0]) for names in groups)
         for name in variables
+    )
+
+
+def panels_of_joints(motion: PlottedMotion, variable: str) -> Rows:
+    """Links whose angle is measured from a reference arc, in panels below each other."""
+    groups = deal_to_panels(motion.joints)
+    return tuple((_panel(motion, variable, "joint", names),) for names in groups)
+
+
+def panels_of_coefficients(motion: PlottedMotion) -> Rows:
+    """Velocity coefficients at the left, acceleration coefficients at the right: links, points, guides."""
+    points, turning = deal_to_panels(motion.places["point"]), turning_links(motion.mechanism)
+    on_sphere = len(motion.components) > 2
+    first, names = ("joint", motion.joints) if on_sphere else ("link", turning)
+    prefix = "joint_" if on_sphere else "angular_"
+    rows = (
+        *(_both(motion, prefix, first, some) for some in deal_to_panels(names)),
+        *(_both(motion, "", "point", some, part) for part in motion.components for some in points),
+        *(_both(motion, "slide_", "guide", some) for some in deal_to_panels(motion.places["guide"])),
+    )
+    return tuple(row for row in rows if row[0].curves)
+
+
+def _both(
+    motion: PlottedMotion, prefix: str, kind: str, names: Sequence[str], part: str = ""
+) -> tuple[CurvePanel, CurvePanel]:
+    """A panel of velocity coefficients and one of acceleration coefficients, with one legend."""
+    return (
+        _panel(motion, f"{prefix}velocity_coefficient", kind, names, part, legend=False),
+        _panel(motion, f"{prefix}acceleration_coefficient", kind, names, part),
     )
 
 

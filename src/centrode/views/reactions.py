@@ -23,6 +23,7 @@ from centrode.sheets.sheet import (
     Column,
     Fact,
     FactTable,
+    Failure,
     Formula,
     Paragraph,
     Scalar,
@@ -46,6 +47,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views.columns import force_columns, status_column
 from centrode.views.instants import instant_title
+from centrode.views.limits import unreached_failure
 from centrode.views.reaction_figures import pictures
 from centrode.views.reaction_names import (
     body_text,
@@ -122,6 +124,36 @@ def sheet(results: ReactionResults) -> Sheet:
         pictures={} if results.loads is None else dict(pictures(results)),
         chapters={} if results.loads is None else {"reactions": _chapter(results, results.loads)},
         printed=(_joints(results.mechanism, joints, spoken=True), *_printed_parts(results)),
+        failure=_failure(results),
+        brief=_greatest_joint_force(results),
+    )
+
+
+def _failure(results: ReactionResults) -> Failure | None:
+    """Samples that the mechanism does not reach, or at which friction lets nothing move."""
+    reactions = results.reactions
+    failure = unreached_failure(
+        results.mechanism, reactions["status"], results.limits, single=bool(results.at)
+    )
+    locked = self_locking_samples(reactions)
+    if failure is not None or not locked:
+        return failure
+    return Failure(
+        self_locking_text(locked), Sentence("make the coefficients or radii less, or the sliders longer")
+    )
+
+
+def self_locking_samples(reactions: xarray.Dataset) -> int:
+    """At how many samples friction lets nothing move."""
+    return int((reactions["reaction_status"] == Status.SELF_LOCKING).sum())
+
+
+def self_locking_text(samples: int) -> Text:
+    """At how many samples friction lets nothing move, as a clause."""
+    return Counted(
+        "self-locking: at {n} sample no drive overcomes the friction",
+        "self-locking: at {n} samples no drive overcomes the friction",
+        samples,
     )
 
 
@@ -135,7 +167,7 @@ def scalars(results: ReactionResults) -> Iterator[tuple[str, Scalar]]:
         yield f"mean_{load.key}", Scalar(load.mean, load.unit)
 
 
-def greatest_joint_force(results: ReactionResults) -> tuple[Fact, ...]:
+def _greatest_joint_force(results: ReactionResults) -> tuple[Fact, ...]:
     """The joint force that is greatest over the samples; nothing where none is determined."""
     reactions = results.reactions
     size = np.hypot.reduce(reactions["joint_force"].to_numpy(), axis=-1)

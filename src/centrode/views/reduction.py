@@ -45,6 +45,7 @@ from centrode.views.abscissa import motion_abscissa
 from centrode.views.columns import force_columns, rows_shown, status_column
 from centrode.views.formulas import index_symbol, join_expressions, sum_of
 from centrode.views.instants import instant_title
+from centrode.views.limits import unreached_failure
 from centrode.views.load_names import load_text
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ def sheet(results: ReductionResults) -> Sheet:
         pictures=dict(_pictures(results)),
         chapters={"reduction": _chapter(results)},
         printed=(_extremes(results),),
+        failure=unreached_failure(results.mechanism, results.reduction["status"], results.limits),
     )
 
 

@@ -16,6 +16,7 @@ from centrode.dynamics.kinetostatics.reactions import Speed, reactions
 from centrode.dynamics.reduction import reduce
 from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion
+from centrode.kinematics.several_inputs.limits import End, limits_met
 from centrode.model.mechanism import Mechanism
 
 
@@ -46,6 +47,7 @@ class ReactionResults:
     loads : extremes and means of each reaction over the motion; None at single places, and where left out
     motion, bearings : of `motion` and `bearings` at the samples; None on the sphere, and without `loads`
     instants : the same reactions at a few instants for equations; None without any
+    limits : what bounds the motion where samples are not reached; none where all are
     """
 
     mechanism: Mechanism
@@ -55,6 +57,7 @@ class ReactionResults:
     motion: xr.Dataset | None = None
     bearings: xr.Dataset | None = None
     instants: ReactionsAtInstants | None = None
+    limits: tuple[End, ...] = ()
 
 
 def reaction_results(
@@ -92,14 +95,21 @@ def reaction_results(
     results = ReactionResults(mechanism, found, tuple(at))
     if complete and not at:
         results = with_bearings(mechanism, found)
+    results = _with_limits(results)
     return results if instants is None else with_instants(results, instants)
 
 
 def results_of_reactions(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:
     """A dataset of `reactions`, over a motion with the loads and the wear of the bearings."""
     if found.attrs["samples"] == "range":
-        return with_bearings(mechanism, found)
-    return ReactionResults(mechanism, found, tuple(map(float, mechanism.motion_parameter.instants(found))))
+        return _with_limits(with_bearings(mechanism, found))
+    places = tuple(map(float, mechanism.motion_parameter.instants(found)))
+    return _with_limits(ReactionResults(mechanism, found, places))
+
+
+def _with_limits(results: ReactionResults) -> ReactionResults:
+    """Results with what bounds the motion where samples are not reached."""
+    return replace(results, limits=limits_met(results.mechanism, results.reactions["status"].to_numpy()))
 
 
 def with_bearings(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:

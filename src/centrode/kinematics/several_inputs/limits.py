@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.errors import InputError
+from centrode.errors import STATUSES_NOT_REACHED, InputError
 from centrode.kinematics.assembly import Assembled
 from centrode.kinematics.change_points import BranchedPlan, Smooth
 from centrode.kinematics.events import EventScan
@@ -287,6 +287,14 @@ def chosen_drive(mechanism: Mechanism, drive: str | None) -> str:
 def has_one_drive(mechanism: Mechanism) -> bool:
     """Whether limits need no choice of the drive."""
     return len(mechanism.drives) == 1
+
+
+def limits_met(mechanism: Mechanism, status: npt.NDArray[np.int8]) -> tuple[End, ...]:
+    """What bounds the motion of the only drive where samples (n) are not reached; nothing where all are."""
+    if not has_one_drive(mechanism) or not np.isin(status, STATUSES_NOT_REACHED).any():
+        return ()
+    found = limits(mechanism)
+    return tuple(end for end in (found.low, found.high) if end is not None)
 
 
 def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: float) -> Limits:

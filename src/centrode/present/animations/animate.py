@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from centrode.cams.profiles import ProfileBody
     from centrode.cams.results import CamProfileResults, WalkingWheelResults
     from centrode.cams.walking_wheel import WheelMover
+    from centrode.dynamics.motion_results import MotionResults
     from centrode.model.mechanism import Mechanism
     from centrode.model.settings import Display
 
@@ -299,6 +300,11 @@ def animate_motion(
     film = film_from(course_from(mechanism, dataset), frames or FRAMES)
     stage, _notes = stage_of(film, Shown(), SIZE, dark=dark)
     write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), said)
+
+
+def animate_results(results: MotionResults, path: Path, dark: bool = False) -> None:
+    """Write an animation (GIF or MP4) of the motion of a result; raises InputError where nothing is in place."""
+    animate_motion(results.mechanism, results.motion, path, dark=dark)
 
 
 def animate_centrodes(

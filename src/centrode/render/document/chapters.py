@@ -12,6 +12,7 @@ from centrode.locale import _
 from centrode.render import figures
 from centrode.render.document import blocks
 from centrode.render.document.figures import picture
+from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers, spelled_number
 from centrode.render.document.scale import INCH, drawn_to_scale, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
@@ -19,6 +20,7 @@ from centrode.render.force_pages import drawing_end, group_scales
 from centrode.render.instant_pages import DRAWING as INSTANT
 from centrode.render.position_pages import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.linkages import MotionPlayer
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
@@ -69,8 +71,11 @@ def _is_there(block: Block, pictures: Pictures) -> bool:
 
 def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Block:
     match block:
-        case Paragraph(text):
-            return blocks.ParagraphBlock(spelling.text(text))
+        case Paragraph(text, clause):
+            spelled = spelling.text(text)
+            return blocks.ParagraphBlock(f"{spelled[:1].upper()}{spelled[1:]}." if clause else spelled)
+        case MotionPlayer(mechanism, motion):
+            return moving_of(mechanism, motion)
         case Formula(lines):
             return blocks.FormulaBlock(tuple(tuple(map(spelling.mathematics, line)) for line in lines))
         case Table():

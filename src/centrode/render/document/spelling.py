@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
-from centrode.render.document.typst import TypstSpelling, quote, shown
+from centrode.render.document.typst import TypstSpelling, quote, shown, word
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
 from centrode.render.symbolic import spell_symbolic
@@ -21,6 +21,7 @@ from centrode.sheets.texts import (
     Name,
     Number,
     Sentence,
+    Slanted,
     Symbol,
     VectorNotation,
 )
@@ -128,6 +129,8 @@ class DocumentSpelling(Spelling):
                 return f"({size})" if number.value < 0 or "dot" in size else size
             case Name(text):
                 return quote(text)
+            case Slanted(text):
+                return word(text)
             case Sentence():
                 return quote(self.text(leaf))
             case Symbol():

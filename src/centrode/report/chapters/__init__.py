@@ -17,14 +17,7 @@ from centrode.report.chapters.curvature_cams import (
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
-from centrode.report.chapters.linkages.structure import structure_chapter
-from centrode.report.chapters.linkages.tables import tables_chapter
-from centrode.report.chapters.spherical_linkages import (
-    sphere_data_chapter,
-    sphere_plots_chapter,
-    sphere_tables_chapter,
-)
+from centrode.report.chapters.spherical_linkages import sphere_data_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -52,10 +45,7 @@ def either(*makers: Make) -> Make:
 
 OWN: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
-    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
-    "structure": Kind(mark("Structure"), structure_chapter),
-    "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
-    "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
+    "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
 }
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from centrode.cams.results import walking_wheel_results
 from centrode.locale import _
 from centrode.render.document.blocks import ChapterBlocks, SectionBlocks
-from centrode.report.player_cams import moving_wheel
+from centrode.render.document.cam_player import moving_wheel
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy

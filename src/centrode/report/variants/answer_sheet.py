@@ -24,11 +24,13 @@ from centrode.render.document.blocks import (
 )
 from centrode.render.document.numbers import NOTHING, Numbers
 from centrode.render.document.rows import told
+from centrode.render.terminal import plain_text
 from centrode.report.chapters.forces.results import reactions_at_instants
 from centrode.report.study import Moment, moments_of
 from centrode.study.rotation import rotation_of
 from centrode.study.variant_results import STATUS_WORDS
 from centrode.version import __version__
+from centrode.views import motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -237,9 +239,15 @@ def answers_of(study: ReportStudy) -> Answers:
         "cause": rotation.cause,
         "mobility": check.mobility,
         "formula": check.formula,
-        "failure": study.study.failure or "",
+        "failure": _failure(study),
         "instants": [_at(study, moment) for moment in moments_of(study)],
     }
+
+
+def _failure(study: ReportStudy) -> str:
+    """Why the motion is not whole; empty where it is."""
+    failure = motion.sheet(study.study).failure
+    return "" if failure is None else plain_text(failure.what, study.mechanism.display)
 
 
 def _at(study: ReportStudy, moment: Moment) -> Answers:

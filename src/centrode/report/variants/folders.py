@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import functools
 import hashlib
 import io
 import json
@@ -17,8 +16,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
-import lazy_loader
-
 from centrode import render
 from centrode.equations.integration import IntegrationResults
 from centrode.errors import InputError
@@ -29,23 +26,17 @@ from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.present.tables import write_motion_csv
 from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, compute_variant
 from centrode.study.variant_tables import Table, Variant, read_variants
+from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
-from centrode.views import integrations
+from centrode.views import integrations, motion
 
 # One variant computed into its folder: its files, and the marker that says that they are there.
 #
 # A variant's files are written first, then its marker, by a rename that happens or does not. The marker holds
 # a digest
 # of all that the files depend on: what has no marker, or one of another digest, is computed again.
-
-# Matplotlib is an extra, and slow to import: only where figures are asked for.
-_figures, _saving = (
-    functools.partial(lazy_loader.load, f"centrode.present.{name}", suppress_warning=True)
-    for name in ("figures", "figure_files")
-)
 
 MARKER = "variant.json"
 
@@ -146,15 +137,12 @@ def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
     study, mechanism, integration = results.study, results.mechanism, results.integration
     if study is None or mechanism is None:
         return
-    points = mechanism.moving_points
+    shown = motion.sheet(study)
     (folder / "mechanism.toml").write_text(mechanism_text(mechanism), encoding="utf-8", newline="\n")
-    write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, points)
-    scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
-    text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
-    (folder / "summary.json").write_text(text, encoding="utf-8", newline="\n")
+    render.write_table(shown.tables["motion"], folder / "motion.csv", mechanism.display)
+    render.write_summary(sheet_of(study).scalars, folder / "summary.json")
     if figures:
-        drawn = _figures().motion_figures(mechanism, study.motion, mechanism.study.instants, study.instants)
-        _saving().save_figures(drawn, folder)
+        render.write_pictures(shown.pictures, folder, mechanism.display)
     if integration is not None:
         sheet = integrations.sheet(IntegrationResults(mechanism, integration, study.motion))
         for name, table in sheet.tables.items():

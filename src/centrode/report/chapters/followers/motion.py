@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from centrode.cams.followers.base_circle import follower_cam, has_size
 from centrode.locale import _
 from centrode.render.document.blocks import ChapterBlocks, SectionBlocks
-from centrode.report.player_cams import moving_follower
+from centrode.render.document.cam_player import moving_follower
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from centrode.kinematics.preparation import Ready, ready
 from centrode.model.mechanism import Mechanism
@@ -16,13 +16,16 @@ class MechanismCheck:
 
     Attributes
     ----------
+    mechanism : Mechanism
     mobility : by the rank of the Jacobian at real positions; `count` gives Chebyshev's formula beside it
     redundant : names of the constraints that repeat others
     groups : inputs and Assur groups in the order in which they are solved
+    formula : the groups as a structural formula
+    plan : the steps of the solution in words
     initial_residual : how well the initial position closes, in units of the greatest length
     """
 
-    title: str
+    mechanism: Mechanism = field(repr=False)
     mobility: int
     drives: tuple[str, ...]
     count: Count
@@ -34,17 +37,23 @@ class MechanismCheck:
 
 
 def check(mechanism: Mechanism) -> MechanismCheck:
-    """Structure, mobility and plan of a mechanism; raises as `motion` does before it computes."""
-    prepared = ready(mechanism)
-    return check_of(prepared)
+    """Structure, mobility and plan of a mechanism; raises as `motion` does before it computes.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.check(ct.example("crank-rocker")).mobility
+    1
+    """
+    return check_of(ready(mechanism))
 
 
 def check_of(prepared: Ready) -> MechanismCheck:
-    """The same for a mechanism made ready before."""
+    """Structure, mobility and plan of a mechanism that is prepared already."""
     structure = prepared.structure
     mechanism = prepared.mechanism
     return MechanismCheck(
-        mechanism.title,
+        mechanism,
         prepared.mobility,
         tuple(drive.id for drive in mechanism.drives),
         count(mechanism, structure.redundant),

@@ -15,15 +15,15 @@ from centrode.model.values import unit_vector
 from centrode.present import signs
 from centrode.present.drawing import MARGIN, draw_mechanism, nearest
 from centrode.present.linkage_scene import scene_of
-from centrode.present.pictures import complete, initial_sample
 from centrode.present.scene import LinkageScene, corners, span
 from centrode.present.sphere.globe import Globe, draw_globe, globe_of
 from centrode.present.style import GROUND, INK, house_style, pens
 from centrode.present.wheels import BARREL, OVER, slides
 from centrode.render.document.blocks import Moving, Outline, RingBlock, shown
+from centrode.render.document.cam_player import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import NARROW, Numbers
-from centrode.report.player_cams import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
+from centrode.render.linkages import complete, initial_sample
 
 if TYPE_CHECKING:
     import xarray

@@ -1,12 +1,13 @@
-"""Figures that show the mechanism itself: at chosen instants, and with the paths of its points."""
+"""Pictures of a mechanism itself: at chosen instants, and with the paths of its points."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -15,7 +16,6 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.present.curves import (
     CUT_DASHES,
-    DrawnAbscissa,
     draw_parts,
     legend_width,
     say_nothing_known,
@@ -24,51 +24,54 @@ from centrode.present.curves import (
 )
 from centrode.present.displayed_units import formula, label_with_unit, shown_as
 from centrode.present.drawing import MARGIN, draw_mechanism
+from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene
-from centrode.present.sphere.globe import HIDDEN, Globe, draw_globe
-from centrode.present.style import MUTED, Decimals, Pen, pens
+from centrode.present.sphere.globe import HIDDEN, Globe, draw_globe, globe_of
+from centrode.present.style import MUTED, Decimals, pens
 from centrode.quantities import status_word, typeset_unit
+from centrode.render.plots import drawn_abscissa
+from centrode.render.spelling import FigureSpelling
 
 if TYPE_CHECKING:
-    import xarray
-
     from centrode.model.mechanism import Mechanism
+    from centrode.model.settings import Display
+    from centrode.sheets.linkages import MechanismPicture, PathsPicture
 
 GHOSTS = 7  # fading pictures behind the initial position
 COLUMNS = 3
 FAINT = "#B4B4B4"
 
 
-def mechanism_figure(
-    scene: LinkageScene | Globe, dataset: xarray.Dataset, instants: Sequence[float]
-) -> Figure:
+def mechanism_figure(picture: MechanismPicture, display: Display) -> Figure:
     """The mechanism at the chosen values of the drive, or initially over fading pictures of its motion."""
-    samples = [nearest_sample(scene.mechanism, dataset, instant) for instant in instants]
+    dataset = _with_instants(picture)
+    scene = read_scene(picture.mechanism, dataset)
+    samples = [nearest_sample(scene.mechanism, dataset, value) for value in picture.values]
     samples = samples or [initial_sample(scene, dataset)]
     columns = 2 if len(samples) == 4 else min(COLUMNS, len(samples))
     rows = -(-len(samples) // columns)
-    scene, figure = picture(scene, scene.mechanism.link_names, rows, columns)
+    scene, figure = place_on_paper(scene, scene.mechanism.link_names, rows, columns)
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
-    faded = [] if instants else ghosts(scene, dataset, samples[0])
+    faded = [] if picture.values else ghosts(scene, dataset, samples[0])
     for axes, sample in zip(grid, samples, strict=False):
         draw(axes, scene, sample, faded=faded)
         axes.set_title(caption(scene.mechanism, dataset, sample))
     for axes in grid[len(samples) :]:
         axes.set_axis_off()
     write_legend(grid[columns - 1], link_key(scene.mechanism), inches=figure.get_figheight() - 1.0)
-    write_title(figure, _("Mechanism"), _(scene.mechanism.title))
+    _write_title(figure, picture, display)
     return figure
 
 
-def paths_figure(
-    scene: LinkageScene | Globe, dataset: xarray.Dataset, abscissa: DrawnAbscissa, points: Mapping[str, Pen]
-) -> Figure:
-    """Paths of all moving points, with the mechanism faint in its initial position."""
-    scene, figure = picture(scene, list(points))
+def paths_figure(picture: PathsPicture, display: Display) -> Figure:
+    """Paths of points, with the mechanism faint in its initial position."""
+    abscissa = drawn_abscissa(picture.abscissa, FigureSpelling(display))
+    scene = read_scene(picture.mechanism, picture.motion)
+    scene, figure = place_on_paper(scene, picture.points)
     axes = figure.subplots()
-    draw(axes, scene, initial_sample(scene, dataset), colour=FAINT)
+    draw(axes, scene, initial_sample(scene, picture.motion), colour=FAINT)
     drawn = []
-    for name, pen in points.items():
+    for name, pen in pens(picture.points).items():
         path = scene.tracks[name]
         if isinstance(scene, Globe):
             hidden = np.where(scene.in_front(path)[:, None], np.nan, scene.flat(path))
@@ -82,10 +85,28 @@ def paths_figure(
     if abscissa.cut.any():
         key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT_DASHES), _("cut off")))
     write_legend(axes, drawn, key, figure.get_figheight() - 1.0)
-    if not any(np.isfinite(scene.tracks[name]).any() for name in points):
+    if not any(np.isfinite(scene.tracks[name]).any() for name in picture.points):
         say_nothing_known(axes)
-    write_title(figure, _("Paths of the points"), _(scene.mechanism.title))
+    _write_title(figure, picture, display)
     return figure
+
+
+def _with_instants(picture: MechanismPicture) -> xarray.Dataset:
+    """The samples of a motion, those of its instants before them."""
+    if picture.instants is None:
+        return picture.motion
+    together = [data.drop_dims("event", errors="ignore") for data in (picture.instants, picture.motion)]
+    return xarray.concat(together, dim="sample", data_vars="minimal")
+
+
+def read_scene(mechanism: Mechanism, dataset: xarray.Dataset) -> LinkageScene | Globe:
+    """Where everything stands, in the plane or on the sphere."""
+    return globe_of(mechanism, dataset) if mechanism.space == "sphere" else scene_of(mechanism, dataset)
+
+
+def _write_title(figure: Figure, picture: MechanismPicture | PathsPicture, display: Display) -> None:
+    title = FigureSpelling(display).text(picture.title)
+    write_title(figure, title, _(picture.mechanism.title))
 
 
 def draw(axes: Axes, scene: LinkageScene | Globe, sample: int, **how: Any) -> None:
@@ -97,7 +118,7 @@ def draw(axes: Axes, scene: LinkageScene | Globe, sample: int, **how: Any) -> No
         label_lengths(axes, scene)
 
 
-def picture(
+def place_on_paper(
     scene: LinkageScene | Globe, names: Sequence[str], rows: int = 1, columns: int = 1
 ) -> tuple[LinkageScene | Globe, Figure]:
     """The scene at the size that it gets on paper, and an empty figure in its proportions."""

@@ -1,0 +1,61 @@
+"""A mechanism itself: drawn at instants, with the paths of its points, in motion; data without a look."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from centrode.sheets.texts import Sentence
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+    from centrode.sheets.plots import Abscissa
+
+
+@dataclass(frozen=True)
+class MechanismPicture:
+    """A mechanism at instants side by side; without any in its initial position, over fading pictures of its motion.
+
+    Attributes
+    ----------
+    title : what it shows
+    mechanism : kinds of its links, joints and drives
+    motion : its motion, without batch dimensions
+    values : of the motion's parameter at the instants [rad, m or s]; each is shown at the nearest sample
+    instants : the motion exactly there; None where the samples of the motion have to do
+    """
+
+    title: Sentence
+    mechanism: Mechanism
+    motion: xarray.Dataset
+    values: tuple[float, ...] = ()
+    instants: xarray.Dataset | None = None
+
+
+@dataclass(frozen=True)
+class PathsPicture:
+    """Paths of the points of a mechanism, with the mechanism faint in its initial position.
+
+    Attributes
+    ----------
+    title : what it shows
+    mechanism, motion : of which motion
+    points : whose paths
+    abscissa : order of the samples, gaps between them, and which of them are cut off
+    """
+
+    title: Sentence
+    mechanism: Mechanism
+    motion: xarray.Dataset
+    points: tuple[str, ...]
+    abscissa: Abscissa
+
+
+@dataclass(frozen=True)
+class MotionPlayer:
+    """A motion that a page plays, and of which paper shows the initial position."""
+
+    mechanism: Mechanism
+    motion: xarray.Dataset
