@@ -20,8 +20,6 @@ from centrode.report.chapters.curvature_cams import (
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.spherical_linkages import sphere_data_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -48,7 +46,6 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
     "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
     "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
