@@ -117,14 +117,15 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
 
 def table_text(table: Table, spelling: PlainSpelling) -> str:
     """A table of texts below its caption; numbers without units of their own stand flush right."""
-    heads, cells = table_rows(table, spelling)
+    heads, rows = table_cells(table, spelling)
     right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
     caption = spelling.text(table.caption)
-    return (f"{caption}\n" if caption else "") + aligned(cells, heads, right)
+    return (f"{caption}\n" if caption else "") + aligned(rows, heads, right)
 
 
-def table_rows(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Heads and rows of a table as texts."""
+def table_cells(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Heads with their units, and the rows of a table, as texts."""
+    heads = [_head(column, spelling) for column in table.columns]
     cells = [
         [
             spelling.text(Number(value, column.units[row] if column.units else column.unit, unit_hidden=True))
@@ -134,7 +135,7 @@ def table_rows(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[t
         ]
         for column in table.columns
     ]
-    return [_head(column, spelling) for column in table.columns], list(zip(*cells, strict=True))
+    return heads, list(zip(*cells, strict=True))
 
 
 def symbol_texts(symbol: ExplainedSymbol, spelling: PlainSpelling) -> tuple[str, str, str]:

@@ -24,7 +24,6 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
-from centrode.study.cams.results import CamResults, cam_results
 
 # What a report is to hold: the wishes of the description's [report], and those of the caller, which go before
 # them.
@@ -222,13 +221,6 @@ class ReportStudy:
         except CentrodeError:  # there are none in symbols
             guides = self.mechanism.guides
             return tuple(dict.fromkeys(guide.point for guide in guides if guide.on == FRAME))
-
-    @property
-    def cam_results(self) -> CamResults:
-        """Everything about a cam."""
-        assert isinstance(self.description, Cam | PlateCam)
-        cam = self.description
-        return self.once("cam", lambda: cam_results(cam))
 
 
 class _Failed:

@@ -43,6 +43,8 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     def compute() -> Sheet:
         document = topic.document
         arguments = dict(document.arguments)
+        if any(chapter.name in (study.wishes.chapters or ()) for chapter in document.chapters):
+            arguments |= document.chosen_arguments
         if document.instants:
             wished = study.is_cam or document.wished
             arguments["instants"] = (

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
-from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing
+from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -43,6 +43,8 @@ Picture: TypeAlias = (
     | PathsPicture
     | OutlineDrawing
     | PathDrawing
+    | WheelPositions
+    | FrontDiagram
 )
 Part = TypeVar("Part")
 

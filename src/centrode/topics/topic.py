@@ -178,6 +178,7 @@ class InDocuments:
     ----------
     chapters : in the order of the document
     arguments : of the computation
+    chosen_arguments : further ones where somebody has chosen one of its chapters by name
     instants : whether the computation takes the instants of the document
     wished : it takes the instants that somebody wishes, none without, in place of those that a document chooses then
     add_instants : (result, instants=..., **arguments) -> result: a document goes on with a result that it has already
@@ -194,6 +195,7 @@ class InDocuments:
     may_be_left_out: bool = False
     may_be_incomplete: bool = False
     points: bool = False
+    chosen_arguments: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

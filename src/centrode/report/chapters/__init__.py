@@ -13,11 +13,7 @@ from typing import NamedTuple, TypeAlias
 from centrode.locale import mark
 from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
-    cam_choice_chapter,
-    cam_contact_chapter,
     cam_motion_chapter,
-    cam_profile_chapter,
-    cam_walking_chapter,
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.study import ReportStudy
@@ -47,10 +43,6 @@ def either(*makers: Make) -> Make:
 
 OWN: Mapping[str, Kind] = {
     "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
-    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
-    "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
-    "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
-    "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
 
