@@ -99,7 +99,11 @@ def result(topic_name: str, name: str) -> Any:
     given |= {
         option.name: description.link_names[1] for option in required_options(topic) if option.read is None
     }
-    return topic.compute(description, **given)
+    computed = topic.compute(description, **given)
+    if topic.document.add_instants is None or not topic.document.wished:
+        return computed
+    # chapters at instants belong to documents
+    return topic.document.add_instants(computed, description.study.instants, description.moving_points)
 
 
 def test_no_sentence_holds_a_number_or_a_unit() -> None:

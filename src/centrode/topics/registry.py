@@ -608,7 +608,10 @@ CHECK = Topic(
     command=Command(
         help=mark("Check a mechanism: mobility, loops, groups, plan."), samples=False, prints_only=True
     ),
-    document=InDocuments(chapters=(ChapterOfTopic("structure", mark("Structure")),), instants=False),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("data", mark("Data")), ChapterOfTopic("structure", mark("Structure"))),
+        instants=False,
+    ),
 )
 
 EQUATIONS = Topic(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
 from centrode.errors import InputError
@@ -10,7 +10,6 @@ from centrode.locale import _
 from centrode.topics.registry import TOPICS
 
 if TYPE_CHECKING:
-    from centrode.model.cam_files import AnyCam
     from centrode.sheets.sheet import Sheet
     from centrode.topics.topic import Topic
 
@@ -39,21 +38,3 @@ def sheet_with_parts(topic: Topic, result: Any) -> Sheet:
         if parts
         else sheet
     )
-
-
-def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str] = ()) -> dict[str, Sheet]:
-    """The sheets of all topics that a cam has something for, by the name of the topic.
-
-    Parameters
-    ----------
-    samples : int
-        As of each computation.
-    flags : collection of str
-        Topics that are left out otherwise; they refuse a cam that has nothing for them.
-    """
-    return {
-        topic.name: topic.view(topic.compute(cam, samples))
-        for topic in TOPICS
-        if topic.subject == "cam"
-        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(cam))
-    }

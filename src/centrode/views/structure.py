@@ -1,8 +1,9 @@
-"""The structure of a mechanism: what the terminal shows of a check, and the chapter of the document."""
+"""The structure of a mechanism: what the terminal shows of a check, and the chapters of what is given and of it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from centrode.sheets.sheet import (
@@ -10,6 +11,7 @@ from centrode.sheets.sheet import (
     Chapter,
     Check,
     Column,
+    Deferred,
     Fact,
     Formula,
     Items,
@@ -20,6 +22,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Text
 from centrode.structure.pairs import kinematic_pairs
+from centrode.views.linkage_data import data_chapter
 
 if TYPE_CHECKING:
     from centrode.kinematics.check import MechanismCheck
@@ -46,8 +49,12 @@ PAIRS: dict[PairKind, tuple[Text, str]] = {
 
 
 def sheet(checked: MechanismCheck) -> Sheet:
-    """Mobility, groups, plan and initial position, and the chapter on the structure."""
-    return Sheet(facts=(*facts(checked), *_plan(checked)), chapters={"structure": _chapter(checked)})
+    """Mobility, groups, plan and initial position, and the chapters on the data and the structure."""
+    chapters = {
+        "data": partial(data_chapter, checked.mechanism),
+        "structure": partial(_chapter, checked),
+    }
+    return Sheet(facts=(*facts(checked), *_plan(checked)), chapters=Deferred(chapters))
 
 
 def facts(checked: MechanismCheck) -> Iterator[Fact]:

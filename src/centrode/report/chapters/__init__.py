@@ -16,8 +16,6 @@ from centrode.report.chapters.curvature_cams import (
     cam_motion_chapter,
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.spherical_linkages import sphere_data_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -44,7 +42,10 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
+<<<<<<< HEAD
     "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
+=======
+>>>>>>> runs
     "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
 }
 
