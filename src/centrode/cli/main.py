@@ -60,7 +60,7 @@ COMMANDS: tuple[click.Command, ...] = tuple(
             **{
                 topic.name: topic_command(topic, topic.command)
                 for topic in TOPICS
-                if topic.command is not None
+                if topic.command is not None and topic.subject == "mechanism"
             },
         },
         order.COMMANDS,

@@ -2,6 +2,7 @@
 from .figures import figure_of as figure_of
 from .figures import figures_of as figures_of
 from .figures import write_pictures as write_pictures
+from .files import writes_dxf as writes_dxf
 from .files import write_record as write_record
 from .files import write_summary as write_summary
 from .files import write_table as write_table

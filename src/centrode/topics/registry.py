@@ -23,6 +23,8 @@ READ_RANGES = Lazily("centrode.cli.option_values", "read_ranges")
 READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
+HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
+NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
 WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
 
@@ -405,7 +407,12 @@ FOLLOWER_MOTION = Topic(
     restore=Lazily("centrode.cams.followers.motion_results", "results_of_follower_motion"),
     view=Lazily("centrode.views.follower_motion", "sheet"),
     concerns=Lazily("centrode.model.cam_files", "has_follower"),
-    document=InDocuments(chapters=(ChapterOfTopic("lift", mark("Motion of the follower")),)),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("lift", mark("Motion of the follower")),
+        )
+    ),
     subject="cam",
 )
 
@@ -418,6 +425,11 @@ MOTION_LAWS = Topic(
     concerns=Lazily("centrode.cams.followers.motion_results", "has_rise"),
     document=InDocuments(chapters=(ChapterOfTopic("laws", mark("Laws of motion for one rise")),)),
     subject="cam",
+    command=Command(
+        help="",
+        options=(FlagOption("laws", mark("Also other laws of motion for the first rise of the follower.")),),
+        needs=Lazily("centrode.model.cam_files", "with_follower"),
+    ),
     flag="laws",
 )
 
@@ -622,6 +634,79 @@ GIVEN_MASSES = Topic(
     ),
 )
 
+BASE_RADIUS = Topic(
+    name="base-radius",
+    compute=Lazily("centrode.cams.followers.base_radius_results", "base_radius_results"),
+    result=Lazily("centrode.cams.followers.base_radius_results", "BaseRadiusResults"),
+    view=Lazily("centrode.views.base_radius", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_size"),
+    document=InDocuments(chapters=(ChapterOfTopic("base-radius", mark("Choice of the base radius")),)),
+    subject="cam",
+)
+
+FOLLOWER_PROFILE = Topic(
+    name="follower-profile",
+    compute=Lazily("centrode.cams.followers.profile_results", "follower_profile_results"),
+    result=Lazily("centrode.cams.followers.profile_results", "FollowerProfileResults"),
+    view=Lazily("centrode.views.follower_profile", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
+    command=Command(
+        help="",
+        animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
+        animation_file="cam.gif",
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),)),
+    subject="cam",
+)
+
+ROLLER_PATH = Topic(
+    name="roller-path",
+    compute=Lazily("centrode.cams.cam", "roller_path_results"),
+    result=Lazily("centrode.cams.cam", "RollerPathResults"),
+    view=Lazily("centrode.views.roller_path", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("path", mark("Path of the roller's centre")),
+        ),
+        instants=False,
+    ),
+    subject="cam",
+)
+
+PATH_ROUTES = Topic(
+    name="path-routes",
+    compute=Lazily("centrode.cams.cam", "path_routes_results"),
+    result=Lazily("centrode.cams.cam", "PathRoutesResults"),
+    view=Lazily("centrode.views.path_routes", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    command=Command(
+        help="",
+        options=(
+            ValueOption(
+                "terms",
+                mark("N"),
+                mark("Cut the power series after a_N; the description's own number, else 20."),
+                int,
+            ),
+        ),
+        needs=NEEDS_CURVATURE_LAW,
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("routes", mark("Three routes to the path")),)),
+    subject="cam",
+)
+
+FOLLOWER_FORCES = Topic(
+    name="follower-forces",
+    compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
+    result=Lazily("centrode.cams.followers.force_results", "FollowerForceResults"),
+    view=Lazily("centrode.views.follower_forces", "sheet"),
+    concerns=Lazily("centrode.cams.followers.force_results", "has_forces"),
+    document=InDocuments(chapters=(ChapterOfTopic("cam-forces", mark("Forces on cam and follower")),)),
+    subject="cam",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -644,6 +729,11 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     GIVEN_MASSES,
     DESCRIBE,
+    BASE_RADIUS,
+    FOLLOWER_PROFILE,
+    ROLLER_PATH,
+    PATH_ROUTES,
+    FOLLOWER_FORCES,
     EQUATIONS,
 )
 """Every topic."""

@@ -50,6 +50,11 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapte
     return blocks.ChapterBlocks(name, spelling.text(chapter.title), sections)
 
 
+def document_block(block: Block, numbers: Numbers) -> blocks.Block:
+    """A block without a picture of a sheet, spelled."""
+    return _block(block, {}, DocumentSpelling(numbers))
+
+
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.SectionBlocks:
     made = [_block(block, pictures, spelling) for block in section.blocks if _is_there(block, pictures)]
     return blocks.SectionBlocks(spelling.text(section.title), tuple(made))
