@@ -11,6 +11,7 @@ from .hypertext import figure_html as figure_html
 from .hypertext import rows_html as rows_html
 from .hypertext import sheet_html as sheet_html
 from .markup import page_text as page_text
+from .netcdf import read_dataset as read_dataset
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text

@@ -16,7 +16,6 @@ from centrode.files.drafts import draft_folder
 from centrode.locale import _, mark
 from centrode.model.cam_files import parse_cam
 from centrode.model.files import parse_mechanism
-from centrode.render.netcdf import read_dataset
 from centrode.topics.registry import TOPICS
 
 if TYPE_CHECKING:
@@ -193,7 +192,7 @@ def open(path: str | Path) -> xarray.Dataset:
 
     Raises InputError for a file that cannot be read, and for one that is no result of centrode.
     """
-    dataset = read_dataset(Path(path))
+    dataset = render.read_dataset(Path(path))
     if not is_result(dataset):
         what = _("it is no result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))
