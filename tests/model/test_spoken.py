@@ -8,9 +8,10 @@ import pytest
 
 import centrode as ct
 from centrode.locale import LANGUAGES, speaking
-from centrode.model.labels import LOADS, body_name, load_name
+from centrode.model.labels import body_name
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.texts import Text
+from centrode.views.load_names import KINDS, load_text
 from centrode.views.reaction_names import contact_text, side_text
 
 PRESS = ct.example("six-bar-press")
@@ -41,15 +42,15 @@ def named(name: str) -> ct.Mechanism:
 @pytest.mark.parametrize(("language", "label"), SAID)
 def test_loads_without_a_name(language: str, label: str) -> None:
     with speaking(language):
-        assert load_name(PRESS, label) == SAID[language, label]
+        assert said(load_text(PRESS, label)) == SAID[language, label]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("name", ["friction A", "weight AB", "load", "force"])
 def test_names_of_users_stay(language: str, name: str) -> None:
     with speaking(language):
-        assert load_name(named(name), name) == name
-        assert load_name(named(name), f"{name} 2") == f"{name} 2"
+        assert said(load_text(named(name), name)) == name
+        assert said(load_text(named(name), f"{name} 2")) == f"{name} 2"
         assert body_name(named(name), "slider C") == "slider C"
 
 
@@ -66,9 +67,11 @@ def test_bodies_and_sides(language: str) -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_english_is_what_results_have(language: str) -> None:
     """In English labels stay; in other languages none of their words does."""
-    for label in ("guide H", "gear H", "slider H", *(f"{kind} H" for kind in LOADS)):
+    for label in ("guide H", "gear H", "slider H", *(f"{kind} H" for kind in KINDS)):
         with speaking(language):
-            names = {said(contact_text(label)), body_name(PRESS, label), load_name(PRESS, label)} - {label}
+            names = {said(contact_text(label)), body_name(PRESS, label), said(load_text(PRESS, label))} - {
+                label
+            }
         assert len(names) == (language != "en")
         assert all(one.endswith(" H") and not one[:-1].isascii() for one in names)
 

@@ -8,10 +8,13 @@ import matplotlib.mathtext
 import pytest
 
 import centrode as ct
+from centrode.render.document.blocks import TableBlock
+from centrode.render.document.chapters import document_chapter
+from centrode.render.document.numbers import Numbers
 from centrode.render.latex import LatexSpelling, escape
 from centrode.render.plain_formulas import split_at_signs
 from centrode.topics.presentation import page
-from centrode.views.equations import LONGEST
+from centrode.views.equations import LONGEST, sheet
 from equation_pages import formulas, rows
 
 WIDTH = 110
@@ -101,6 +104,20 @@ def test_velocities_are_told_in_rates_and_put_in() -> None:
         "v_By = -ω₄ l₄ cos φ₄ = l₁ cos φ₃ cos φ₄ sin(φ₂ - t)/(cos φ₂ sin(φ₃ - φ₄))",
         "v_B = l₄ |ω₄|",
     ]
+
+
+@pytest.mark.parametrize("hostile", ["No 1.23456", "run 30 deg", "2.50 kg", "$x_1$", "<b>", "#a"])
+def test_names_come_out_character_by_character(hostile: str) -> None:
+    """In plain text, Markdown, LaTeX and the chapter of a document."""
+    coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
+    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
+    found = ct.equations(mechanism)
+    assert f"angle of link {hostile}\n" in ct.summary(found)
+    assert f"| angle of link {hostile} |" in page(found, "md")
+    assert f"& angle of link {escape(hostile)} " in page(found, "tex")
+    chapter = document_chapter("equations", sheet(found), Numbers(mechanism.display))
+    (symbols,) = [block for block in chapter.sections[0].blocks if isinstance(block, TableBlock)]
+    assert f"angle of link {hostile}" in [row[2].replace(r"\$", "$") for row in symbols.rows]
 
 
 def test_long_formulas_are_left_out_of_the_page_alone() -> None:
