@@ -16,8 +16,8 @@ from centrode.locale import speaking
 from centrode.present.equations.page import PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document import blocks
+from centrode.render.document.cam_player import moving_wheel
 from centrode.report.html.page import FONT, HERE, html_page
-from centrode.report.player_cams import moving_wheel
 from centrode.report.player_linkages import moving_of
 
 from .browser import Seen, browser, frames, opened, until

@@ -8,7 +8,7 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError
 from centrode.render.document.blocks import Moving, Outline, RingBlock
-from centrode.report.player_cams import STEP, moving_wheel
+from centrode.render.document.cam_player import STEP, moving_wheel
 from centrode.report.player_linkages import moving_of
 
 EPS = np.finfo(float).eps

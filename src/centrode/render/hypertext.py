@@ -15,6 +15,7 @@ from centrode.present.style import house_style
 from centrode.render.figures import figures_of
 from centrode.render.spelling import PlainSpelling
 from centrode.render.terminal import fact_rows, table_cells
+from centrode.sheets.outlines import CamPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -89,7 +90,7 @@ def _block(block: Block, spelling: PlainSpelling, display: Display) -> str:
             heading = spelling.text(block.heading) if isinstance(block, Listing) else ""
             items = "".join(f"<li>{html.escape(spelling.text(item))}</li>" for item in texts)
             return f"{_paragraph(heading)}<ul>{items}</ul>"
-        case Formula() | Illustration() | Check():
+        case Formula() | Illustration() | Check() | CamPlayer():
             return ""
         case _:
             assert_never(block)

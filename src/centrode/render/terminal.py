@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 from centrode.quantities import typeset_unit
 from centrode.render.plain_table import aligned, listing
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.outlines import CamPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -77,7 +78,7 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             return "\n".join(f"  {spelling.text(item)}" for item in texts)
         case Listing(heading, items):
             return listing(spelling.text(heading), [spelling.text(item) for item in items])
-        case Formula() | Illustration() | Check():
+        case Formula() | Illustration() | Check() | CamPlayer():
             return ""
         case _:
             assert_never(block)

@@ -21,9 +21,9 @@ from centrode.present.sphere.globe import Globe, draw_globe, globe_of
 from centrode.present.style import GROUND, INK, house_style, pens
 from centrode.present.wheels import BARREL, OVER, slides
 from centrode.render.document.blocks import Moving, Outline, RingBlock, shown
+from centrode.render.document.cam_player import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import NARROW, Numbers
-from centrode.report.player_cams import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
 
 if TYPE_CHECKING:
     import xarray

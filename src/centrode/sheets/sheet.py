@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing, WheelPositions
+from centrode.sheets.outlines import CamPlayer, OutlineDrawing, OutlineSet, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -190,7 +190,9 @@ class Listing:
     items: tuple[Text, ...]
 
 
-Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Items | Listing
+Block: TypeAlias = (
+    Paragraph | Formula | Table | FactTable | Illustration | Check | Items | Listing | CamPlayer
+)
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,6 @@ from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
 from centrode.render.document.blocks import ChapterBlocks
-from centrode.report.chapters.curvature_cams import (
-    cam_motion_chapter,
-)
-from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
@@ -56,7 +52,7 @@ def either(*makers: Make) -> Make:
 
 OWN: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
-    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
+    "motion": Kind(mark("Motion"), motion_chapter),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
