@@ -134,8 +134,6 @@ from .cams.followers.forces import least_push as least_push
 from .cams.followers.forces import jump_speed as jump_speed
 from .cams.followers.forces import preload_needed as preload_needed
 from .cams.followers.forces import stiffness_needed as stiffness_needed
-from .present import animate_cam_body as animate_cam_body
-from .present import animate_follower as animate_follower
 
 # Profiles of cams, walking wheels
 from .cams.results import cam_profile as cam_profile
@@ -158,7 +156,6 @@ from .present import Pace as Pace
 from .present import Animation as Animation
 from .present import animate_motion as animate_motion
 from .present import animate_centrodes as animate_centrodes
-from .present import animate_walking as animate_walking
 
 # Equations in symbols
 from .equations.derivation import equations as equations

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from centrode.locale import _
-from centrode.present.curves import DrawnAbscissa, Panel, sheet, write_legend, write_title
+from centrode.present.curves import DrawnAbscissa, Panel, angle_ticks, sheet, write_legend, write_title
 from centrode.present.figure_files import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, darkened, house_style
 from centrode.render.areas import area_figure
@@ -62,6 +62,8 @@ INCHES = 4.6
 """Height of a diagram's axes, which its legend may take."""
 COLOURED = PALETTE[:-1]
 """The palette without its black, which is the sum's among parts."""
+TICKS = 9
+"""The most ticks of an angle."""
 MARKED = (0, (6, 2, 1.5, 2))
 """Dashes of the line at a single place."""
 EVENTS = {EventKind.LIMIT: LIMIT, EventKind.CHANGE_POINT: CHANGE_POINT}
@@ -231,7 +233,9 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
             handles.append((line, name))
         axes.set_yscale("log")
         if abscissa.values[0] < abscissa.values[-1]:
-            axes.set_xlim(float(abscissa.values[0]), float(abscissa.values[-1]))
+            ends = float(abscissa.values[0]), float(abscissa.values[-1])
+            axes.set_xlim(ends)
+            angle_ticks(axes.xaxis, *ends, abscissa.unit, TICKS)
         axes.set_ylabel(panel.label)
         write_legend(axes, handles)
     grid[-1, 0].set_xlabel(abscissa.label)
