@@ -64,6 +64,8 @@ COLOURED = PALETTE[:-1]
 """The palette without its black, which is the sum's among parts."""
 TICKS = 9
 """The most ticks of an angle."""
+ROOM = 0.08
+"""Share of the panel that the name of a single place takes at its right."""
 MARKED = (0, (6, 2, 1.5, 2))
 """Dashes of the line at a single place."""
 EVENTS = {EventKind.LIMIT: LIMIT, EventKind.CHANGE_POINT: CHANGE_POINT}
@@ -182,7 +184,7 @@ def _mark_places(figure: Figure, plot: Plot, across: float, spelling: FigureSpel
             continue
         for axes in figure.axes:
             axes.axvline(place, color=INK, linewidth=0.9, linestyle=MARKED)
-        beside = -4 if place > 0.5 * (low + high) else 12
+        beside = 12 if high - place > ROOM * (high - low) else -4
         figure.axes[0].annotate(
             spelling.text(name), (place, 0.34), xycoords=("data", "axes fraction"), xytext=(beside, 0),
             textcoords="offset points", rotation=90, ha="right", va="center", color=INK, fontsize=8.5,
