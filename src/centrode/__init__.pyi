@@ -44,6 +44,8 @@ from .kinematics.several_inputs.limits import limits as limits
 from .kinematics.several_inputs.limits import Limits as Limits
 from .kinematics.several_inputs.region import reachable_region as reachable_region
 from .kinematics.several_inputs.region import region_results as region_results
+from .analysis.operation import principle_of_operation as principle_of_operation
+from .analysis.operation import PrincipleOfOperation as PrincipleOfOperation
 from .analysis.rotatability.rotatability import rotatability as rotatability
 from .analysis.rotatability.rotatability import Rotatability as Rotatability
 from .analysis.redesign.repair import repair as repair
@@ -159,10 +161,6 @@ from .present import animate_centrodes as animate_centrodes
 
 # Equations in symbols
 from .equations.derivation import equations as equations
-from .present import equations_text as equations_text
-from .present import equations_latex as equations_latex
-from .present import equations_markdown as equations_markdown
-from .present import equations_rows as equations_rows
 
 # Instant centres, centrodes, curvature
 from .analysis.instant_centres.centres import instant_centres as instant_centres
@@ -189,7 +187,6 @@ from .study.variant_results import variants as variants
 from .study.variant_results import variant_rows as variant_rows
 from .study.variant_results import variants_summary as variants_summary
 from .study.variant_results import spoken_variants as spoken_variants
-from .study.verbal_description import describe as describe
 
 # Many mechanisms
 from .sweeps.sweep import sweep as sweep

@@ -6,6 +6,7 @@ import ast
 import csv
 import dataclasses
 import functools
+import inspect
 import math
 import re
 from collections.abc import Iterator, Mapping
@@ -90,7 +91,8 @@ def result(topic_name: str, name: str) -> Any:
     (topic,) = [topic for topic in TOPICS if topic.name == topic_name]
     description = ct.example(name)
     command = Command("") if topic.command is None else topic.command
-    given: dict[str, Any] = {"samples": 9} if command.samples else {}
+    takes_samples = "samples" in inspect.signature(topic.compute.load()).parameters
+    given: dict[str, Any] = {"samples": 9} if takes_samples else {}
     if command.complete:
         given[command.complete] = False  # what only files hold may take long
     # what has to be named is a link; instants have a default of their own

@@ -13,8 +13,13 @@ from typing import TYPE_CHECKING, Any
 import lazy_loader
 
 if TYPE_CHECKING:
-    from centrode.notebook.display import check_html, mechanism_html, motion_html, result_html
-    from centrode.present.equations.latex import equations_markdown
+    from centrode.notebook.display import (
+        check_html,
+        equations_markdown,
+        mechanism_html,
+        motion_html,
+        result_html,
+    )
 
 __all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "register", "result_html"]
 
@@ -40,9 +45,11 @@ def register() -> None:
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if shell is None:
         return
-    results = [topic.result for topic in importlib.import_module("centrode.topics.registry").TOPICS]
-    own = [("text/html", result.module, result.name, "result_html") for result in results]
-    for kind, module, name, function in (*own, *SHOWN):
+    own = {(module, name) for _kind, module, name, _function in SHOWN}
+    topics = importlib.import_module("centrode.topics.registry").TOPICS
+    results = dict.fromkeys((topic.result.module, topic.result.name) for topic in topics)
+    others = [("text/html", *result, "result_html") for result in results if result not in own]
+    for kind, module, name, function in (*others, *SHOWN):
         shell.display_formatter.formatters[kind].for_type_by_name(module, name, _later(function))
 
 

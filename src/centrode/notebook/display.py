@@ -11,16 +11,16 @@ from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.present.displayed_units import shown_as
-from centrode.present.equations.latex import equations_markdown
 from centrode.present.figures import read_scene
 from centrode.present.pictures import mechanism_figure
 from centrode.present.style import house_style
 from centrode.study.summary import check_rows
-from centrode.topics.presentation import display_of, is_result, sheet_of
+from centrode.topics.presentation import display_of, is_result, page, sheet_of
 
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.equations.derivation import Equations
     from centrode.model.mechanism import Mechanism
     from centrode.study.check import MechanismCheck
 
@@ -71,6 +71,11 @@ def motion_html(dataset: xarray.Dataset) -> str:
         return _drawing(mechanism, dataset) + own
     except (CentrodeError, LookupError, ValueError):  # parts of a motion may lack what a drawing needs
         return own
+
+
+def equations_markdown(equations: Equations) -> str:
+    """The equations of a mechanism as Markdown, their formulas as LaTeX between dollar signs."""
+    return page(equations, "md")
 
 
 def _is_motion(dataset: xarray.Dataset) -> bool:

@@ -18,10 +18,6 @@ from .linkage_scene import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
 
 # Equations
-from .equations.text import equations_rows as equations_rows
-from .equations.text import equations_text as equations_text
-from .equations.latex import equations_latex as equations_latex
-from .equations.latex import equations_markdown as equations_markdown
 
 # Forces
 

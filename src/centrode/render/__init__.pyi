@@ -10,6 +10,7 @@ from .hypertext import figure_html as figure_html
 from .hypertext import rows_html as rows_html
 from .hypertext import sheet_html as sheet_html
 from .outlines import writes_dxf as writes_dxf
+from .markup import page_text as page_text
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import io
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 
@@ -13,20 +13,8 @@ from centrode.present.figure_files import METADATA
 from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.render.figures import figures_of
-from centrode.render.spelling import PlainSpelling
-from centrode.render.terminal import fact_rows, table_cells
-from centrode.sheets.sheet import (
-    Block,
-    Check,
-    FactTable,
-    Formula,
-    Illustration,
-    Items,
-    Listing,
-    Paragraph,
-    Section,
-    Table,
-)
+from centrode.render.latex import aligned_relations
+from centrode.render.markup import MarkupPage
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,19 +25,9 @@ if TYPE_CHECKING:
 
 def sheet_html(sheet: Sheet, display: Display) -> str:
     """The first picture of a sheet over its facts and what a terminal prints below them, as XHTML."""
-    spelling = PlainSpelling(display)
     first = next(iter(sheet.pictures), None)
     drawn = {} if first is None else figures_of({first: sheet.pictures[first]}, display)
-    parts = [figure_html(figure) for figure in drawn.values()]
-    parts.append(rows_html((), fact_rows(sheet.facts, display)))
-    for block in sheet.printed:
-        if isinstance(block, Section):
-            parts.append(f"<h5>{html.escape(spelling.text(block.title))}</h5>")
-        parts += [
-            _block(one, spelling, display)
-            for one in (block.blocks if isinstance(block, Section) else (block,))
-        ]
-    return "".join(parts)
+    return "".join(map(figure_html, drawn.values())) + HypertextPage(display).page(sheet, "")
 
 
 def figure_html(figure: Figure) -> str:
@@ -75,25 +53,34 @@ def rows_html(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return f"<table>{f'<tr>{head}</tr>' if head else ''}{''.join(lines)}</table>"
 
 
-def _block(block: Block, spelling: PlainSpelling, display: Display) -> str:
-    """A block of a sheet; formulas, pictures and checks belong to documents."""
-    match block:
-        case FactTable(facts):
-            return rows_html((), fact_rows(facts, display))
-        case Table():
-            heads, rows = table_cells(block, spelling)
-            return _paragraph(spelling.text(block.caption)) + rows_html(heads, rows)
-        case Paragraph(text):
-            return _paragraph(spelling.text(text))
-        case Items(texts) | Listing(_, texts):
-            heading = spelling.text(block.heading) if isinstance(block, Listing) else ""
-            items = "".join(f"<li>{html.escape(spelling.text(item))}</li>" for item in texts)
-            return f"{_paragraph(heading)}<ul>{items}</ul>"
-        case Formula() | Illustration() | Check():
-            return ""
-        case _:
-            assert_never(block)
+class HypertextPage(MarkupPage):
+    """Sheets as XHTML; whatever users called something is shown as it is."""
 
+    def page(self, sheet: Sheet, title: str) -> str:
+        """A part of a page, with the title above it."""
+        return (self.heading(title) if title else "") + "".join(self.parts(sheet))
 
-def _paragraph(text: str) -> str:
-    return f"<p>{html.escape(text)}</p>" if text else ""
+    def heading(self, text: str) -> str:
+        """A small heading."""
+        return f"<h4>{html.escape(text)}</h4>"
+
+    def table(self, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+        """Cells flush left."""
+        return rows_html(heads, rows)
+
+    def items(self, texts: Sequence[str], numbered: bool) -> str:
+        """A list, with numbers where the order matters."""
+        kind = "ol" if numbered else "ul"
+        return f"<{kind}>{''.join(f'<li>{html.escape(text)}</li>' for text in texts)}</{kind}>"
+
+    def paragraph(self, text: str) -> str:
+        """Sentences."""
+        return f"<p>{html.escape(text)}</p>" if text else ""
+
+    def relations(self, lines: Sequence[Sequence[str]]) -> str:
+        """Relations, aligned, as notebooks typeset them."""
+        return self.displayed(f"\\begin{{aligned}}\n{aligned_relations(lines)}\n\\end{{aligned}}")
+
+    def displayed(self, mathematics: str) -> str:
+        """Mathematics on lines of its own."""
+        return f"<p>$$ {html.escape(mathematics)} $$</p>"

@@ -190,7 +190,49 @@ class Listing:
     items: tuple[Text, ...]
 
 
-Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Items | Listing
+@dataclass(frozen=True)
+class LinearEquations:
+    """matrix unknowns = right.
+
+    Attributes
+    ----------
+    matrix : (n, n) entries
+    unknowns, right : (n)
+    """
+
+    matrix: tuple[tuple[Leaf, ...], ...]
+    unknowns: tuple[Leaf, ...]
+    right: tuple[Leaf, ...]
+
+
+@dataclass(frozen=True)
+class ExplainedSymbol:
+    """A symbol of formulas, its value, and what it stands for."""
+
+    symbol: Leaf
+    value: Text
+    meaning: Text
+
+
+@dataclass(frozen=True)
+class SymbolList:
+    """Symbols of formulas with their values and meanings."""
+
+    symbols: tuple[ExplainedSymbol, ...]
+
+
+Block: TypeAlias = (
+    Paragraph
+    | Formula
+    | Table
+    | FactTable
+    | Illustration
+    | Check
+    | Items
+    | Listing
+    | LinearEquations
+    | SymbolList
+)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from centrode.sheets.symbolic import SymbolicLeaf
+
 
 @dataclass(frozen=True)
 class Name:
@@ -34,7 +36,8 @@ class Number:
     value : float
         In `unit`.
     unit : str
-        SI unit ("kg m^2", "1" for a plain number); lengths and angles appear in the units of the display.
+        SI unit ("kg m^2", "1" for a plain number); lengths and angles appear in the units of the display. In prose "°"
+        for an angle in degrees for every reader.
     digits : str
         Python's format of the number: ".6g", ".1e", "+.2%"; a document never shows more digits than it is set to, and
         formulas and columns have a rule of their own. Empty: as many digits as the document is set to; "+": so many,
@@ -76,6 +79,10 @@ class Sentence:
     def __init__(self, message: str, /, **values: Text) -> None:
         object.__setattr__(self, "message", message)
         object.__setattr__(self, "values", values)
+
+    def fill(self, **values: Text) -> Sentence:
+        """The same sentence with these texts in its holes: sentences of one kind stand in a table without them."""
+        return Sentence(self.message, **values)
 
 
 @dataclass(frozen=True, init=False)
@@ -210,11 +217,13 @@ class VectorNotation:
         object.__setattr__(self, "values", values)
 
 
-Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed | VectorNotation"
+Leaf: TypeAlias = (
+    "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed | VectorNotation | SymbolicLeaf"
+)
 """A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
 Text: TypeAlias = (
     "Name | Title | Number | Sentence | Counted | Joined | Symbol"
-    " | Expression | Unit | Part | Place | Indexed | VectorNotation"
+    " | Expression | Unit | Part | Place | Indexed | VectorNotation | SymbolicLeaf"
 )
 
 NOTHING = Joined(())

@@ -116,11 +116,15 @@ def sheet_of(result: Any) -> Sheet:
 
 def display_of(result: Any) -> Display:
     """The units of the description that a result knows: that of its mechanism or of its cam."""
+    return description_of(result).display
+
+
+def description_of(result: Any) -> Mechanism | AnyCam:
+    """The mechanism or the cam that a result knows."""
     dataset = result.dataset if isinstance(result, Result) else result
     if is_result(dataset):
-        return _description_of(dataset).display
-    description = result.mechanism if hasattr(result, "mechanism") else result.cam
-    return cast("Display", description.display)
+        return _description_of(dataset)
+    return cast("Mechanism | AnyCam", result.mechanism if hasattr(result, "mechanism") else result.cam)
 
 
 def summary(result: Any) -> str:
@@ -129,6 +133,18 @@ def summary(result: Any) -> str:
     They are in the language that is spoken and the units of the result's description.
     """
     return render.sheet_text(sheet_of(result), display_of(result))
+
+
+def page(result: Any, kind: str) -> str:
+    """What a terminal prints of a result, under the title of its description, as a document.
+
+    Parameters
+    ----------
+    kind : "txt", "tex" or "md"
+        Plain text, a LaTeX document (amsmath), or Markdown.
+    """
+    description = description_of(result)
+    return render.page_text(sheet_of(result), _(description.title), kind, description.display)
 
 
 def tables(result: Any) -> Mapping[str, Table]:

@@ -27,6 +27,8 @@ HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
 NEEDS_FOLLOWER = Lazily("centrode.model.cam_files", "with_follower")
 NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
+WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
+
 INTEGRATE = Topic(
     name="integrate",
     compute=Lazily("centrode.equations.integration", "integration_results"),
@@ -575,6 +577,64 @@ DIAGRAMS = Topic(
     ),
 )
 
+EQUATIONS = Topic(
+    name="equations",
+    compute=Lazily("centrode.equations.instants", "equation_results"),
+    result=Lazily("centrode.equations.derivation", "Equations"),
+    view=Lazily("centrode.views.equations", "sheet"),
+    command=Command(
+        help=mark("Write the constraint equations in symbols, solved."),
+        options=(
+            ValueOption(
+                "point",
+                mark("NAME"),
+                mark(
+                    "A point whose velocity is asked for, again for more; those on guides of the frame if left out."
+                ),
+                several=True,
+                parameter="points",
+            ),
+        ),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("equations", mark("Constraint equations")),
+            ChapterOfTopic("derivation", mark("Velocities and accelerations")),
+        ),
+        points=True,
+        may_be_left_out=True,
+        may_be_incomplete=True,
+    ),
+)
+
+DESCRIBE = Topic(
+    name="describe",
+    compute=Lazily("centrode.analysis.operation", "principle_of_operation"),
+    result=Lazily("centrode.analysis.operation", "PrincipleOfOperation"),
+    view=Lazily("centrode.views.words", "sheet"),
+    command=Command(
+        help=mark("Say in words how a mechanism works."),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("words", mark("How it works")),), instants=False),
+)
+
+GIVEN_MASSES = Topic(
+    name="masses",
+    compute=Lazily("centrode.dynamics.masses", "link_masses"),
+    result=Lazily("centrode.dynamics.masses", "LinkMasses"),
+    view=Lazily("centrode.views.masses_and_loads", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("masses-and-loads", mark("Masses and loads")),), instants=False
+    ),
+)
+
 BASE_RADIUS = Topic(
     name="base-radius",
     compute=Lazily("centrode.cams.followers.base_radius_results", "base_radius_results"),
@@ -731,6 +791,8 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    GIVEN_MASSES,
+    DESCRIBE,
     BASE_RADIUS,
     FOLLOWER_PROFILE,
     ROLLER_PATH,
@@ -740,5 +802,6 @@ TOPICS: tuple[Topic, ...] = (
     CAM_CONTACT,
     CAM_CHOICE,
     FOLLOWER_FORCES,
+    EQUATIONS,
 )
 """Every topic."""

@@ -16,16 +16,12 @@ from centrode.report.chapters.curvature_cams import (
     cam_motion_chapter,
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
 from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
-from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.spherical_linkages import (
     sphere_data_chapter,
-    sphere_equations_chapter,
     sphere_plots_chapter,
     sphere_tables_chapter,
 )
@@ -57,13 +53,9 @@ def either(*makers: Make) -> Make:
 OWN: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
-    "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
-    "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
-    "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
 }
 
 
