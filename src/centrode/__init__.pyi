@@ -121,21 +121,11 @@ from .cams.followers.motion_results import follower_motion_results as follower_m
 from .cams.followers.motion_results import motion_law_results as motion_law_results
 from .cams.followers.motion import follower_motion as follower_motion
 from .cams.followers.motion import cam_laws as cam_laws
-from .cams.followers.motion import compare_laws as compare_laws
 from .cams.followers.base_circle import follower_cam as follower_cam
-from .cams.followers.base_circle import least_cam as least_cam
-from .cams.followers.manufacture import follower_outlines as follower_outlines
-from .cams.followers.manufacture import cam_points as cam_points
 from .cams.followers.base_radius_results import base_radius_results as base_radius_results
 from .cams.followers.profile_results import follower_profile_results as follower_profile_results
 from .cams.followers.force_results import follower_force_results as follower_force_results
 from .cams.followers.forces import cam_forces as cam_forces
-from .cams.followers.forces import follower_forces as follower_forces
-from .cams.followers.forces import Burden as Burden
-from .cams.followers.forces import least_push as least_push
-from .cams.followers.forces import jump_speed as jump_speed
-from .cams.followers.forces import preload_needed as preload_needed
-from .cams.followers.forces import stiffness_needed as stiffness_needed
 
 # Profiles of cams, walking wheels
 from .cams.results import cam_profile as cam_profile

@@ -49,10 +49,11 @@ def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given:
     description = ct.load_cam(cam)
     no_figures, dark = given.pop("no_figures"), given.pop("dark")
     _check_options(description, given)
+    with about(cam):
+        topics = [topic for topic in TOPICS_OF_CAMS if _applies(topic, description, given)]
     if animate:
         _check_animation(description, out)
     announce_samples(samples or 0)
-    topics = [topic for topic in TOPICS_OF_CAMS if _applies(topic, description, given)]
     names: list[str] = []
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
@@ -141,6 +142,8 @@ def _check_animation(cam: AnyCam, out: Path | None) -> None:
                 topic.compute(cam)
             except InputError as reason:
                 raise InputError("--animate", reason.what, reason.repair) from None
+            except MotionError:
+                pass  # the sheets say why there is no such cam
     if out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
 
