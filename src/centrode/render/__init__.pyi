@@ -10,6 +10,8 @@ from .hypertext import figure_html as figure_html
 from .hypertext import rows_html as rows_html
 from .hypertext import sheet_html as sheet_html
 from .markup import page_text as page_text
+from .netcdf import read_dataset as read_dataset
+from .netcdf import write_dataset as write_dataset
 from .outlines import writes_dxf as writes_dxf
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
