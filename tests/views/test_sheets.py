@@ -19,12 +19,12 @@ import pytest
 import centrode as ct
 from centrode.locale import _, choose_language
 from centrode.model.settings import Display
-from centrode.present.equations.typst import quote
 from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
+from centrode.render.document.typst import quote
 from centrode.render.files import write_table
 from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling

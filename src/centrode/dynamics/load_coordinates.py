@@ -30,7 +30,7 @@ class Coordinate(Protocol):
         """Derivative of the number by the parameter, at held directions, as a jet with its own derivative."""
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
-        """What a load of one unit along it does to points and links: its derivatives by their coordinates."""
+        """Wrenches of a load of one unit along the number: its derivatives by the coordinates of points and links."""
 
 
 @dataclass(frozen=True)
@@ -231,7 +231,7 @@ class Spin:
 
 @dataclass(frozen=True)
 class Travel:
-    """How far the drive has gone, whichever way: what works along it resists the drive itself."""
+    """Way of the drive, whichever its sense: what works along it resists the drive itself."""
 
     def value(self, state: State) -> Number:
         return float("nan")

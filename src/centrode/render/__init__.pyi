@@ -11,6 +11,8 @@ from .hypertext import rows_html as rows_html
 from .hypertext import sheet_html as sheet_html
 from .outlines import writes_dxf as writes_dxf
 from .markup import page_text as page_text
+from .netcdf import read_dataset as read_dataset
+from .netcdf import write_dataset as write_dataset
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text

@@ -130,7 +130,7 @@ def _shortest_loop(
 
 @dataclass(frozen=True)
 class AssurGroup:
-    """One term of the structural formula.
+    """Group that is one term of the structural formula.
 
     Attributes
     ----------
@@ -239,7 +239,7 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
 
 
 def step_of(group: Group) -> str:
-    """One line for one group of a plan."""
+    """Line of text that describes one group of a plan."""
     if isinstance(group, RigidPoint):
         return _("point {point} of link {link}").format(point=group.point, link=group.link)
     if isinstance(group, TwoPointLink):

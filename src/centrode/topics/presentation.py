@@ -14,10 +14,8 @@ from centrode import render
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
 from centrode.locale import _, mark
-from centrode.model.cam_files import parse_cam
-from centrode.model.files import parse_mechanism
-from centrode.render.netcdf import read_dataset
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     import xarray
@@ -28,6 +26,11 @@ if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet, Table
 
 
+PARSERS = {
+    "mechanism": Lazily("centrode.model.files", "parse_mechanism"),
+    "cam": Lazily("centrode.model.cam_files", "parse_cam"),
+}
+"""What reads the description of a dataset."""
 WHOLE = mark("show a dataset as it was computed, with its attributes")
 RESTORED = {topic.name: topic for topic in TOPICS if topic.restore is not None}
 """Topics whose results are made from their datasets."""
@@ -83,9 +86,8 @@ def restored_result(result: Any) -> Any:
 
 def _description_of(dataset: xarray.Dataset) -> Mechanism | AnyCam:
     """The mechanism or cam that a dataset of a result holds as text."""
-    if RESTORED[dataset.attrs["topic"]].subject == "cam":
-        return parse_cam(dataset.attrs["cam"])
-    return parse_mechanism(dataset.attrs["mechanism"])
+    subject = RESTORED[dataset.attrs["topic"]].subject
+    return cast("Mechanism | AnyCam", PARSERS[subject](dataset.attrs[subject]))
 
 
 def _incomplete(absent: Exception) -> InputError:
@@ -175,7 +177,7 @@ def open(path: str | Path) -> xarray.Dataset:
 
     Raises InputError for a file that cannot be read, and for one that is no result of centrode.
     """
-    dataset = read_dataset(Path(path))
+    dataset = render.read_dataset(Path(path))
     if not is_result(dataset):
         what = _("it is no result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))
