@@ -122,7 +122,6 @@ from .cams.followers.base_radius_results import base_radius_results as base_radi
 from .cams.followers.profile_results import follower_profile_results as follower_profile_results
 from .cams.followers.force_results import follower_force_results as follower_force_results
 from .cams.followers.forces import cam_forces as cam_forces
-from .present import animate_cam_body as animate_cam_body
 
 # Profiles of cams, walking wheels
 from .cams.results import cam_profile as cam_profile
@@ -145,7 +144,6 @@ from .present import Pace as Pace
 from .present import Animation as Animation
 from .present import animate_motion as animate_motion
 from .present import animate_centrodes as animate_centrodes
-from .present import animate_walking as animate_walking
 
 # Equations in symbols
 from .equations.derivation import equations as equations

@@ -174,6 +174,8 @@ def test_bounds_that_are_broken(centrode: Centrode, write: Callable[..., str]) -
     done = centrode("cam", write(('[cam]\nbase_radius = "30 mm"\n', ""), uniform, more=BOUNDS))
     assert done.code == 3
     assert "at 100 deg the speed of the lift jumps: every radius leaves a sharp corner" in done.err
+    done = centrode("cam", "cam.toml", "--out", "out", "--no-figures", "--animate")
+    assert done.code == 3 and "Choice of the base radius" in done.out  # there is nothing to animate
 
 
 @pytest.mark.drawn

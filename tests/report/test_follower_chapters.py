@@ -284,6 +284,21 @@ def test_an_undercut_profile_is_told() -> None:
     assert not {"data", "lift", "laws"} & set(missing)
 
 
+def test_a_cam_that_no_radius_makes_is_told() -> None:
+    """The choice of the base radius says why there is none; what needs a size is left out."""
+    text = BODY.replace("TURN", "clockwise").replace("FOLLOWER", FOLLOWERS["roller"]).replace("LIFT", "14 mm")
+    text = text.replace('base_radius = "40 mm"\n', "").replace('"cycloidal"', '"uniform"')
+    made = ct.report(ct.parse_cam(text + '[bounds]\npressure_angle = "30 deg"\n'))
+    assert [chapter.name for chapter in made.chapters if not chapter.missing] == [
+        "data",
+        "lift",
+        "laws",
+        "base-radius",
+    ]
+    (failed,) = blocks_of(made.chapters[3], CheckBlock)
+    assert not failed.holds and "the speed of the lift jumps" in failed.text
+
+
 def test_a_follower_that_jumps_is_told() -> None:
     cam = ct.load_cam("valve-cam")
     fast = cam.model_copy(update={"body": cam.body.model_copy(update={"speed": 400.0})})

@@ -9,15 +9,7 @@ from centrode.report.document import report
 from centrode.report.study import ReportOptions
 from report.texts import texts_of
 
-<<<<<<< HEAD
-CHAPTERS_WITH_NAMES = (
-    "words",
-    "rotatability",
-    "centres",
-)
-=======
 CHAPTERS_WITH_NAMES = ("words", "rotatability", "centres")
->>>>>>> words
 
 
 def crank_rocker(crank: str) -> ct.Mechanism:

@@ -20,11 +20,8 @@ from .drawing import draw_mechanism as draw_mechanism
 
 # Animations
 from .animations.animate import animate as animate
-from .animations.animate import animate_cam_body as animate_cam_body
 from .animations.animate import animate_centrodes as animate_centrodes
-from .animations.animate import animate_follower as animate_follower
 from .animations.animate import animate_motion as animate_motion
-from .animations.animate import animate_walking as animate_walking
 from .animations.video_files import Animation as Animation
 from .animations.video_files import Pace as Pace
 from .animations.animate import Shown as Shown

@@ -10,7 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.present.curves import DrawnAbscissa, Panel, sheet, write_legend, write_title
+from centrode.present.curves import DrawnAbscissa, Panel, angle_ticks, sheet, write_legend, write_title
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.plots import CurveRole, TraceKind
@@ -25,6 +25,10 @@ INCHES = 4.6
 """Height of a diagram's axes, which its legend may take."""
 COLOURED = PALETTE[:-1]
 """The palette without its black, which is the sum's among parts."""
+TICKS = 9
+"""The most ticks of an angle."""
+ROOM = 0.08
+"""Share of the panel that the name of a single place takes at its right."""
 MARKED = (0, (6, 2, 1.5, 2))
 """Dashes of the line at a single place."""
 
@@ -70,7 +74,7 @@ def _mark_places(figure: Figure, plot: Plot, across: float, spelling: FigureSpel
             continue
         for axes in figure.axes:
             axes.axvline(place, color=INK, linewidth=0.9, linestyle=MARKED)
-        beside = -4 if place > 0.5 * (low + high) else 12
+        beside = 12 if high - place > ROOM * (high - low) else -4
         figure.axes[0].annotate(
             spelling.text(name), (place, 0.34), xycoords=("data", "axes fraction"), xytext=(beside, 0),
             textcoords="offset points", rotation=90, ha="right", va="center", color=INK, fontsize=8.5,
@@ -121,7 +125,9 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
             handles.append((line, name))
         axes.set_yscale("log")
         if abscissa.values[0] < abscissa.values[-1]:
-            axes.set_xlim(float(abscissa.values[0]), float(abscissa.values[-1]))
+            ends = float(abscissa.values[0]), float(abscissa.values[-1])
+            axes.set_xlim(ends)
+            angle_ticks(axes.xaxis, *ends, abscissa.unit, TICKS)
         axes.set_ylabel(panel.label)
         write_legend(axes, handles)
     grid[-1, 0].set_xlabel(abscissa.label)

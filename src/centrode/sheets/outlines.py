@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from centrode.sheets.texts import Sentence, Text, Title
 
 if TYPE_CHECKING:
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.profiles import CamOutline
     from centrode.cams.walking_wheel import WheelMover
 
@@ -183,3 +184,17 @@ class WheelPositions:
     mechanism: Title
     wheel: WheelMover
     turned: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class CamPlayer:
+    """A cam that turns under its follower, or a wheel that walks: a page plays it, paper shows how it begins.
+
+    Attributes
+    ----------
+    title : of the cam
+    body : what moves
+    """
+
+    title: Title
+    body: FollowerCam | WheelMover

@@ -694,7 +694,12 @@ FOLLOWER_PROFILE = Topic(
         animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
         animation_file="cam.gif",
     ),
-    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),)),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("motion", mark("Motion")),
+            ChapterOfTopic("profile", mark("Profile of the cam")),
+        )
+    ),
     subject="cam",
 )
 
@@ -775,7 +780,9 @@ WALKING_WHEEL = Topic(
         animation=Lazily("centrode.present.animations.animate", "animate_step"),
         animation_file="walking-wheel.gif",
     ),
-    document=InDocuments(chapters=(ChapterOfTopic("walking", mark("Walking wheel")),)),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("motion", mark("Motion")), ChapterOfTopic("walking", mark("Walking wheel")))
+    ),
     subject="cam",
 )
 

@@ -35,7 +35,7 @@ def on_both_sides(cam: Cam, value: float, digits: str = ".6g") -> Text:
     """An angle [rad], with both signs where the law is the same on both sides."""
     value = value if abs(value) > LEAST_ANGLE else 0.0
     both = cam.curvature.symmetric and value
-    return Joined((Symbol("±"), angle(abs(value), digits)), "") if both else angle(value, digits)
+    return Joined((Name("±"), angle(abs(value), digits)), "") if both else angle(value, digits)
 
 
 def stress(value: float) -> Number:

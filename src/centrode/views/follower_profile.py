@@ -20,6 +20,7 @@ from centrode.cams.followers.profile_results import (
 )
 from centrode.quantities import QUANTITIES
 from centrode.sheets.outlines import (
+    CamPlayer,
     DrawnBaseCircle,
     DrawnFollower,
     DrawnLines,
@@ -85,6 +86,7 @@ OVER = 0.12
 def sheet(results: FollowerProfileResults) -> Sheet:
     """Everything there is to say about the profile of a cam with a follower."""
     title = Title(results.cam.title)
+    motion = Section(NOTHING, (CamPlayer(title, results.body),))
     return Sheet(
         heading=Sentence("Profile of the cam"),
         facts=tuple(_facts(results)),
@@ -94,7 +96,12 @@ def sheet(results: FollowerProfileResults) -> Sheet:
         ),
         datasets={"cam-profile": results.dataset, "cam-points": results.points},
         pictures=Deferred({"cam-curvature": lambda: _curves(results), "cam-body": lambda: _drawing(results)}),
-        chapters=Deferred({"profile": lambda: _chapter(results)}),
+        chapters=Deferred(
+            {
+                "motion": lambda: Chapter(Sentence("Motion"), (motion,)),
+                "profile": lambda: _chapter(results),
+            }
+        ),
         outlines={"cam-profile": OutlineSet(title, results.outlines)},
     )
 

@@ -332,15 +332,15 @@ def _given(cam: Cam) -> Iterator[Fact]:
     yield Fact(Sentence("curvature law"), _law(cam))
     if cam.curvature.symmetric:
         yield Fact(Sentence("symmetry"), Sentence("the same on both sides of $phi = 0$"))
-    yield Fact(Sentence("radius at the start"), Number(cam.start.radius, "m"))
-    yield Fact(Sentence("pressure angle at the start"), Number(cam.start.pressure_angle, "rad"))
-    first, last = Number(cam.range.start, "rad"), Number(cam.range.stop, "rad")
+    yield Fact(Sentence("radius at the start"), Number(cam.start.radius, "m", digits=""))
+    yield Fact(Sentence("pressure angle at the start"), Number(cam.start.pressure_angle, "rad", digits=""))
+    first, last = Number(cam.range.start, "rad", digits=""), Number(cam.range.stop, "rad", digits="")
     yield Fact(Sentence("range"), Sentence("{first} to {last}", first=first, last=last))
     if cam.roller is not None:
-        yield Fact(Sentence("radius of the roller"), Number(cam.roller.radius, "m"))
+        yield Fact(Sentence("radius of the roller"), Number(cam.roller.radius, "m", digits=""))
     if cam.mover is not None:
         yield Fact(Sentence("legs of the wheel"), Number(cam.mover.legs))
-        yield Fact(Sentence("post of a shoe"), Number(cam.mover.post, "m"))
+        yield Fact(Sentence("post of a shoe"), Number(cam.mover.post, "m", digits=""))
     if cam.return_arc is not None:
         yield Fact(Sentence("return arc"), RETURNS[cam.return_arc.kind])
     yield from _contact(cam)
@@ -350,8 +350,8 @@ def _contact(cam: Cam) -> Iterator[Fact]:
     contact = cam.contact
     if contact is None:
         return
-    yield Fact(Sentence("force along the follower"), Number(contact.force, "N"))
-    yield Fact(Sentence("length of the line of contact"), Number(contact.width, "m"))
+    yield Fact(Sentence("force along the follower"), Number(contact.force, "N", digits=""))
+    yield Fact(Sentence("length of the line of contact"), Number(contact.width, "m", digits=""))
     materials = (
         (Sentence("material of the cam"), contact.cam),
         (Sentence("material of the roller"), contact.roller),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from centrode.cams.profiles import shoe_outlines
-from centrode.sheets.outlines import OutlineSet, WheelPositions
+from centrode.sheets.outlines import CamPlayer, OutlineSet, WheelPositions
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -39,14 +39,17 @@ SAMPLES = 180
 def sheet(results: WalkingWheelResults) -> Sheet:
     """Everything there is to say about a walking wheel; nothing where the cam has no profile."""
     heading = Sentence("Walking wheel")
-    chapters = Deferred({"walking": lambda: _chapter(results)})
+    chapters = {"walking": lambda: _chapter(results)}
     wheel, proof, dataset = results.wheel, results.proof, results.dataset
     if wheel is None or proof is None or dataset is None:
         if results.refusal is None:
             return Sheet()
-        return Sheet(heading=heading, facts=_facts(results), chapters=chapters, failure=_failure(results))
+        return Sheet(
+            heading=heading, facts=_facts(results), chapters=Deferred(chapters), failure=_failure(results)
+        )
     variables = [str(name) for name in dataset.data_vars if name != "carrier_angle"]
     title = Title(results.cam.title)
+    motion = Section(NOTHING, (CamPlayer(title, wheel),))
     positions = Sentence("The walking wheel where its carrier has turned by")
     return Sheet(
         heading=heading,
@@ -55,7 +58,7 @@ def sheet(results: WalkingWheelResults) -> Sheet:
         tables=Deferred({"shoe-profile": lambda: carrier_table(dataset, variables)}),
         datasets={"shoe-profile": dataset},
         pictures={"walking-wheel": WheelPositions(positions, title, wheel, results.instants)},
-        chapters=chapters,
+        chapters=Deferred({"motion": lambda: Chapter(Sentence("Motion"), (motion,)), **chapters}),
         failure=_failure(results),
         outlines=Deferred(
             {"shoe-profile": lambda: OutlineSet(title, tuple(shoe_outlines(wheel.shoe, SAMPLES)))}

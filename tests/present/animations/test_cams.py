@@ -13,6 +13,7 @@ from matplotlib.patches import Circle
 from PIL import Image
 
 import centrode as ct
+from centrode.present.animations.animate import animate_walking
 from centrode.present.animations.cams import TurningCamLayer, WalkingLayer
 from centrode.present.animations.layers import View
 from centrode.present.animations.stage import Stage
@@ -49,7 +50,7 @@ def test_a_walking_wheel_is_written(tmp_path: Path) -> None:
     said: list[tuple[int, int]] = []
     for dark in (False, True):
         path = tmp_path / f"{dark}.gif"
-        ct.animate_walking(
+        animate_walking(
             ct.walking_wheel(cam),
             path,
             cam.title,

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from centrode.cams.followers.geometry import FollowerCam
 from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.model.settings import Display
@@ -34,9 +35,9 @@ from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.walking_wheel import WheelMover, WheelPose
     from centrode.present.cams.driving_cam import DrivingCam
+    from centrode.sheets.outlines import CamPlayer
 
 # Signs that shapes are made of: circles, hatched lines.
 
@@ -98,6 +99,14 @@ def _rod(ends: Array) -> Outline:
     length = float(np.hypot(*way[0]))
     poses = np.column_stack([ends[:, 0], np.arctan2(way[:, 1], way[:, 0])])
     return Outline(np.array([[0.0, 0.0], [length, 0.0]]), poses, INK)
+
+
+def moving_cam(player: CamPlayer) -> Moving:
+    """The motion of a cam or of a walking wheel, to be played."""
+    title = _(player.title.text)
+    if isinstance(player.body, FollowerCam):
+        return moving_follower(player.body, title)
+    return moving_wheel(player.body, title)
 
 
 def moving_follower(body: FollowerCam, title: str = "") -> Moving:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.render import figures
 from centrode.render.document import blocks
+from centrode.render.document.cam_player import moving_cam
 from centrode.render.document.figures import picture
 from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers, spelled_number
@@ -21,6 +22,7 @@ from centrode.render.instant_pages import DRAWING as INSTANT
 from centrode.render.position_pages import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MotionPlayer
+from centrode.sheets.outlines import CamPlayer
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
@@ -96,6 +98,8 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return picture(figure, spelling.text(shown.title if caption is None else caption))
         case Check():
             return _check(block, spelling)
+        case CamPlayer():
+            return moving_cam(block)
         case Items(texts, numbered):
             return blocks.ItemsBlock(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):

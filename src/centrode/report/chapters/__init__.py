@@ -10,12 +10,7 @@ import functools
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
-from centrode.locale import mark
 from centrode.render.document.blocks import ChapterBlocks
-from centrode.report.chapters.curvature_cams import (
-    cam_motion_chapter,
-)
-from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -36,23 +31,14 @@ def either(*makers: Make) -> Make:
     """One chapter of the plane, of the sphere and of cams: the first that has something to tell."""
 
     def make(study: ReportStudy) -> ChapterBlocks | None:
-        return next((chapter for one in makers if (chapter := one(study)) is not None), None)
+        return next((chapter for maker in makers if (chapter := maker(study)) is not None), None)
 
     return make
 
 
-OWN: Mapping[str, Kind] = {
-<<<<<<< HEAD
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
-=======
->>>>>>> runs
-    "motion": Kind(mark("Motion"), either(cam_motion_chapter, follower_motion_chapter)),
-}
-
-
-def with_topics(own: Mapping[str, Kind]) -> dict[str, Kind]:
-    """Chapters with those of the topics; a chapter that several make is that of the first with something to tell."""
-    kinds = dict(own)
+def chapters_of_topics() -> dict[str, Kind]:
+    """The chapters of all topics; one that several topics make is that of the first with something to tell."""
+    kinds: dict[str, Kind] = {}
     for topic in TOPICS:
         for chapter in topic.document.chapters:
             make: Make = functools.partial(topic_chapter, topic, chapter)
@@ -62,5 +48,5 @@ def with_topics(own: Mapping[str, Kind]) -> dict[str, Kind]:
     return kinds
 
 
-CHAPTERS: Mapping[str, Kind] = in_order(with_topics(OWN), order.CHAPTERS)
-"""Those of the topics among the others."""
+CHAPTERS: Mapping[str, Kind] = in_order(chapters_of_topics(), order.CHAPTERS)
+"""All chapters."""

@@ -1,1 +1,0 @@
-"""Chapters of cams that are given by their follower's lift."""
