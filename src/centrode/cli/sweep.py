@@ -20,9 +20,7 @@ from centrode.errors import DamageWarning, InputError, MotionError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
-    import xarray as xr
-
-    from centrode.sweeps.sweep import SweepStudy
+    from centrode.sweeps.sweep import SweepResults, SweepStudy
 
 TABLE, STORE = ".csv", ".zarr"
 
@@ -43,22 +41,24 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
     target = out if out is not None else Path(Path(study).stem + STORE)
     need_table(target)
     if target.suffix == TABLE:
-        data = _as_table(asked, study, target, force)
+        results = _as_table(asked, study, target, force)
     elif target.suffix == STORE:
-        data = _as_store(asked, study, target)
+        results = _as_store(asked, study, target)
     else:
         raise InputError(
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
-    click.echo(render.aligned(ct.sweep_rows(data)))
+    sheet, display = ct.sheet_of(results), results.mechanism.display
+    click.echo(render.sheet_text(sheet, display))
     click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
-    if data.attrs["mechanisms_none"] == data.attrs["mechanisms"]:
-        raise MotionError(
-            study, _("no mechanism is ok at any sample"), _("ask for another range, or change what varies")
+    if sheet.failure is not None:
+        what, repair = (
+            render.plain_text(text, display) for text in (sheet.failure.what, sheet.failure.repair)
         )
+        raise MotionError(study, what, repair)
 
 
-def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
+def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> SweepResults:
     if asked.reduce is None:
         raise InputError(
             str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
@@ -68,25 +68,26 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
             warnings.simplefilter(
                 "ignore", RuntimeWarning
             )  # an interruption is told in the command's own words
-            data = _compute(asked, study, None)
-        if data.attrs["mechanisms"] < data["samples_ok"].size:
+            results = _compute(asked, study, None)
+        if results.data.attrs["mechanisms"] < results.data["samples_ok"].size:
             raise KeyboardInterrupt  # a part of a table looks like a whole one
-        draft.write_text(ct.sweep_csv(data), encoding="utf-8", newline="\n")
-    return data
+        (table,) = ct.tables(results).values()
+        render.write_table(table, draft, results.mechanism.display)
+    return results
 
 
-def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
+def _as_store(asked: SweepStudy, study: str, target: Path) -> SweepResults:
     try:
         with _damage_told():
-            data = _compute(asked, study, target)
+            results = _compute(asked, study, target)
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
         output.tell(note.format(folder=target))
         raise
-    found = data.attrs["mechanisms_found"]
+    found = results.data.attrs["mechanisms_found"]
     if found:
         output.tell(_("{found} mechanisms were there from an earlier run").format(found=found))
-    return data
+    return results
 
 
 @contextmanager
@@ -113,7 +114,7 @@ def _damage_told() -> Iterator[None]:
         yield
 
 
-def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
+def _compute(asked: SweepStudy, study: str, store: Path | None) -> SweepResults:
     with about(study), Progress() as progress:
         start, stop = (
             None if end is None else ct.range_value(asked.mechanism, end, key)
@@ -123,7 +124,7 @@ def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
         def tell(done: int, of: int) -> None:
             progress.say(_("computing mechanisms"), done, of)
 
-        return ct.sweep(
+        return ct.sweep_results(
             asked.mechanism,
             asked.vary,
             asked.outputs,

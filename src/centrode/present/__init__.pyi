@@ -9,7 +9,6 @@ from .workbooks import write_motion_xlsx as write_motion_xlsx
 from .spelled_tables import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling
 from .tables import write_coefficients_csv as write_coefficients_csv
-from .tables import sweep_csv as sweep_csv
 
 # Figures of motions
 from .figure_files import save_figures as save_figures

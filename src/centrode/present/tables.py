@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 import csv
-import io
-import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
-import xarray as xr
-
-from centrode.errors import InputError, Status
-from centrode.locale import _
+from centrode.errors import Status
 from centrode.present.displayed_units import shown_as
 from centrode.views.columns import drive_units, numeric_columns, unit_of
 
@@ -165,53 +158,3 @@ def _units(values: xarray.DataArray, count: int) -> list[str]:
     """SI unit of each drive, or pair of drives: `units` names one for all, or all of them."""
     units = ["" if unit == "1" else unit for unit in str(values.attrs.get("units", "")).split(", ")]
     return units * count if len(units) == 1 else units
-
-
-# Results of sweeps as tables.
-
-ROWS = 100_000
-"""Mechanisms of one table."""
-
-
-def sweep_csv(data: xr.Dataset) -> str:
-    """A reduced sweep as a table: a row for each mechanism, the varied values first, in SI.
-
-    Raises InputError for a sweep that is not reduced, and for more than `ROWS` mechanisms.
-    """
-    front = data["samples_ok"].dims
-    if "sample" in data.dims:
-        raise InputError("", _("a table holds reduced results only"), _("reduce them, or write zarr"))
-    count = data["samples_ok"].size
-    if count > ROWS:
-        what = _("a table holds at most {most} mechanisms, here are {count}").format(most=ROWS, count=count)
-        raise InputError("", what, _("write zarr"))
-    columns = [*_varied_columns(data, front, count), *_numbers(data, len(front), count)]
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(name for name, _column in columns)
-    writer.writerows(zip(*(column.tolist() for _name, column in columns), strict=True))
-    return stream.getvalue()
-
-
-Column = tuple[str, npt.NDArray[np.generic]]
-
-
-def _varied_columns(data: xr.Dataset, front: tuple[object, ...], count: int) -> Iterator[Column]:
-    places = np.unravel_index(np.arange(count), data["samples_ok"].shape)
-    for name, coordinate in data.coords.items():
-        if len(coordinate.dims) == 1 and coordinate.dims[0] in front:
-            along = front.index(coordinate.dims[0])
-            yield _head(str(name), coordinate), coordinate.values[places[along]]
-
-
-def _numbers(data: xr.Dataset, front: int, count: int) -> Iterator[Column]:
-    for name, variable in data.data_vars.items():
-        rooms = [data[dimension].values.tolist() for dimension in variable.dims[front:]]
-        flat = variable.values.reshape(count, -1)
-        for k, labels in enumerate(itertools.product(*rooms)):
-            yield _head("_".join((str(name).replace(".", "_"), *map(str, labels))), variable), flat[:, k]
-
-
-def _head(name: str, variable: xr.DataArray) -> str:
-    unit = variable.attrs.get("units", "1")
-    return name if unit == "1" else f"{name} [{unit}]"

@@ -200,7 +200,7 @@ class Section:
 class Chapter:
     """A chapter of a document."""
 
-    title: Sentence
+    title: Text
     sections: tuple[Section, ...]
 
 

@@ -106,3 +106,8 @@ def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tu
 def bare(executor: str) -> str:
     """What decides the bits: the executor without the reason why it is this one."""
     return executor.partition(" (")[0]
+
+
+def reason_of(executor: str) -> str:
+    """Why it is this executor, marked for the catalogues; nothing where that needs no reason."""
+    return executor.partition(" (")[2].removesuffix(")")

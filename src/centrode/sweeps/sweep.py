@@ -114,6 +114,41 @@ def sweep(
     return data.assign_attrs(mechanisms_found=found)
 
 
+TABLE_ROWS = 100_000
+"""Mechanisms of one table."""
+
+
+@dataclass(frozen=True)
+class SweepResults:
+    """Many mechanisms of one structure.
+
+    Attributes
+    ----------
+    mechanism : the one whose numbers vary
+    data : what `sweep` gives of it
+    """
+
+    mechanism: Mechanism
+    data: xr.Dataset
+
+
+def sweep_results(
+    mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample, *arguments: Any, **options: Any
+) -> SweepResults:
+    """What `sweep` computes, with the mechanism whose numbers vary; the arguments are those of `sweep`."""
+    return SweepResults(mechanism, sweep(mechanism, vary, *arguments, **options))
+
+
+def check_table(data: xr.Dataset) -> None:
+    """Raise InputError where a sweep is no table: it is not reduced, or has more than `TABLE_ROWS` mechanisms."""
+    if "sample" in data.dims:
+        raise InputError("", _("a table holds reduced results only"), _("reduce them, or write zarr"))
+    count = data["samples_ok"].size
+    if count > TABLE_ROWS:
+        what = _("a table holds at most {most} mechanisms, here are {count}")
+        raise InputError("", what.format(most=TABLE_ROWS, count=count), _("write zarr"))
+
+
 def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
     """The description's own motion, with its reduction where that is asked for."""
     motion = dataset_of(solved)

@@ -550,6 +550,22 @@ DIAGRAMS = Topic(
     ),
 )
 
+SWEEP = Topic(
+    name="sweep",
+    compute=Lazily("centrode.sweeps.sweep", "sweep_results"),
+    result=Lazily("centrode.sweeps.sweep", "SweepResults"),
+    view=Lazily("centrode.views.sweeps", "sheet"),
+    subject="mechanisms",
+)
+
+VARIANTS = Topic(
+    name="variants",
+    compute=Lazily("centrode.study.variant_results", "variants"),
+    result=Lazily("centrode.study.variant_results", "Variants"),
+    view=Lazily("centrode.views.variants", "sheet"),
+    subject="mechanisms",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -570,5 +586,7 @@ TOPICS: tuple[Topic, ...] = (
     FORCE_POLYGONS,
     PLAN,
     DIAGRAMS,
+    SWEEP,
+    VARIANTS,
 )
 """Every topic."""

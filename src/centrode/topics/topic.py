@@ -190,7 +190,7 @@ class InDocuments:
 
 @dataclass(frozen=True)
 class Topic:
-    """One analysis of a mechanism or of a cam.
+    """One analysis of a mechanism, of a cam, or of many mechanisms of one structure.
 
     Attributes
     ----------
@@ -201,7 +201,8 @@ class Topic:
     concerns : whether a mechanism has what the topic is about; every one has if None
     command : None where only documents and Python have the topic
     document : its chapters
-    subject : "mechanism", or "cam": those of cams have one command together
+    subject : "mechanism"; "cam": those of cams have one command together; "mechanisms": many of one structure, whose
+        commands read a file of their own and go on with what is in a folder
     flag : option of that command without which it leaves the topic out
     """
 
@@ -212,5 +213,5 @@ class Topic:
     concerns: Lazily | None = None
     command: Command | None = None
     document: InDocuments = InDocuments()
-    subject: Literal["mechanism", "cam"] = "mechanism"
+    subject: Literal["mechanism", "cam", "mechanisms"] = "mechanism"
     flag: str = ""
