@@ -253,7 +253,7 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     for mass in burden.masses:
         inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
     moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for one in sort_load_terms(mechanism, burden.loads):
+    for one in sort_load_terms(burden.loads):
         along = one.effort.along(state)
         moments[one.sort] = moments[one.sort] + one.effort.strength(state) * along
     driven = driving.over(EXPRESSIONS, time, value, rate)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
@@ -10,6 +10,22 @@ from centrode.dynamics.masses import masses_of, massless_links
 from centrode.dynamics.state import Centre
 from centrode.locale import _, mark
 from centrode.model.labels import LOADS, load_name
+from centrode.model.loads import (
+    AnyLoad,
+    BearingFriction,
+    GuideForce,
+    GuideFriction,
+    HingeDamper,
+    HingeFriction,
+    HingeSpring,
+    LinkWeight,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    PointWeight,
+    SliderFriction,
+    Torque,
+)
 from centrode.quantities import display_unit
 from centrode.render.document.blocks import Block, ChapterBlocks, ParagraphBlock, SectionBlocks, TableBlock
 from centrode.render.document.rows import told
@@ -17,7 +33,6 @@ from centrode.report.texts import facts, typeset_table
 
 if TYPE_CHECKING:
     from centrode.dynamics.state import Mass
-    from centrode.model.loads import Load
     from centrode.model.mechanism import Mechanism
     from centrode.render.document.numbers import Numbers
     from centrode.report.study import ReportStudy
@@ -114,29 +129,37 @@ def _loads(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
-def _acts_on(load: Load) -> str:
+def _acts_on(load: AnyLoad) -> str:
     """Point, link, guide or two points."""
-    if load.guide is not None:
-        return _("guide {name}").format(name=load.guide)
-    if load.points is not None:
-        return ", ".join(load.points)
-    if load.link is not None:
-        return load.link if load.relative_to == "frame" else f"{load.link}, {load.relative_to}"
-    return load.point or ""
+    match load:
+        case GuideForce(guide=guide) | GuideFriction(guide=guide) | SliderFriction(guide=guide):
+            return _("guide {name}").format(name=guide)
+        case PointSpring(points=points) | PointDamper(points=points):
+            return ", ".join(points)
+        case Torque() | HingeSpring() | HingeDamper() | HingeFriction():
+            return load.link if load.relative_to == "frame" else f"{load.link}, {load.relative_to}"
+        case LinkWeight(link=link):
+            return link
+        case BearingFriction(point=point, link=link):
+            return point if link is None else link
+        case PointForce(point=point) | PointWeight(point=point):
+            return point
+        case _:
+            assert_never(load)
 
 
-def _amount(load: Load) -> str:
+def _amount(load: AnyLoad) -> str:
     """Vector, value and coefficients of a load, in SI; a table by the number of its rows."""
     parts = []
-    if load.vector is not None:
+    if isinstance(load, PointForce):
         parts.append("(" + "; ".join(_text(one) for one in load.vector) + ")")
     for key, before in AMOUNTS:
-        value = getattr(load, key)
+        value = getattr(load, key, None)
         if value is not None:
             parts.append(f"{_(before)} = {_text(value)}" if before else _text(value))
-    if load.table is not None:
+    if isinstance(load, GuideForce) and load.table is not None:
         parts.append(_("indicator diagram of {count} points").format(count=len(load.table)))
-    if load.while_moving is not None:
+    if isinstance(load, PointForce) and load.while_moving is not None:
         way = "; ".join(f"{x:.6g}" for x in load.while_moving)
         parts.append(_("while the point moves towards ({way})").format(way=way))
     return ", ".join(parts) or "–"
