@@ -20,7 +20,7 @@ from centrode.numerics.search import interpolated_roots
 Array: TypeAlias = npt.NDArray[np.float64]
 
 USUAL, MOST = 12, 36
-"""Positions in one plan, and the most of them: more cannot be told apart."""
+"""Positions in one plan, and the most of them: more cannot be distinguished in a drawing."""
 SAMPLES = 721
 SAME = 1e-9
 """Part of a turn within which its end and its beginning are one place."""
@@ -101,8 +101,10 @@ def plan_of_positions(
     listed = _points_on_frame_guides(mechanism) if points is None else tuple(points)
     if not closed:
         return _open_plan(mechanism, listed, path, by, ok, positions)
+    # position 0 is the first extreme in the drive's sense; where nothing swings, the beginning of the range
     name, extremes = _extremes(mechanism, path, by, link)
     zero = extremes[0] if extremes else float(by[0])
+    # a full turn ends where it begins: its last position would be the first one again
     values = zero + (by[-1] - by[0]) * np.arange(positions) / positions
     return PositionPlan(mechanism, listed, motion(mechanism, at=values), path, zero, name, closed, extremes)
 
@@ -134,6 +136,8 @@ def _open_plan(
             "positions", _("the mechanism is reached nowhere in its range"), _("see the limits")
         )
     start = reached[np.argmin(np.abs(path["time"].to_numpy()[reached]))]
+    # from the initial position outwards: what is reached beyond a gap belongs to another stretch of the
+    # motion
     first, last = start, start
     while first > 0 and ok[first - 1]:
         first -= 1
@@ -183,16 +187,19 @@ def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tupl
     unit = 1.0 if name in mechanism.link_names else _length(path)
     if size <= 1e-9 * unit:
         return ()  # it does not move at all
+    # strictly: a rate that is zero at a sample is no root of a cell but that sample itself, taken below
     cells = np.flatnonzero(rate[:-1] * rate[1:] < 0)
 
     def there(value: Array) -> Array:
         return _rate(mechanism, motion(mechanism, at=value), name)
 
     turned = interpolated_roots(there, by[cells], by[cells + 1])
+    # the last sample is left out: it is the first again
     places = [*turned.tolist(), *by[:-1][rate[:-1] == 0].tolist()]
     turn = by[-1] - by[0]
     # the end of the turn is its beginning
     places = [place - turn if abs(by[-1] - place) < SAME * abs(turn) else place for place in places]
+    # in the sense of the drive, which may run backwards
     return tuple(sorted(places, key=lambda place: (place - by[0]) / turn))
 
 

@@ -48,8 +48,7 @@ from centrode.structure.groups import (
 # circles.
 #
 # A link's centre is its other hinge, a guide's the pole of its circle; of a link that aims with its guide
-# they are its
-# pivot and that pole, seen from the point aimed at.
+# they are its pivot and that pole, seen from the point aimed at.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -64,6 +63,7 @@ class ArcAngles:
         """Transmission angle of a group at every sample; None where it has none."""
         points = self.bodies.points
         if isinstance(group, Aim) and group.contact is None:
+            # the circle of the guide is square to the arc to its pole, which stands for its normal
             target = points[group.target]
             return _acute_arc(_between(target, points[group.pivot], self._pole(group.guide)))
         if not isinstance(group, Meet) or len(group.points) != 1:
@@ -72,6 +72,8 @@ class ArcAngles:
         if len(centres) != 2:
             return None
         angle = _between(points[group.points[0]], centres[0], centres[1])
+        # two links have a sense each, so 0 and 180 deg differ; the arc to a pole stands for a line, which has
+        # none
         return angle if len(group.rods) == 2 else _acute_arc(angle)
 
     def _centre(self, locus: Rod | Rail) -> Array:
@@ -87,6 +89,8 @@ class ArcAngles:
 def _between(at: Array, first: Array, second: Array) -> Array:
     """Angle in a place from the arc to one other place to the arc to another, in [0, pi]."""
     one, other = np.cross(at, first), np.cross(at, second)
+    # the product of the two normals is square to both, so its length is the sine and no arc cosine loses
+    # digits near 0
     sine = np.linalg.norm(np.cross(one, other), axis=-1)
     return np.asarray(np.arctan2(sine, np.sum(one * other, axis=-1)))
 
@@ -98,8 +102,7 @@ def _acute_arc(angle: Array) -> Array:
 # Least and greatest transmission angles of dyads over the part of a motion that is reached, found as roots.
 #
 # An extreme lies where the angle's rate is zero, at an end of what is reached, where the dyad is flat (0), or
-# where
-# its lines stand square to each other (90 deg).
+# where its lines stand square to each other (90 deg).
 
 LEAST_NODES = 720
 
@@ -113,18 +116,21 @@ class _Stretch(DriveSweep):
 
     @property
     def span(self) -> tuple[float, float]:
-        """Its ends."""
+        """Parameter at both ends of the stretch, first and last."""
         return self.first, self.last
 
     @property
     def comes_round(self) -> bool:
-        """It is looked at from end to end."""
+        """False: a stretch is looked at from end to end, even over whole turns."""
         return False
 
     def nodes(self) -> Array:
         """Values at least as close as the nodes of the mesh, denser towards the ends."""
+        # cosine spacing is widest in the middle, by pi/2 of the even step: with so many nodes it is no wider
+        # there than the mesh
         step = self.continuation.kinematics.path.step
         count = max(LEAST_NODES, ceil((self.last - self.first) / step * pi / 2))
+        # half a node off the ends: at a limit the rates are infinite
         share = 0.5 - 0.5 * np.cos(pi * (np.arange(count) + 0.5) / count)
         return np.asarray(self.first + (self.last - self.first) * share)
 
@@ -143,6 +149,7 @@ def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tup
         stretch = _Stretch(ready, drive, {}, continuation, low, high, last - first, first, last)
         dyads = watched_dyads(stretch, guides=True)
         if not first <= last:
+            # nothing of the span is reached
             return {group: (nan, nan) for _one, group in dyads}
         course = monitored_function(stretch, [one for one, _group in dyads])
         return {group: _extremes(course, k, group) for k, (_one, group) in enumerate(dyads)}
@@ -155,8 +162,10 @@ def _extremes(course: MonitoredFunction, k: int, group: int) -> tuple[float, flo
     ]
     least = least_of(course, k, group, turned)[0]
     values = course.values[k][np.isfinite(course.values[k])]
+    # flat between two nodes: the rate has no zero there, since an acute angle turns back with a corner
     if _passes(np.sin(values), np.cos(values)):
         least = 0.0
+    # square between two nodes: nothing is greater, so the ends need not be looked at
     if _passes(np.cos(values), np.sin(values)):
         return least, pi / 2
     ends = [angle for angle, _at in transmission_at_ends(course, k)]
@@ -258,6 +267,7 @@ def transmission_results(mechanism: Mechanism, samples: int | None = None) -> Tr
 def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:
     """Transmission angle of a group at every sample; None where it has none."""
     if isinstance(group, Aim) and group.contact is None:
+        # the arm's end moves square to it: that line and the guide are drawn in the velocity diagram
         arm = place(data, group.target) - place(data, group.pivot)
         return _acute(1j * arm, _guide_directions(data, numbers, group.link, group.guide))
     if not isinstance(group, Meet) or any(isinstance(locus, Stop) for locus in group.loci):
@@ -265,6 +275,8 @@ def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:
     directions = list(_directions(data, numbers, group))
     if len(directions) != 2:
         return None
+    # between two arms the angle runs to 180 deg; lines, whose sense means nothing, go through the acute angle
+    # below
     if group.circles == 2:
         return np.abs(np.angle(directions[1] * directions[0].conj()))
     return _acute(*directions)
@@ -291,11 +303,13 @@ def place(data: xr.Dataset, point: str) -> Lines:
 
 def _guide_directions(data: xr.Dataset, numbers: Dimensions, link: str, guide: str) -> Lines:
     """Directions of a guide at every sample."""
+    # the frame does not turn and is no link of the dataset
     turn = np.zeros(data.sizes["sample"]) if link == FRAME else data["angle"].sel(link=link).to_numpy()
     return np.asarray(complex(*numbers.direction[guide]) * np.exp(1j * turn))
 
 
 def _acute(first: Lines, second: Lines) -> Array:
     """The acute angle between two directions, in [0, pi/2]."""
+    # no arc cosine: the ratio of both parts is exact near 0 and near a right angle alike
     turned = second * first.conj()
     return np.asarray(np.arctan2(np.abs(turned.imag), np.abs(turned.real)))

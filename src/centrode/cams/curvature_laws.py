@@ -60,6 +60,7 @@ class Analytic:
         raise NotImplementedError
 
     def series(self, phi: Number, order: int, side: int = 1) -> list[Number]:
+        # phi itself as a series: its slope is 1 and all else zero
         return self.along([phi, 1.0, *([0.0] * (order - 1))][: order + 1], side)
 
     def along(self, angles: list[Number], side: int = 1) -> list[Number]:
@@ -71,12 +72,14 @@ def full(found: Number, like: Number, count: int) -> list[Number]:
     """Coefficients of a jet, the zeros of constants with the shape of `like`."""
     coefficients = found.coefficients if isinstance(found, Jet) else (found,)
     zero = 0.0 * like
+    # constants have coefficients of the shape of the places, so that arrays stack
     return [zero + c for c in coefficients] + [zero] * (count - len(coefficients))
 
 
 def derivatives(law: CurvatureLaw, phi: Array, order: int = 0) -> Array:
     """K and its derivatives (order + 1, n) [1/m/rad^k]; NaN outside the law's span."""
     inside = (phi >= law.span[0]) & (phi <= law.span[1])
+    # laws may be called with NaN and give it, but not with places outside their span
     at = np.where(inside, phi, np.nan)
     found = [math.factorial(k) * c for k, c in enumerate(law.series(at, order))]
     return np.where(inside, np.asarray(found), np.nan)
@@ -160,6 +163,7 @@ class SplineCurvature:
         places = np.searchsorted(self.angles, phi, side="right" if side > 0 else "left") - 1
         places = np.clip(places, 0, len(self.cubics) - 1)
         c0, c1, c2, c3 = np.moveaxis(np.asarray(self.cubics)[places], -1, 0)
+        # the distance from the knot as a series: the cubic over it has any derivatives
         u = Jet([angles[0] - np.asarray(self.angles)[places], *angles[1:]])
         return full(((u * c3 + c2) * u + c1) * u + c0, angles[0], len(angles))
 
@@ -268,6 +272,7 @@ class TextCurvature:
         return self.along([phi, 1.0, *([0.0] * (order - 1))][: order + 1], side)
 
     def along(self, angles: list[Number], side: int = 1) -> list[Number]:
+        # at a break the stretch on the side that is requested
         stretch = np.searchsorted(self.breaks, np.real(angles[0]), side="right" if side > 0 else "left")
         functions = _Signed(list(np.moveaxis(self.signs[stretch], -1, 0)))
         with np.errstate(all="ignore"):
@@ -280,7 +285,7 @@ class TextCurvature:
             return math.inf
 
     def _condition_values(self, places: Array) -> Array:
-        """Values (functions, n) whose signs are asked for."""
+        """Values (functions, n) whose signs are requested."""
         watched = _Watched()
         with np.errstate(all="ignore"):
             self._value(watched, Jet([places]))
@@ -290,6 +295,7 @@ class TextCurvature:
 
     def _kinks(self) -> tuple[float, ...]:
         count = 3 + math.ceil((self.stop - self.start) / math.tau * NODES_OF_A_TURN)
+        # a mesh over the whole range: three cells at least
         places = np.linspace(self.start, self.stop, count)
         above = self._condition_values(places) >= 0
         functions, cells = np.nonzero(above[:, :-1] != above[:, 1:])

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 _integrate = partial(import_module, "scipy.integrate")  # off the cold path
 
 LEAST_TOLERANCE = 2.3e-14
-"""The least relative error that the integrator can be asked for."""
+"""The least relative error that may be requested of the integrator."""
 
 LONGEST_STEP = 0.02
 """Greatest step of the integrator's variable: between the steps its polynomials are of a lower order."""
@@ -134,6 +134,7 @@ def _march(
         return [], None
     wrong = unlawful_place(law, stop)
     end = stop if wrong is None else wrong
+    # no step goes across a break: the integrator's order holds for smooth functions only
     ends = sorted({end, *(b for b in law.breaks if 0 < sense * b < sense * end)}, key=abs)
     legs: list[IntegrationLeg] = []
     place = first
@@ -161,8 +162,11 @@ def _leg(
         # the last step goes beyond the leg's end before it is cut there
         outside = y[0] - target
         inner = sense * outside < 0
+        # a step that will be cut at the end has to see a smooth law behind it
         here = float(law.series(y[0], 0, sense)[0]) if inner else polynomial(onwards, outside)
+        # rho grows without bounds in a step that will be refused: the exponential must not overflow
         bend = place[1] * math.exp(min(y[1], MOST_LOGARITHM)) * here
+        # a unit of the variable is about an angle, of the path or of the carrier, whichever turns faster
         pace = sense / (1.0 + bend)
         turn = math.cos(y[2])
         return pace * turn, pace * math.sin(y[2]), pace * (turn - bend)
@@ -179,15 +183,18 @@ def _leg(
         rates, (0.0, MOST_ARC), first, "DOP853", None, True, (arrives, stalls),
         rtol=tolerance, atol=tolerance, max_step=LONGEST_STEP,
     )  # fmt: skip
+    # neither the end nor a stall was reached
     if found.status != 1:
         what = _("the integration ends at {angle:.6g} deg").format(angle=math.degrees(found.y[0, -1]))
         raise InputError("[curvature]", what, _("shorten the range"))
     stalled = bool(len(found.t_events[1]))
     last = np.array(found.y_events[1][0] if stalled else found.y_events[0][0])
     last[1] = place[1] * math.exp(last[1])
+    # exactly the end, so that the next leg begins there
     if not stalled:
         last[0] = target
     angles = np.append(found.y[0, :-1], last[0])
+    # `angles` grow, whichever way the leg was run
     order = slice(None, None, sense)
     low, high = sorted((float(place[0]), float(last[0])))
     return (
@@ -221,6 +228,7 @@ def _solution_at(leg: IntegrationLeg, phi: Array) -> Array:
         bend = leg.scale * np.exp(growth) * leg.curvature(angle)
         rate = sense * np.cos(gamma) / (1.0 + bend)
         with np.errstate(all="ignore"):
+            # backwards the rate is negative: where it is not what it should be, the place stays
             step = np.where(sense * rate > 0, (angle - phi) / rate, 0.0)
         moved = np.clip(arc - step, low, high)
         if np.all(np.abs(moved - arc) <= 1e-16 * high):

@@ -93,6 +93,7 @@ class SeriesPath:
     def radius(self, phi: Array, order: int = 0) -> Array:
         """Rho by formula (15), (cos(gamma) - eta') / K, and its derivatives (order + 1, n) [m/rad^k]."""
         eta = self._about(phi, order + 1)
+        # formula (15) needs cos(gamma), which follows from the sine by its own series
         upright, curvature = self._upright(eta[:-1]), self._curvature(phi, order)
         slope = Jet(eta).slope()
         found = (upright - slope) / curvature
@@ -102,6 +103,7 @@ class SeriesPath:
         """Rho (n) by formula (16), -(eta'' + eta) / K'; NaN where K' is zero but for its rounding and that of phi."""
         eta, places = self._about(phi, 2), inside(self, phi)
         bend, slope, second = derivatives(self.law, places, 2)
+        # next to zero K' is rounding of its own terms, and the quotient means nothing
         nothing = np.abs(slope) <= ROUNDED * (np.abs(bend) + np.abs(places * second))
         return np.asarray(-(2.0 * eta[2] + eta[0]) / np.where(nothing, np.nan, slope))
 
@@ -127,6 +129,7 @@ class SeriesPath:
         places = inside(self, phi)
         found = []
         for k in range(order + 1):
+            # Horner's rule of the k-th derivative over k!, whose coefficients are binomial
             total = np.zeros_like(places)
             for n in range(self.terms, k - 1, -1):
                 total = total * places + math.comb(n, k) * self.sines[n]
@@ -168,8 +171,10 @@ def series_path(
     if isinstance(terms, bool) or not 2 <= terms <= MOST_TERMS:
         what = _("{terms} terms were asked for").format(terms=terms)
         raise InputError("terms", what, _("ask for 2 to {most}").format(most=MOST_TERMS))
+    # a few more terms than asked for: they measure what the polynomial leaves out
     every, cosines = (np.asarray(c) for c in coefficients(law, rho0, gamma0, terms + FOLLOWING))
     a, b, following = every[: terms + 1], cosines[:terms], every[terms + 1 :]
+    # beyond a break the law is another function, and so is the path
     low = max([start, *(place for place in law.breaks if place < 0)])
     high = min([stop, *(place for place in law.breaks if place > 0)])
     if 0.0 in law.breaks:
@@ -186,6 +191,7 @@ def coefficients(law: CurvatureLaw, rho0: float, gamma0: float, terms: int) -> t
     sine, cosine = math.sin(gamma0), math.cos(gamma0)
     with np.errstate(all="ignore"):
         curvature = [float(c) for c in law.series(0.0, terms)]
+        # eta' = cos(gamma) - rho K at the beginning
         slope = cosine - rho0 * curvature[0]
         if isinstance(law, ExponentialCurvature):
             return exponential_series(sine, slope, cosine, law.k1, terms)
@@ -249,6 +255,7 @@ def convergence(law: CurvatureLaw, rho0: float, gamma0: float = 0.0) -> Converge
     estimate = _by_coefficients(b)
     if not math.isfinite(estimate):
         return Convergence(estimate, None)
+    # in directions of the upper half plane: singularities come in conjugate pairs
     places = [cmath.rect(SHARE * estimate, t) for t in np.linspace(0, np.pi, DIRECTIONS)]
     found = [_singularity(law, rho0, gamma0, place) for place in places]
     best = min((phi for phi in found if phi is not None and _fits(b, abs(phi))), key=abs, default=None)
@@ -258,6 +265,7 @@ def convergence(law: CurvatureLaw, rho0: float, gamma0: float = 0.0) -> Converge
     again = _singularity(law, rho0, gamma0, cmath.rect(SHARE * estimate, cmath.phase(best)))
     if again is not None and abs(again - best) < 1e-3 * abs(best):
         best = again
+    # of the pair the one above the axis
     return Convergence(estimate, complex(best.real, abs(best.imag)))
 
 
@@ -266,12 +274,14 @@ def _cosines(law: CurvatureLaw, rho0: float, gamma0: float) -> Array:
     with np.errstate(all="ignore"):
         curvature = [float(c) for c in law.series(0.0, TERMS)]
         found = np.asarray(system_series(rho0, math.sin(gamma0), math.cos(gamma0), curvature)[2])
+    # beyond 1e120 products of coefficients overflow soon
     wrong = np.flatnonzero(~np.isfinite(found) | (np.abs(found) > 1e120))
     return found[: wrong[0]] if wrong.size else found
 
 
 def _by_coefficients(b: Array) -> float:
     """The radius that the last half of the coefficients tell; of an even series those of phi squared."""
+    # an even function has every second coefficient zero: as a series in phi^2 its radius is the square
     if len(b) > 16 and not b[1::2].any():
         return math.sqrt(_by_coefficients(b[::2]))
     n = np.arange(len(b) // 2, len(b) - 1)
@@ -284,7 +294,9 @@ def _by_coefficients(b: Array) -> float:
     known = np.isfinite(inverse) & (inverse > 0)
     if known.sum() < 4:
         return math.inf
+    # quotients run like 1/R + c/n: drawn out to 1/n = 0
     slope = np.polyfit(1.0 / n[known], inverse[known], 1)[0]
+    # the median, as single quotients are off where coefficients nearly vanish
     middle = np.median(inverse[known] - slope / n[known])
     return float(1.0 / middle) if middle > 0 else math.inf
 
@@ -293,6 +305,7 @@ def _fits(b: Array, radius: float) -> bool:
     """Whether the coefficients decay as they do on a circle of convergence of this radius."""
     n = np.arange(len(b) // 2, len(b))
     with np.errstate(all="ignore"):
+        # b_n R^n n^(3/2) tends to a constant for a root singularity at the distance R
         sizes = np.log(np.abs(b[n])) + n * math.log(radius) + 1.5 * np.log(n)
     first, second = np.array_split(sizes, 2)
     return bool(abs(np.max(first) - np.max(second)) < AGREEMENT)
@@ -303,13 +316,16 @@ def _singularity(law: CurvatureLaw, rho0: float, gamma0: float, towards: complex
     phi, rho, sine, cosine = 0j, complex(rho0), complex(math.sin(gamma0)), complex(math.cos(gamma0))
     with np.errstate(all="ignore"):
         for step in range(1, 9):  # each a third of what is left to the circle
+            # so that the last step ends at the share SHARE of the whole way
             place = (1.0 - (1.0 - SHARE) ** (step / 8)) / SHARE * towards
             series = system_series(rho, sine, cosine, law.series(phi, ORDER - 1))
             rho, sine, cosine = (_value(s, place - phi) for s in series)
             phi = place
         for _step in range(NEWTON):
             arcs = arc_series(phi, rho, sine, cosine, law.along, ORDER)
+            # by the arc cos(gamma) has a simple root: Newton's method on its series
             arc = -arcs[3][0] / arcs[3][1] if arcs[3][1] else cmath.nan
+            # no farther than the series hold
             arc = arc * min(1.0, _arc_reach(arcs) / abs(arc)) if abs(arc) > 0 else arc
             if not cmath.isfinite(arc):
                 return None
@@ -323,6 +339,7 @@ def _arc_reach(series: tuple[Series, ...]) -> float:
     """An arc over which all series hold to rounding."""
     reach = math.inf
     for coefficients in series:
+        # a coefficient in units of the value, or of the slope by the arc
         scale = max(abs(coefficients[0]), abs(coefficients[1]) * abs(series[1][0]))
         for k in (ORDER - 1, ORDER):
             size = abs(coefficients[k]) / scale if scale > 0 else math.inf
@@ -363,10 +380,12 @@ def stall_behind(law: CurvatureLaw, place: StallState, sense: int, end: float) -
         series = arc_series(*here, lambda angles: law.along(angles, sense), ORDER)
         arc = sense * _stall_reach(series, here.rho)
         there = _normal([_stall_value(s, arc) for s in series])
+        # the cosine has passed zero: the root of its series by the arc is the stall
         if there.cosine <= 0:
             stall = _normal([_stall_value(s, _root(series[3], arc)) for s in series])
             found = stall._replace(sine=math.copysign(1.0, stall.sine), cosine=0.0)
             return None if sense * (found.phi - end) > 0 else found
+        # behind a break the law is another function; behind a grown cosine there is no stall near
         crossed = any(sense * (here.phi - b) < 0 < sense * (there.phi - b) for b in law.breaks)
         if crossed or sense * (there.phi - end) > 0 or there.cosine > 1.5 * place.cosine:
             return None
@@ -393,6 +412,7 @@ def _root(coefficients: Series, arc: float) -> float:
     def cosine(x: Array) -> tuple[Array, Array]:
         return np.asarray(polynomial.polyval(x, powers)), np.asarray(polynomial.polyval(x, slopes))
 
+    # backwards the arc is negative
     low, high = np.sort([[0.0], [arc]], axis=0)
     return float(newton_roots(cosine, low, high)[0])
 
@@ -407,6 +427,7 @@ def _stall_value(coefficients: Series, x: float) -> float:
 def _normal(values: list[float]) -> StallState:
     """The state with sine and cosine brought back to one."""
     phi, rho, sine, cosine = values
+    # sine and cosine keep together: rounding of the steps does not add up
     unit = math.hypot(sine, cosine)
     return StallState(phi, rho, sine / unit, cosine / unit)
 
@@ -500,6 +521,7 @@ def _end(found: Array, phi: Array, ending: Ending) -> None:
     here = (share >= 0) & (share < 1)
     root = np.sqrt(share[here])
     cosine = place.cosine * root
+    # towards a stall the radius and the cosine run like the root of what is left of the angle
     found[0, here] = stall.rho + (place.rho - stall.rho) * root
     found[1, here] = stall.sine * np.sqrt(1.0 - cosine**2)
     found[2, here] = cosine
@@ -555,6 +577,7 @@ def expanded_path(
         behind, stuck = _march(law, first, start, -1, tolerance)
     steps = [*reversed(behind), *ahead]
     low, high = (behind[-1].end if behind else 0.0), (ahead[-1].end if ahead else 0.0)
+    # every inner edge is the centre of a step, as steps begin where the one before ended
     edges = sorted({low, high, *(step.centre for step in steps)})
     return ExpandedPath(
         law,
@@ -574,7 +597,9 @@ def _march(
     if stop == place.phi:
         return [], None
     wrong = unlawful_place(law, stop)
+    # a law that ceases to be lawful before the end is followed up to there, as a stall may come first
     end = stop if wrong is None else wrong
+    # Jorba and Zou's degree for this tolerance
     order = math.ceil(2.0 - 0.5 * math.log(tolerance))
     steps: list[SeriesStep] = []
     stall: StallState | None = None
@@ -584,13 +609,16 @@ def _march(
         reach = _reach(series, tolerance)
         if not reach > LEAST_STEP * abs(place.phi):
             raise no_series(place.phi)
+        # a path that runs away to infinity takes ever greater steps, which end nowhere
         if place.rho > MOST_GROWTH * rho0:
             raise runs_away(place.phi)
+        # steps shrink like the way to a singularity: each time they have halved, a stall is looked for anew
         if stall is None and place.cosine < NEAR_STALL and reach < 0.5 * looked:
             looked = reach
             stall = stall_behind(law, place, sense, end)
             end = end if stall is None else stall.phi
         to = _nearest(sense, place.phi + sense * reach, end, law.breaks, place.phi)
+        # so near to the stall the root law holds to rounding
         if stall is not None and sense * (stall.phi - to) <= LAST_STRETCH * abs(stall.phi):
             steps.append(SeriesStep(place.phi, stall.phi, series))
             return steps, Ending(place, stall)
@@ -676,7 +704,7 @@ def path_of(cam: AnyCam, tolerance: float = TOLERANCE) -> RollerPath:
     Raises
     ------
     InputError
-        A curvature that is not positive and finite where the path goes, its angle is told.
+        A curvature that is not positive and finite where the path goes; the error gives its angle.
     """
     cam = require_curvature_cam(cam)
     half = half_path(cam, tolerance)

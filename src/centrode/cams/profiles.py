@@ -37,11 +37,9 @@ from centrode.numerics.search import extremes, roots
 # outside.
 #
 # A point of the equidistant at distance d along the outward normal has the curvature K/(1 + d K), K that of
-# the path.
-# Where 1 + d K is not positive the equidistant runs back on itself: the profile is undercut, the roller's own
-# circle
-# cuts it away. Towards the inside (d = -r) this happens on convex stretches, towards the outside (d = r) in
-# hollows.
+# the path. Where 1 + d K is not positive the equidistant runs back on itself: the profile is undercut, the
+# roller's own circle cuts it away. Towards the inside (d = -r) this happens on convex stretches, towards the
+# outside (d = r) in hollows.
 
 Side: TypeAlias = Literal["inner", "outer"]
 

@@ -41,6 +41,7 @@ class Turned:
         sign = -1.0 if self.mirrored else 1.0
         # the sum of angles may leave the stretch by rounding
         own = np.clip(sign * (np.asarray(phi) - self.by), self.start, self.stop)
+        # odd derivatives change their sign where the curve is mirrored
         return sign ** np.arange(order + 1)[:, None] * self.curve.radius(own, order)
 
 
@@ -59,7 +60,7 @@ class Arc:
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Its ends and breaks, growing: it is smooth between them."""
+        """Angles of the ends and breaks, growing: the arc is smooth between them."""
         return self.start, *self.breaks, self.stop
 
 
@@ -133,6 +134,7 @@ class ClosedPath:
         inside = (places >= self.start - slack) & (places <= self.stop + slack)
         places = np.where(inside, np.clip(places, self.start, self.stop), np.nan)
         ends = [arc.stop for arc in self.arcs[:-1]]
+        # at a joint the arc behind it holds
         return places, np.searchsorted(ends, places, side="right")
 
     @cached_property
@@ -150,6 +152,8 @@ class ClosedPath:
 
 
 def _joint(one: Arc, two: Arc) -> ArcJoint:
+    # the pressure angle, the curvature and its slope compare better than derivatives of the radius, whose
+    # size depends on it
     before, behind = frames(one.curve, np.array([one.stop])), frames(two.curve, np.array([two.start]))
     return ArcJoint(
         one.stop,
@@ -164,6 +168,7 @@ def breaks_of(path: RollerPath, start: float, stop: float) -> tuple[float, ...]:
     """Angles between `start` and `stop` at which higher derivatives of a path jump, growing."""
     breaks = set(path.law.breaks)
     if isinstance(path, SymmetricPath):
+        # a symmetric path has the breaks of its half on both sides, and one in the middle
         breaks = {0.0, *breaks, *(-one for one in breaks)}
     return tuple(sorted(one for one in breaks if start < one < stop))
 
@@ -188,6 +193,7 @@ def working_arc(path: RollerPath, legs: int | None = None, half: float | None = 
         half = math.pi / legs
     if half is not None:
         start, stop = -half, half
+    # a range that reaches the end of the path but for rounding counts as reaching it
     short = ROUNDING + 4 * np.finfo(float).eps * abs(stop)
     if start < path.start - short or stop > path.stop + short:
         arc, there = (
@@ -223,10 +229,12 @@ def mirror_arc(working: Arc) -> ClosedPath:
         nearest = math.degrees(math.pi / max(1, round(math.pi / width)))
         raise InputError("", what, _("take {arc:.6g} deg, or a designed return arc").format(arc=nearest))
     arcs = [working]
+    # a symmetric arc is two images of its half
     images = count - (2 if start != working.start else 1)
     for number in range(1, images + 1):
         arcs.append(_image(working, start, width, number))
     last = arcs[-1]
+    # the last joint closes the turn exactly
     arcs[-1] = Arc(last.kind, last.curve, last.start, working.start + math.tau, last.breaks)
     return ClosedPath(tuple(arcs))
 
@@ -235,6 +243,7 @@ def _image(working: Arc, start: float, width: float, number: int) -> Arc:
     """The `number`-th image behind a working arc: mirrored if odd; a symmetric arc's images go in halves."""
     first, stop = start + number * width, start + (number + 1) * width
     odd = bool(number % 2)
+    # an odd image is mirrored about its beginning, an even one is only turned
     by = 2 * start + (number + 1) * width if odd else number * width
     curve = Turned(working.curve, start, working.stop, by, odd)
     inner = [one for one in working.breaks if start < one < working.stop]
@@ -246,13 +255,10 @@ def _image(working: Arc, start: float, width: float, number: int) -> Arc:
 # to it.
 #
 # The smoothest one leaves rho'' + rho, which is constant on a circle about the cam's centre and to first
-# order on
-# any circle, as constant as it can: the integral of (rho''' + rho')^2 is least. By the equation of Euler and
-# Lagrange,
-# D^2 (D^2 + 1)^2 rho = 0, it is a sum of 1, tau, cos tau, sin tau, tau cos tau, tau sin tau. What may be
-# added, a
-# polynomial that vanishes at both ends with its derivatives, is square to it in the same integral, so that
-# integrals add.
+# order on any circle, as constant as it can: the integral of (rho''' + rho')^2 is least. By the equation of
+# Euler and Lagrange, D^2 (D^2 + 1)^2 rho = 0, it is a sum of 1, tau, cos tau, sin tau, tau cos tau, tau sin
+# tau. What may be added, a polynomial that vanishes at both ends with its derivatives, is square to it in the
+# same integral, so that integrals add.
 
 GAUSS_NODES = 96
 """Gauss nodes of the integral of smoothness."""
@@ -305,14 +311,17 @@ class ReturnCurve:
             derivatives(self.ends, np.array([at]), contact, 0)[:, :, 0].T
             for at in (self.ends.start, self.ends.stop)
         ]
+        # as many functions as conditions at both ends
         return np.linalg.solve(np.concatenate(rows), np.array([*self.ends.at_start, *self.ends.at_stop]))
 
 
 def derivatives(ends: Ends, phi: Array, order: int, additions: int) -> Array:
     """Derivatives (function, order + 1, n) of the smoothest curve's functions and of the additions."""
+    # about the middle of the arc, so that powers of tau stay small
     tau = Jet([phi - ends.middle, *([np.ones_like(phi)] if order else []), *([0.0 * phi] * (order - 1))])
     shares = tau * (1.0 / ends.half)
     jets = [*_kernel(tau, ends.contact), *_additions(shares, ends.contact, additions)]
+    # Taylor coefficients to derivatives
     return np.array([[c * factorial(k) for k, c in enumerate(jet.coefficients)] for jet in jets])
 
 
@@ -321,6 +330,7 @@ def roughness(ends: Ends, additions: int) -> Array:
     roots, weights = np.polynomial.legendre.leggauss(GAUSS_NODES)
     contact = ends.contact
     rows = derivatives(ends, ends.middle + ends.half * roots, contact + 1, additions)[-additions:]
+    # with contact 3 one derivative higher, as the integral then is of (rho'''' + rho'')^2
     values = rows[:, contact + 1] + rows[:, contact - 1]
     return np.asarray((values * (weights * ends.half)) @ values.T)
 
@@ -329,6 +339,7 @@ def _kernel(tau: Jet, contact: int) -> list[Jet]:
     """1, tau, ... and the sines and cosines with tau: 2 (contact + 1) functions."""
     sine, cosine = JETS.sin(tau), JETS.cos(tau)
     powers = [tau * 0.0 + 1.0]
+    # kernel of D^2 (D^2 + 1)^2, with two powers more for each further order of contact
     for _power in range(2 * contact - 3):
         powers.append(powers[-1] * tau)
     return [*powers, cosine, sine, tau * sine, tau * cosine]
@@ -338,9 +349,11 @@ def _additions(shares: Jet, contact: int, count: int) -> list[Jet]:
     """Legendre polynomials of x = tau / half times (1 - x^2)^(contact + 1)."""
     if not count:
         return []
+    # vanishes at both ends with as many derivatives as join
     window = (1.0 - shares * shares) ** (contact + 1)
     legendre = [shares * 0.0 + 1.0, shares]
     for n in range(1, count):
+        # the recurrence (n + 1) P_(n+1) = (2 n + 1) x P_n - n P_(n-1)
         legendre.append((shares * legendre[n] * (2 * n + 1.0) - legendre[n - 1] * float(n)) / (n + 1.0))
     return [window * one for one in legendre[:count]]
 
@@ -420,10 +433,11 @@ class ArcBounds:
         """
         bend, slopes = _curvature(rho, moving)
         steep = math.tan(self.pressure_angle) if self.pressure_angle < math.pi / 2 else math.inf
+        # tan(gamma) = rho'/rho, whose sign and size the pressure angle has
         slant, slanting = rho[1] / rho[0], (moving[:, 1] - moving[:, 0] * rho[1] / rho[0]) / rho[0]
         found, gradients = [], []
         for value, gradient, low, high in (
-            # a polar radius has to stay positive whatever is asked for
+            # a polar radius has to stay positive whatever is requested
             (rho[0], moving[:, 0], max(self.least_radius / scale, 1e-3), self.greatest_radius / scale),
             (bend, slopes, self.least_curvature * scale, self.greatest_curvature * scale),
             (slant, slanting, -steep, steep),
@@ -463,6 +477,7 @@ class Margins:
         size, bend, slant = sizes(curve), bends(curve), slants(curve)
         places = tuple(at for one in (size, bend, slant) for at in (one.at_least, one.at_greatest))
         steepest = max(-slant.least, slant.greatest)
+        # the angle counts without its sign
         return Margins(bounds, (size.least, size.greatest), (bend.least, bend.greatest), steepest, places)
 
     @staticmethod
@@ -531,11 +546,13 @@ def _curvature(rho: Array, moving: Array) -> tuple[Array, Array]:
     """Curvature (n) of a polar curve and its change (weights, n) with each weight."""
     value, slope, second = rho
     square = value**2 + slope**2
+    # K = (rho^2 + 2 rho'^2 - rho rho'') / (rho^2 + rho'^2)^(3/2)
     above = value**2 + 2.0 * slope**2 - value * second
     bend = above / square**1.5
     changed = (
         (2.0 * value - second) * moving[:, 0] + 4.0 * slope * moving[:, 1] - value * moving[:, 2]
     ) / square**1.5
+    # by the quotient rule: the second part is that of the root below
     return bend, changed - 3.0 * bend / square * (value * moving[:, 0] + slope * moving[:, 1])
 
 
@@ -584,7 +601,9 @@ class ArcSearch:
         margins, _gradients = self.bounds.margins(
             curve.radius(places, 2) / self.scale, np.zeros((MOST, 3, len(places))), self.scale
         )
+        # the least margin of each bound between the nodes, as far as it is negative
         missed = -np.minimum(margins.reshape(-1, len(places)).min(axis=1), 0.0)
+        # a little more than is missed, and growing: rounds come to an end
         wider = self.room + 1.3 * np.repeat(missed, len(self.nodes)) + SLACK
         self.room = np.minimum(np.minimum(wider, MOST_ROOM), self.most_room)
 
@@ -600,6 +619,7 @@ class ArcSearch:
             if margins.min() >= 0.0 or size < LEAST_STEP:
                 break
             found = linprog(
+                # the unknown at the end is the least margin of the linearised bounds, which is made greatest
                 np.append(np.zeros(MOST), -1.0),
                 np.pad(-slopes, ((0, 0), (0, 1)), constant_values=1.0),
                 margins,
@@ -610,10 +630,12 @@ class ArcSearch:
             tried, promised = weights + found.x[:-1], float(found.x[-1] - margins.min())
             there = self.margins(tried)
             gained = float(there[0].min() - margins.min())
+            # tangents promised more than came of it: the box was too wide for them
             if gained < ENOUGH * promised:
                 size *= 0.4
             if gained > 0.0:
                 weights, (margins, slopes) = tried, there
+            # nothing more to be had near here
             if promised < SLACK * SLACK:
                 break
         return weights
@@ -632,6 +654,7 @@ class ArcSearch:
             },
             options={"maxiter": ITERATIONS, "ftol": 1e-10},
         )
+        # the programme may end outside the bounds by its tolerance: then what was feasible stays
         return np.asarray(found.x) if self.least(found.x) >= 0.0 else weights
 
 
@@ -692,6 +715,7 @@ def design_return(working: Arc, bounds: ArcBounds | None = None, *, contact: int
     ends = _ends(working, contact)
     _ends_keep(ends, bounds)
     found = ReturnCurve(ends)
+    # the smoothest curve alone, if it keeps the bounds
     if not Margins.along(found, bounds).broken():
         return _close_path(working, found, 0.0)
     weights, size = _search_weights(ends, bounds)
@@ -722,10 +746,12 @@ def _search_weights(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], f
     """Weights of additions that keep the bounds, with the least roughness; and that roughness."""
     scale = math.sqrt(ends.at_start[0] * ends.at_stop[0])
     # in these weights, roughness is the sum of squares
+    # with roughness = w' R w and R = L L', weights L'^-1 x have the roughness x' x
     basis = np.linalg.inv(np.linalg.cholesky(roughness(ends, MOST)).T)
     search = ArcSearch(ends, bounds, basis, scale)
     weights = np.zeros(MOST)
     for _round in range(ROUNDS):
+        # first into the bounds, then as smooth as may be within them
         weights = search.feasible(weights)
         possible = search.least(weights) >= 0.0
         weights = search.smoothest(weights) if possible else weights
@@ -733,6 +759,7 @@ def _search_weights(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], f
         margins = Margins.along(curve, bounds)
         if not margins.broken():
             return curve.weights, float(weights @ weights)
+        # where nothing keeps them at the nodes, more nodes will not help
         if not possible:
             break
         search.between(curve)

@@ -29,12 +29,10 @@ from centrode.numerics.search import Function, extremes
 
 # Taylor coefficients of a roller path from its differential equations, over any algebra with `+ - * /`.
 #
-# With eta = sin(gamma) and lambda = cos(gamma), gamma the pressure angle, the path of curvature K obeys
-# `eta' = lambda - rho K`, `rho' lambda = rho eta`, `lambda lambda' = -eta eta'`. Equation numbers are those
-# of
-# A. T. Skoibeda, V. N. Zhukovets, Solution of an autonomous nonlinear differential equation of second order
-# in the
-# construction of plane curves (in Russian).
+# With eta = sin(gamma) and lambda = cos(gamma), gamma the pressure angle, the path of curvature K obeys `eta'
+# = lambda - rho K`, `rho' lambda = rho eta`, `lambda lambda' = -eta eta'`. Equation numbers are those of A.
+# T. Skoibeda, V. N. Zhukovets, Solution of an autonomous nonlinear differential equation of second order in
+# the construction of plane curves (in Russian).
 
 Number = Any
 Series = list[Number]
@@ -57,6 +55,7 @@ def system_series(
             climb = climb + radii[i] * sines[n - i]
         for i in range(1, n + 1):
             climb = climb - (n + 1 - i) * cosines[i] * radii[n + 1 - i]
+        # the outer term of rho' lambda is what is solved for; the others are known
         sines.append((cosines[n] - bent) / (n + 1))
         radii.append(climb / ((n + 1) * cosine))
         cosines.append(next_cosine(sines, cosines))
@@ -73,6 +72,7 @@ def next_cosine(a: Sequence[Number], b: Sequence[Number]) -> Number:
         for i in range(1, m // 2 + 1):
             total = total - b[i] * b[m + 1 - i]
         return total / b[0]
+    # each product of two different coefficients stands twice in the square, hence 2 below
     for i in range((m - 1) // 2 + 1):
         total = total - a[i] * a[m + 1 - i]
     for i in range(1, (m - 1) // 2 + 1):
@@ -104,6 +104,7 @@ def arc_series(
     turning: Series = []
     rates: Series = []
     for n in range(order):
+        # rho w = lambda by division of series: rates are phi' = lambda / rho
         rate = cosines[n]
         for i in range(n):
             rate = rate - rates[i] * radii[n - i]
@@ -200,6 +201,7 @@ class StatePath:
         if not order:
             return np.asarray(state[which])[None]
         with np.errstate(all="ignore"):
+            # the recursion gives one order more than the law is given to
             found = system_series(*state, self.law.series(places, order - 1))[which]
         return np.asarray([math.factorial(k) * c for k, c in enumerate(found)])
 
@@ -268,6 +270,7 @@ class SymmetricPath:
 
 
 def _apply_signs(found: Array, phi: Array, parity: int) -> Array:
+    # each derivative of an even function is odd, and the other way round
     signs = (-1.0) ** (np.arange(len(found)) + parity)
     return np.where(np.asarray(phi) < 0, signs[:, None] * found, found)
 
@@ -329,6 +332,7 @@ def frames(curve: PolarCurve, phi: Array) -> Frames:
         slope, value = rho.slope(), rho.lower_order()
         gamma = JETS.atan2(slope, value)
         speed = JETS.sqrt(slope * slope + value * value)
+        # the outward normal turns by psi' = 1 - gamma' while the place goes ds/dphi: the curvature is their quotient
         turning = -gamma.slope() + 1.0
         curvature = turning / speed.lower_order()
     psi = phi - gamma.value
@@ -347,7 +351,7 @@ def frames(curve: PolarCurve, phi: Array) -> Frames:
     )
 
 
-# What is asked of a path: its start, its range, that it stays near and smooth.
+# Conditions on a path: its start, its range, that it stays near and smooth.
 
 GREATEST_RANGE = 20 * math.pi
 """Ten turns either way."""

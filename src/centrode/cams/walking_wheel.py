@@ -25,11 +25,10 @@ from centrode.numerics.search import Extremes, extremes, maxima_between
 # The shoe of a leg: the profile that rolls on flat ground while the hub stays at its height.
 #
 # The ground touches the shoe in the leg's axes as a line whose normal makes the angle phi with the leg. Its
-# distance
-# from the roller's centre is p(phi) = h - H cos phi, h the height of the hub, H the polar radius of the
-# roller's path:
-# the support function of the shoe. Its envelope is the paper's X_B = Y2 sin phi, Y_B = Y1 + Y2 cos phi with
-# Y1 = H' cot phi - H and Y2 = h - H' cos(phi)^2 / sin phi, but p has no quotient that vanishes at phi = 0.
+# distance from the roller's centre is p(phi) = h - H cos phi, h the height of the hub, H the polar radius of
+# the roller's path: the support function of the shoe. Its envelope is the paper's X_B = Y2 sin phi, Y_B = Y1
+# + Y2 cos phi with Y1 = H' cot phi - H and Y2 = h - H' cos(phi)^2 / sin phi, but p has no quotient that
+# vanishes at phi = 0.
 
 NEAR = 0.03
 """Within so many radians of phi = 0, H'/sin phi is the quotient of two series."""
@@ -67,6 +66,8 @@ class Shoe:
         """Points (X_B, Y_B) of the profile (n, 2) [m] in the leg's axes: Y along the leg from the roller's centre."""
         p, slope = self.support(phi, 1)
         sine, cosine = np.sin(phi), np.cos(phi)
+        # the envelope of the lines x sin(phi) + y cos(phi) = p: the place p n + p' t with their normal and
+        # tangent
         return np.stack([p * sine + slope * cosine, p * cosine - slope * sine], axis=-1)
 
     def polar(self, phi: Array) -> tuple[Array, Array]:
@@ -89,6 +90,7 @@ class Shoe:
         with np.errstate(divide="ignore", invalid="ignore"):
             share = slope / np.sin(phi)
         near = np.abs(phi) <= self._near
+        # a law that breaks at phi = 0 is mirrored there, and the series to the right serves both sides
         inner = np.abs(phi[near]) if 0.0 in self.arc.breaks else phi[near]
         share[near] = np.polynomial.polynomial.polyval(inner, self._share)
         cosine = np.cos(phi)
@@ -99,6 +101,7 @@ class Shoe:
         """The least radius of curvature [m] of the profile and where [rad]."""
         found = extremes(
             self.bend,
+            # the radius of curvature p + p'' has its extremes where p' + p''' vanishes
             lambda phi: np.asarray(self.support(phi, 1)[1] + self.support(phi, 3)[3]),
             nodes_of(self.arc.edges),
         )
@@ -106,6 +109,7 @@ class Shoe:
 
     def _support(self, phi: Array, order: int) -> Jet:
         angle = Jet([phi, *([np.ones_like(phi)] if order else []), *([0.0 * phi] * (order - 1))])
+        # the cosine is taken over jets, so that the support's derivatives follow from those of the path
         lowered: Jet = radius_jet(self.arc.curve, phi, order) * JETS.cos(angle)
         return -lowered + self.height
 
@@ -114,6 +118,7 @@ class Shoe:
         """Taylor coefficients of H'/sin phi about phi = 0, to the right."""
         rho = radius_jet(self.arc.curve, np.zeros(1), TERMS + 1).slope()
         sine = JETS.sin(Jet.variable(np.zeros(1), TERMS))
+        # both series begin with a zero: without it the quotient has a value at phi = 0
         found = quotient(tuple(rho.coefficients[1:]), tuple(c + np.zeros(1) for c in sine.coefficients[1:]))
         return np.array([float(c[0]) for c in found])
 
@@ -121,8 +126,10 @@ class Shoe:
     def _near(self) -> float:
         """How far the series is good to rounding: to no side where the law breaks at 0 without symmetry."""
         if 0.0 in self.arc.breaks and not isinstance(self.arc.curve, SymmetricPath):
+            # the two series differ there, so neither side has one that holds for both
             return 0.0
         last, first = abs(self._share[-1]), abs(self._share[0]) or 1.0
+        # the last term over the first is the share left out at the distance where it reaches rounding
         reach = (np.finfo(float).eps * first / last) ** (1.0 / TERMS) if last else NEAR
         return float(min(NEAR, reach, *(abs(one) for one in self.arc.breaks if one)))
 
@@ -166,6 +173,7 @@ def shoe(arc: Arc, height: float) -> Shoe:
     found = Shoe(arc, height)
     least, at = found.least_bend
     if least <= 0.0:
+        # the height enters the radius of curvature as it is: so much more of it takes the cusp away
         what = _(
             "the shoe has a cusp: its radius of curvature falls to {least:.6g} mm at {at:.6g} deg"
         ).format(least=1e3 * least, at=math.degrees(at))
@@ -177,10 +185,9 @@ def shoe(arc: Arc, height: float) -> Shoe:
 # The walking wheel: a fixed cam, a carrier of N legs with rollers, shoes that roll on the ground.
 #
 # The carrier turns clockwise and the hub goes to the right. The angle phi of a leg is counted from straight
-# down in the
-# sense of the carrier's turning; leg 0 stands straight down where the carrier has turned by 0, leg 1 comes
-# after it. The
-# ground is the x axis, the hub is over x = 0 then. Seen from the hub, the cam's y axis points down.
+# down in the sense of the carrier's turning; leg 0 stands straight down where the carrier has turned by 0,
+# leg 1 comes after it. The ground is the x axis, the hub is over x = 0 then. Seen from the hub, the cam's y
+# axis points down.
 
 LEAST_LEGS, MOST_LEGS = 3, 24
 PANEL = 0.1
@@ -256,6 +263,7 @@ class WheelMover:
     def travel(self, phi: Array) -> Array:
         """Travel of the hub [m] while the standing leg turns from 0 to phi (n) [rad], the paper's (2)."""
         phi = np.asarray(phi, dtype=np.float64)
+        # the integral from 0: the series begins at the end of the arc, so its value there is taken off
         lift = self._lift.integral(np.append(phi, 0.0))
         return np.asarray(self.height * phi + (lift[:-1] - lift[-1]))
 
@@ -302,11 +310,15 @@ class WheelMover:
     def pose(self, turned: float) -> WheelPose:
         """The wheel where the carrier has turned by an angle [rad]."""
         pitch = math.tau / self.legs
+        # whole steps of legs that have stood since leg 0
         steps = math.floor((turned + self.half) / pitch)
         angles = turned - pitch * np.arange(self.legs)
+        # angles of the legs from straight down, within half a turn either way
         angles = angles - math.tau * np.round(angles / math.tau)
+        # by rounding the standing leg may lie a hair beyond its arc
         standing = np.clip(np.array([turned - pitch * steps]), -self.half, self.half)
         hub = np.array([steps * self.step + float(self.travel(standing)[0]), self.height])
+        # straight down is -y, and legs turn clockwise
         along = np.stack([-np.sin(angles), -np.cos(angles)], axis=-1)
         across = np.stack([np.cos(angles), -np.sin(angles)], axis=-1)
         contact = np.array([hub[0] + float(self.touch(standing)[0]), 0.0])
@@ -362,6 +374,7 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> WheelMov
         )
         raise InputError("[mover] post", what, _("make it longer than the roller's radius"))
     working, half = closed.arcs[0], math.pi / legs
+    # a leg that works at the very end of the arc may miss it by rounding
     if working.stop < half * (1 - 1e-12) or working.start > -half * (1 - 1e-12):
         what = _("the working arc goes to {asked:.6g} deg, a leg works to {half:.6g} deg").format(
             asked=math.degrees(working.stop), half=math.degrees(half)
@@ -441,6 +454,8 @@ def _heights(mover: WheelMover, phi: Array) -> Array:
     radius = mover.shoe.arc.curve.radius(phi)[0]
 
     def below(u: Array) -> Array:
+        # the shoe's points as they are, without the support function: the proof shares nothing with the
+        # design
         x, y = np.moveaxis(profile_by_parts(mover, u.reshape(-1)).reshape(*u.shape, 2), -1, 0)
         shape = (-1,) + (1,) * (u.ndim - 1)
         lever = radius.reshape(shape) + y
@@ -448,8 +463,10 @@ def _heights(mover: WheelMover, phi: Array) -> Array:
 
     points = np.linspace(-mover.half, mover.half, SEARCH)
     best = np.argmax(below(np.broadcast_to(points, (len(phi), SEARCH))), axis=1)
+    # about the best of the points, between its neighbours
     low, high = points[np.maximum(best - 1, 0)], points[np.minimum(best + 1, SEARCH - 1)]
     _places, lowest = maxima_between(below, low, high)
+    # the point itself may be better than the interval's search by rounding
     return np.maximum(lowest, below(points[best]))
 
 
@@ -460,6 +477,7 @@ def _contact_speed(mover: WheelMover, phi: Array) -> Array:
     x, y = profile_by_parts(mover, phi).T
     sine, cosine = np.sin(phi), np.cos(phi)
     hub = slope * sine + (radius + first) * cosine + second  # (3)
+    # velocities by phi: of the hub, of the roller along its leg, and of the leg's turn about the roller
     forwards = hub - (slope + x) * sine - (radius + y) * cosine
     upwards = -(slope + x) * cosine + (radius + y) * sine
     return np.asarray(np.hypot(forwards, upwards))
@@ -474,6 +492,7 @@ def _lengths(mover: WheelMover) -> tuple[float, float]:
     rates = []
     for column in points.T:
         coefficients = panels.series(column).coefficients
+        # derivatives of the series by the place within a panel, over half its width
         slopes = legendre.legder(coefficients, axis=1) * (2.0 / widths)
         rates.append(legendre.legval(inner, slopes.T))
     arc = float(np.sum(panels.weights * np.hypot(*rates).reshape(-1)))
@@ -486,6 +505,7 @@ def _clearance(mover: WheelMover) -> tuple[float, float]:
     phi = np.linspace(mover.half, math.tau - mover.half, RETURNING)
     x, y = profile_by_parts(mover, np.linspace(-mover.half, mover.half, SEARCH)).T
     radius = mover.closed.radius(phi)[0]
+    # heights below the hub of all points of the shoe, at every angle of its leg
     levers = (radius[:, None] + y) * np.cos(phi)[:, None] + x * np.sin(phi)[:, None]
     lowest = mover.height - levers.max(axis=1)
     worst = int(np.argmin(lowest))
@@ -496,6 +516,7 @@ def _room(mover: WheelMover) -> tuple[float, float]:
     """Least room between neighbouring rollers, and the angle of the first one's leg."""
     phi, pitch = np.linspace(-math.pi, math.pi, RETURNING), math.tau / mover.legs
     one, two = mover.closed.radius(phi)[0], mover.closed.radius(phi + pitch)[0]
+    # law of cosines, with one leg along an axis
     apart = np.hypot(two * math.cos(pitch) - one, two * math.sin(pitch))
     worst = int(np.argmin(apart))
     return float(apart[worst]) - 2.0 * mover.roller, float(phi[worst])

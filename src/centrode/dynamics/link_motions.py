@@ -27,7 +27,7 @@ class LinkMotion:
     velocity, acceleration : complex
         First and second derivative of the centre's place by the drive's value [m per unit of it, and its square].
     turning, bending : float
-        The same of the link's angle.
+        First [-] and second derivative of the link's angle by the drive's value.
     """
 
     link: str
@@ -40,18 +40,18 @@ class LinkMotion:
 
     @property
     def reduced(self) -> float:
-        """Its share in the reduced inertia."""
+        """Share of the link in the reduced inertia [kg m^2; of a displacement kg]."""
         return self.mass * abs(self.velocity) ** 2 + self.inertia * self.turning**2
 
     @property
     def slope(self) -> float:
-        """Its share in the derivative of the reduced inertia."""
+        """Share of the link in the derivative of the reduced inertia by the drive's value."""
         along = (self.velocity.conjugate() * self.acceleration).real
         return 2.0 * (self.mass * along + self.inertia * self.turning * self.bending)
 
     @property
     def slope_terms(self) -> float:
-        """The greatest that the terms of that share could be."""
+        """Bound on the terms of `slope`: their size if nothing cancelled, by which rounding is measured."""
         moved = self.mass * abs(self.velocity) * abs(self.acceleration)
         return 2.0 * (moved + self.inertia * abs(self.turning * self.bending))
 
@@ -66,6 +66,7 @@ def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]
         turning = float(here["angular_velocity_coefficient"].sel(link=one.link))
         bending = float(here["angular_acceleration_coefficient"].sel(link=one.link))
         angle = float(here["angle"].sel(link=one.link))
+        # the centre's arm in the frame's axes; its derivatives are i phi' and i phi'' - phi'^2 times it
         arm = complex(centre.along, centre.across) * cmath.exp(1j * angle)
         found.append(
             LinkMotion(

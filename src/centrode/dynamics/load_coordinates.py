@@ -21,8 +21,8 @@ Number: TypeAlias = Any
 
 
 # A coordinate answers for itself: `value` is the number itself [m or rad]; `slope` its derivative by the parameter, at
-# held directions, and the derivative of that; `pulls` what a load of one unit along it does to points and links, its
-# derivatives by their coordinates.
+# held directions, as a jet with its own derivative; `pulls` what a load of one unit along it does to points and
+# links, its derivatives by their coordinates.
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,7 @@ class Slide:
             else state.heading(guide.on, unit_vector(state.m.base, spot))
         )
         (x, y, z), (u, v, w) = place_of(pole), place_of(state.point(guide.point))
+        # square to the pole and to the point: the tangent of the circle, counter-clockwise about the pole
         return unit(state.m.base, cross((x, y, z), (u, v, w)))
 
 
@@ -139,6 +140,7 @@ class Component:
 
     def slope(self, state: State) -> Jet:
         pairs = zip(self._direction(state), self._place(state), strict=True)
+        # the direction's own derivative is left out: a force does no work when its direction turns
         parts = [u.lower_order() * x.slope() for u, x in pairs]
         return sum(parts[1:], parts[0])
 
@@ -170,6 +172,7 @@ def place_of(place: Place) -> Vector:
 def _apart(state: State, first: str, second: str, size: Number) -> tuple[Wrench, ...]:
     """Two points pushed apart, each with a force of their distance over `size`."""
     one, other = place_of(state.point(first)), place_of(state.point(second))
+    # for a distance the force is of unit size; for half its square it is the distance itself
     force = tuple((u - x) / size for x, u in zip(one, other, strict=True))
     return on_point(second, force, other), on_point(first, tuple(-x for x in force), one)
 
@@ -201,6 +204,7 @@ class Spin:
 
     def slope(self, state: State) -> Jet:
         along = [x.lower_order() for x in self._axis(state)]
+        # spins differ by the relative angular velocity; along the axis it is the rate of the joint's angle
         pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
         parts = [(own - other) * axis for own, other, axis in pairs]
         return sum(parts[1:], parts[0])
@@ -225,6 +229,7 @@ class Travel:
         return float("nan")
 
     def slope(self, state: State) -> Jet:
+        # the distance gone grows whichever way the drive runs, so its slope is the sense of the rate
         return Jet((state.m.base.sign(state.rate), 0.0))
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
@@ -238,7 +243,7 @@ Coordinate: TypeAlias = Turn | Slide | Distance | HalfSquare | Component | Spin 
 def turning_of(mechanism: Mechanism, load: TurningLoad, where: str, measured: bool) -> Turn | Spin:
     """The turning of a load's link against another; `measured` where the load asks for the angle itself.
 
-    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is asked for.
+    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is requested.
     """
     if mechanism.space != "sphere":
         return Turn(load.link, load.relative_to)

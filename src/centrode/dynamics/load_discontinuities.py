@@ -53,9 +53,11 @@ def _turning_points(coordinate: Coordinate, at: StateAt, nodes: Array, state: St
     function = _slope_with_derivative(coordinate)
     value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
     if _stands_still(value, state.scale):
+        # the sign of a slope that is rounding alone changes everywhere
         return
     there = functools.partial(_at_values, function, at)
     yield newton_roots(there, *foretold_brackets(there, nodes, value, slope))
+    # a node at which the slope is zero lies inside no change of sign
     yield nodes[value == 0.0]
 
 
@@ -68,11 +70,13 @@ def _passings(coordinate: Coordinate, levels: Array, at: StateAt, nodes: Array, 
     """Places at which a coordinate passes one of several levels, all found together."""
     value = np.broadcast_to(coordinate.value(state), (1, len(nodes)))[0]
     low, high = np.minimum(value[:-1], value[1:]), np.maximum(value[:-1], value[1:])
+    # levels strictly between the values at both nodes; one at a node is found as that node
     first, last = np.searchsorted(levels, low, "right"), np.searchsorted(levels, high, "left")
     counts = np.where(np.isfinite(low + high), np.maximum(last - first, 0), 0)
     cells = np.repeat(np.arange(len(counts)), counts)
     if not len(cells):
         return nodes[np.isin(value, levels)]
+    # each cell once for every level passed in it: one array of roots
     passed = levels[np.concatenate([np.arange(i, i + n) for i, n in zip(first, counts, strict=True)])]
 
     def function(x: Array) -> tuple[Array, Array]:
@@ -97,6 +101,7 @@ def _at_values(function: WithSlope, at: StateAt, x: Array) -> tuple[Array, Array
 
 
 def _distinct(places: Array) -> Array:
+    # the same turning may be met by several loads, and a level at a node from both sides
     if not len(places):
         return places
     apart = np.diff(places) > TOGETHER * np.maximum(1.0, np.abs(places[1:]))

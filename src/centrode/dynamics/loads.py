@@ -114,6 +114,7 @@ class Weight(Constant):
 
     def energy(self, x: Number) -> Number:
         """Potential energy [J] at a value of its coordinate."""
+        # a constant force along x has the potential -F x
         return -self.value * x
 
 
@@ -183,6 +184,7 @@ class StraightSpring:
 
     def energy(self, x: Number) -> Number:
         """Potential energy [J] at a value of its coordinate."""
+        # the coordinate is half the squared distance, so that it is smooth at length zero
         return 0.5 * self.stiffness * (np.sqrt(2.0 * x) - self.free) ** 2
 
     def __call__(self, now: Situation) -> Number:

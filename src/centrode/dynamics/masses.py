@@ -55,6 +55,7 @@ def solids_of(mechanism: Mechanism, given: Given, m: Namespace) -> tuple[Mass, .
         mass, inertia = reader.mass, reader.inertia()
         if is_none(mass) and not inertia:
             continue
+        # inertia without mass: the centre does not move anything
         centre = Radial(name, (1.0, 0.0, 0.0), 0.0) if is_none(mass) else reader.centre()
         found.append(Mass(name, mass, centre, inertia))
     return tuple(found)
@@ -135,6 +136,8 @@ class InertiaReader(LinkNumbers):
         own = self.link.inertia
         assert own is not None
         if not isinstance(own, tuple):
+            # equal moments about all axes: each direction has half of one, as an axis is the sum of two
+            # others
             each = 0.5 * self.number("inertia", own)
             axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
             return () if is_none(each) else tuple(Spread(each, axis) for axis in axes)
@@ -150,6 +153,7 @@ class InertiaReader(LinkNumbers):
             what = _("a {shape} needs a radius").format(shape=self.link.shape)
             raise InputError(self.where, what, _("give radius, or inertia"))
         radius = self.number("radius", self.link.radius)
+        # the sum of m x^2 along a diameter: m r^2 / 4 of a disc, m r^2 / 2 of a ring; none across
         share = self.mass * radius * radius / (4.0 if self.link.shape == "disc" else 2.0)
         return tuple(Spread(share, axis) for axis in basis(self.m, self._direction()))
 
@@ -174,6 +178,7 @@ class InertiaReader(LinkNumbers):
         first, second = self._ends()
         one, other = (unit_vector(self.m, self.local[end]) for end in (first, second))
         sine, cosine = half_arc(self.m, self.local[first], self.local[second])
+        # sum and difference of two unit vectors are 2 cos h and 2 sin h long
         middle, across = times(0.5 / cosine, add(one, other)), times(0.5 / sine, subtract(other, one))
         return sine, self.m.atan2(sine, cosine), middle, across
 
@@ -191,6 +196,7 @@ class InertiaReader(LinkNumbers):
         normal = cross(places[first], places[second])
         middle = add(places[first], places[second])
         for at in places.values():
+            # on the great circle of the ends, and on the side of their middle
             if abs(dot(at, normal)) > STRAIGHT or dot(at, middle) < 0.0:
                 what = _("an arc is part of a great circle, but the points of this link do not lie on one")
                 raise InputError(self.where, what, _("give centre and inertia in place of shape"))
@@ -248,6 +254,8 @@ def _links_that_do_not_turn(mechanism: Mechanism) -> set[str]:
     grown = True
     while grown:
         ties = [(guide.on, guide.link) for guide in mechanism.guides if guide.link is not None]
+        # a tie holds in both senses: what is guided on a body that does not turn does not turn, and the other
+        # way round
         more = {name for pair in ties if still & set(pair) for name in pair}
         grown = not more <= still
         still |= more
@@ -291,6 +299,7 @@ class _MassReader(LinkNumbers):
         first, second = self.ends()
         (x, y), (u, v) = (self.link.coordinates[end] for end in (first, second))
         at = self.link.coordinates[given] if isinstance(given, str) else given
+        # a centre that is given may only repeat what the shape says
         if at is not None and dist(at, ((x + u) / 2, (y + v) / 2)) > STRAIGHT * dist((x, y), (u, v)):
             what = _("the centre of a rod is its middle")
             raise InputError(self.where, what, _("take centre out, or give inertia in place of shape"))
@@ -331,6 +340,7 @@ class _MassReader(LinkNumbers):
         first, second = max(pairs, key=lambda pair: dist(places[pair[0]], places[pair[1]]))
         (x, y), (u, v) = places[first], places[second]
         for at in places.values():
+            # the distance from the line, over the rod's length
             if abs((at[0] - x) * (v - y) - (at[1] - y) * (u - x)) > STRAIGHT * dist((x, y), (u, v)) ** 2:
                 what = _("a rod is straight, but the points of this link do not lie on one line")
                 raise InputError(self.where, what, _("give centre and inertia in place of shape"))

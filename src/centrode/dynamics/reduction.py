@@ -171,6 +171,8 @@ class Reducer:
                 what = _("loads depend on time or speeds, and the drive is a law of time")
                 raise InputError("rate", what, _("give the speed of the drive, or [machine] mean_speed"))
             speed = path.forward
+        # a time follows from constant speed; at speed zero it is infinite, and only loads of time would see
+        # that
         with np.errstate(all="ignore"):
             elapsed = (values - path.driven[0].start) / speed if time is None else time
         return DriveMotion(
@@ -195,6 +197,7 @@ class Reducer:
     def _along(self, values: Array) -> MotionOnPath:
         """Places on a stretch of the path with all these values, whose events are known."""
         places = self._places
+        # the new stretch holds the old one, so that places requested before stay known
         if places is None or not (places.mesh[0] <= np.min(values) and np.max(values) <= places.mesh[-1]):
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
             places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
@@ -223,6 +226,7 @@ def reduce_state(burden: MassesAndLoads, state: State, status: npt.NDArray[np.in
     known = state.exists
     for k, load in enumerate(burden.loads):
         moments[k] = load.moment(state, known)
+    # added to sums and parts alike: one absent number makes them absent
     absent = np.where(known, 0.0, np.nan)
     return Reduced(
         state.parameter,
@@ -292,6 +296,7 @@ def _refuse_rings(burden: MassesAndLoads) -> None:
 
 def _check_size(solved: Solved, burden: MassesAndLoads) -> None:
     drives, samples = len(solved.ready.mechanism.drives), solved.status.size
+    # the greatest of the arrays on the way: partial derivatives of columns, Christoffel terms, forces by load
     most = GREATEST_RESULT // max(solved.layout.width * drives**2, drives**3, len(burden.loads) * drives)
     if samples > most:
         what = _("{asked} positions were asked for").format(asked=samples)
@@ -328,6 +333,7 @@ def _inertia(directions: _Directions, burden: MassesAndLoads) -> tuple[Array, Ar
     for link, mass in enumerate(burden.masses):
         jets = {pair: speeds_of(state, mass) for pair, state in along.items()}
         for number, (factor, _one) in enumerate(jets[0, 0]):
+            # directions have the length of the drive's unit, which is divided out
             first = [jets[i, i][number][1].derivative(1) / units[i] for i in range(size)]
             for i, j in product(range(size), repeat=2):
                 matrix[link, i, j] += np.reshape(factor * first[i] * first[j], -1)
@@ -335,6 +341,7 @@ def _inertia(directions: _Directions, burden: MassesAndLoads) -> tuple[Array, Ar
                 second = jets[pair][number][1].derivative(2)
                 if i == j:
                     second = second / units[i] ** 2
+                # jets along e_i + e_j hold D_ii + 2 D_ij + D_jj: what both drives do alone is taken off
                 else:
                     straight = [jets[k, k][number][1].derivative(2) for k in pair]
                     second = (second - straight[0] - straight[1]) / (2.0 * units[i] * units[j])
@@ -349,6 +356,7 @@ def _forces(directions: _Directions, solved: Solved, burden: MassesAndLoads) -> 
     known = state.exists
     forces = np.empty((len(burden.loads), len(directions.units), directions.shape[-1]))
     for number, load in enumerate(burden.loads):
+        # how great a load is follows from the motion as it is; its work is that along each drive alone
         strengths = load.strengths(state, known)
         for i, unit in enumerate(directions.units):
             forces[number, i] = np.reshape(
@@ -365,6 +373,7 @@ def _variable_of_units(name: str, dimensions: Sequence[str], values: Array, unit
     drives = sum(dimension.startswith("drive") for dimension in dimensions)
     head = "N" if "force" in name else "kg"
     least = 1 if head == "N" else 2
+    # a drive in metres takes the place of one in radians, and a metre out of the unit
     each = [_unit(head, least - sum(unit != "rad" for unit in of)) for of in product(units, repeat=drives)]
     variable[2]["units"] = each[0] if len(set(each)) == 1 else ", ".join(each)
     return variable
@@ -416,7 +425,7 @@ def reduce(
 
 
 def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dataset:
-    """The same for a motion solved before, of one mechanism."""
+    """Masses and loads reduced to the drives at the samples of a solved motion of one mechanism; see `reduce`."""
     burden = MassesAndLoads.of(solved.ready.mechanism) if burden is None else burden
     if solved.ready.kinematics.path.by_time:
         return reduced_to_several(solved, burden)
@@ -500,7 +509,9 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
     """
     expressed = solved.points.dtype == object
     given = {
-        path: np.asarray(x).item() if expressed else np.asarray(x)[:, None] for path, x in values.items()
+        # arrays of a batch meet samples in the last axis; a node stands for all of them
+        path: np.asarray(x).item() if expressed else np.asarray(x)[:, None]
+        for path, x in values.items()
     }
     burden = MassesAndLoads.of(solved.ready.mechanism, given, EXPRESSIONS if expressed else ARRAYS)
     state = _state_of_nodes(solved, burden) if expressed else State.of(solved, _batch_moving(solved, burden))
@@ -509,12 +520,14 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
         for load in burden.loads:
             total = total + load.along(state, [effort.strength(state) for effort in load.efforts])
     else:
+        # the names stand in the order in which `share` gives the two
         which = REDUCED.index(name)
         total = sum((share(state, mass)[which] for mass in burden.masses), 0.0)
     if expressed:
         box = np.empty((1, 1), dtype=object)
         box[0, 0] = total
         return box
+    # nothing is reduced where the motion has no derivatives
     known = np.where(state.exists, 0.0, np.nan)
     return np.asarray(np.broadcast_to(total, solved.status.shape) + known)
 
@@ -542,7 +555,7 @@ def _state_of_nodes(solved: Solved, burden: MassesAndLoads) -> State:
 
 
 def state_of_nodes(solved: Solved, burden: MassesAndLoads, moving: DriveMotion) -> State:
-    """The same with time, parameter and rate as they are given."""
+    """The state at the one sample of a traced motion, with time [s], parameter and rate as given."""
     if any(isinstance(effort.amount, LoadDiagram) for load in burden.loads for effort in load.efforts):
         raise Untraceable(mark("indicator diagrams"))
     path, mechanism = solved.ready.kinematics.path, solved.ready.mechanism

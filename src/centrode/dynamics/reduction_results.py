@@ -139,6 +139,7 @@ def _along(reduction: xr.Dataset) -> Array:
     """What means are taken over: the value of the only drive where it runs one way, else time."""
     values, time = (np.asarray(reduction[name].to_numpy()) for name in ("drive_value", "time"))
     steps = np.diff(values[:, 0])
+    # over time where the drive comes back: over its value the way forth and back would cancel
     one_way = "reduced_inertia" in reduction and bool((steps > 0.0).all() or (steps < 0.0).all())
     return values[:, 0] if one_way else time
 
@@ -149,9 +150,11 @@ def _over(values: Array, along: Array) -> tuple[float, float, float]:
     if not known.any():
         return np.nan, np.nan, np.nan
     some, where = values[known], along[known]
+    # the trapezoidal rule over samples that may lie unevenly
     width = float(where[-1] - where[0])
     mean = float(np.trapezoid(some, where)) / width if width else float(np.mean(some))
     low, high = float(np.min(some)), float(np.max(some))
+    # what differs from zero by the rounding of the greatest value is zero
     noise = ROUNDING * max(abs(low), abs(high))
     return (
         0.0 if abs(low) <= noise else low,

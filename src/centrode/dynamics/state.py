@@ -145,7 +145,7 @@ class State:
     side : -1, 0 or 1
         At a jump: the side of the parameter that counts; 0 where a one-sided load counts as acting.
     scale : float [m]
-        The greatest length, by which velocities of zero are told from rounding.
+        The greatest length, by which velocities of zero are distinguished from rounding.
     columns : kind -> what gives value and two derivatives of its k-th number
     m : functions of jets, over arrays or over expressions
     """
@@ -193,6 +193,7 @@ class State:
     @property
     def exists(self) -> npt.NDArray[np.bool_]:
         """Where there are derivatives: nothing is reduced at limits."""
+        # any link will do: at a limit the derivatives of all are absent
         first = self.columns["attitude" if self.on_sphere else "angle"](0)[1]
         return np.asarray(np.isfinite(first))
 
@@ -202,6 +203,7 @@ class State:
             fixed = self.mechanism.frame.coordinates[name]
             if self.on_sphere:
                 radius = self.mechanism.sphere_radius
+                # over plain numbers: a point of the frame has no derivatives
                 return tuple(_constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
             return tuple(_constant(x) for x in fixed)
         place = self.known.get(f"point {name}")
@@ -250,6 +252,7 @@ class State:
         """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
         axis = tuple(x.lower_order() for x in self.heading(link, direction))
         along = dot(self.spin(link), axis)  # type: ignore[arg-type]
+        # of a first-order jet (rate, its derivative) the turning is (., rate, half of that derivative)
         return Jet((0.0, along.coefficients[0], along.coefficients[1] * 0.5))
 
     def angle(self, link: str) -> Jet:
@@ -278,6 +281,7 @@ class State:
             return tuple(x * centre.distance for x in self.heading(centre.link, centre.direction))
         x, y = self.point(centre.base)
         along, across = centre.along, centre.across
+        # the base itself: no sine or cosine is taken for nothing
         if isinstance(along, float) and isinstance(across, float) and along == across == 0.0:
             return x, y
         cosine, sine = self.rotor(centre.link)
@@ -329,6 +333,7 @@ def _scale_jet(jet: Jet, unit: float) -> Jet:
 
 
 def _jet(orders: Array) -> Jet:
+    # second derivatives to second Taylor coefficients
     return Jet((orders[0], orders[1], 0.5 * orders[2]))
 
 

@@ -26,7 +26,7 @@ class Wrench:
     ----------
     body : a point (a pin), or a link, the frame included
     force : (x, y), on the sphere (x, y, z) [N]
-    at : the same [m]
+    at : (x, y), on the sphere (x, y, z) [m]
         Where the force acts, as a place of that body.
     moment : number, on the sphere a vector [N m]
         A couple that comes on top; points take none.
@@ -38,7 +38,7 @@ class Wrench:
     moment: Moment = 0.0
 
     def times(self, factor: Number) -> Wrench:
-        """The same, so many times as great."""
+        """The wrench multiplied by a number."""
         force = tuple(x * factor for x in self.force)
         moment = self.moment
         turned = tuple(x * factor for x in moment) if isinstance(moment, tuple) else moment * factor

@@ -48,6 +48,7 @@ class Plane:
 
     def pose_of(self, m: Namespace, attitude: Sequence[Number], local: Vector, at: Vector) -> PlanePose:
         cosine, sine = attitude
+        # the origin is not carried along: it follows from the point's place
         return PlanePose(subtract(at, rotate_vector(local, (cosine, sine))), (cosine, sine))
 
     def stretch(self, attitude: Sequence[Number]) -> list[Number]:
@@ -111,15 +112,18 @@ class Plane:
         self, m: Namespace, one: PlaneCircle | Line, other: PlaneCircle | Line
     ) -> tuple[float, float, float, float]:
         assert isinstance(one, PlaneCircle)  # two lines always meet, or never
+        # a line is never too long: only a too short radius keeps them apart
         if isinstance(other, Line):
             offset = cross(other.direction, subtract(one.centre, other.through))
             return float(abs(offset) - abs(one.radius)), -inf, -inf, -inf
         apart = float(self.distance(m, one.centre, other.centre))
         first, second = abs(float(one.radius)), abs(float(other.radius))
+        # in the order of `Space.lack`; in the plane two circles cannot be too long together
         return apart - first - second, first - second - apart, second - first - apart, -inf
 
     def distance(self, m: Namespace, a: Vector, b: Vector) -> Number:
         x, y = subtract(a, b)
+        # hypot is safe against overflow; arrays and nodes have no such function
         return hypot(x, y) if isinstance(x, float) and isinstance(y, float) else m.sqrt(x * x + y * y)
 
     def leverage(self, m: Namespace, first: Vector, second: Vector) -> Number:
@@ -141,6 +145,8 @@ class Plane:
 
     def in_link_rows(self, m: Namespace, point: Vector, pose: PlanePose, local: Vector) -> list[Rows]:
         arm = rotate_vector(local, pose.rotor)
+        # by the link's turn the point moves by the left normal of the arm (-y, x), and the residual the other
+        # way
         return [((1.0, 0.0), (-1.0, 0.0, arm[1])), ((0.0, 1.0), (0.0, -1.0, -arm[0]))]
 
     def apart(self, m: Namespace, point: Vector, pose: PlanePose, local: Vector) -> list[Number]:
@@ -152,6 +158,8 @@ class Plane:
 
     def on_guide_row(self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve) -> Rows:
         direction, arm = rotate_vector(curve[1], pose.rotor), subtract(point, pose.origin)
+        # the left normal by the point; by the body its shift with the other sign, and what turning about the
+        # origin does
         return (-direction[1], direction[0]), (direction[1], -direction[0], -dot(direction, arm))
 
     def turn(
@@ -170,6 +178,7 @@ class Plane:
 
     def slid_row(self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve) -> Rows:
         direction, arm = rotate_vector(curve[1], pose.rotor), subtract(point, pose.origin)
+        # along the direction; the body's turn moves the point of the guide back
         return direction, (-direction[0], -direction[1], cross(direction, arm))
 
     def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
@@ -183,6 +192,7 @@ class Plane:
 
     def spin(self, pose: PlanePose, at: Vector) -> Row:
         x, y = subtract(pose.origin, at)
+        # turned about a place, the origin moves by the left normal of its way from it
         return -y, x, 1.0
 
     def normalise(self, m: Namespace, pose: PlanePose) -> PlanePose:

@@ -26,13 +26,11 @@ from centrode.numerics.jets import Jet
 # Points that move: what a locus says of a point's next coefficient, the ones before being known.
 #
 # What the k-th derivative of a locus says of the k-th coefficient of a point is linear in it, and the
-# gradients are
-# the same for all orders: those of the velocities. So no closed form needs to be differentiated, and
-# derivatives of
-# any order cost a third of what that would take. Textbook: Uicker, Pennock, Shigley, Theory of Machines and
-# Mechanisms, the method of kinematic coefficients (loop equations differentiated); any order: Griewank and
-# Walther,
-# Evaluating Derivatives (2nd ed., 2008), chapters 13 and 15.
+# gradients are the same for all orders: those of the velocities. So no closed form needs to be
+# differentiated, and derivatives of any order cost a third of what that would take. Textbook: Uicker,
+# Pennock, Shigley, Theory of Machines and Mechanisms, the method of kinematic coefficients (loop equations
+# differentiated); any order: Griewank and Walther, Evaluating Derivatives (2nd ed., 2008), chapters 13 and
+# 15.
 
 Number: TypeAlias = Any
 Place: TypeAlias = Sequence[Number]
@@ -71,7 +69,9 @@ class AtDistance:
         self.gradient = self.arm[0]
 
     def next(self, k: int) -> Number:
+        # half the k-th coefficient of arm . arm: its outer terms are the gradient's, the inner ones are known
         known = dot(self.gradient, coefficients(self.centre, k))
+        # gradient . x_k = gradient . c_k + ((r^2)_k - inner) / 2
         inner = total(dot(self.arm[i], self.arm[k - i]) for i in range(1, k))
         return total((known, times(0.5, less(coefficient(self.squared, k), inner))))
 
@@ -81,11 +81,15 @@ class AtDistance:
     def pull(self, cells: Cells) -> Pull:
         """Of arm . (x'' - c'') = (r^2)''/2 - |x' - c'|^2."""
         carried = times(self.reach(cells), bend(self.centre, cells))
+        # |x' - c'| anywhere in the cell: at the centre, grown by half (A + C), with the part of A left to the
+        # coefficients
         velocity = plus(length(self.arm[1], cells), times(cells.half, bend(self.centre, cells)))
         known = plus(plus(carried, times(0.5, bend((self.squared,), cells))), times(velocity, velocity))
+        # of (v + half A)^2: v^2, 2 half v A and half^2 A^2
         return known, times(2.0 * cells.half, velocity), cells.half * cells.half
 
     def reach(self, cells: Cells) -> Number:
+        # the arm is as long as the radius
         return cells.m.sqrt(self.squared.most if isinstance(self.squared, Bent) else self.squared)
 
 
@@ -99,6 +103,7 @@ class OnLine:
 
     def next(self, k: int) -> Number:
         known = dot(self.gradient, coefficients(self.through, k))
+        # the k-th coefficient of normal . arm, solved for that of the point
         return less(known, total(dot(self._normal(i), self.arm[k - i]) for i in range(1, k + 1)))
 
     def add(self, coefficient: Place, k: int) -> None:
@@ -108,9 +113,11 @@ class OnLine:
         """Of n . (x'' - t'') = -2 n' . (x' - t') - n'' . (x - t)."""
         line, turn = bend(self.through, cells), bend(self.direction, cells)
         if all(not isinstance(x, Jet) for x in self.direction):
+            # a direction that stands still has no rate: two terms vanish
             return line, 0.0, 0.0
         rate = plus(length(self._normal(1), cells), times(cells.half, turn))
         velocity = plus(length(self.arm[1], cells), times(cells.half, line))
+        # how far the point is from the line's own point, anywhere in the cell
         away = plus(
             length(self.arm[0], cells),
             plus(times(cells.half, length(self.arm[1], cells)), times(cells.sagitta, line)),
@@ -130,6 +137,8 @@ def place_series(
     place: Place, loci: Sequence[MovingLocus], solved: Callable[[Sequence[Number]], Place], order: int
 ) -> tuple[Jet, ...]:
     """A place as series, one for each axis; `solved` gives the vector whose products with the gradients are known."""
+    # every locus hands over its k-th equation, the point's coefficient answers, and each takes it for the
+    # next order
     found = [tuple(place)]
     for k in range(1, order + 1):
         found.append(tuple(solved([locus.next(k) for locus in loci])))
@@ -153,8 +162,10 @@ def bound_acceleration(
     """
     sums: list[Number] = [0.0, 0.0, 0.0]
     for locus, way in zip(loci, ways, strict=True):
+        # ways times pulls, coefficient by coefficient: what does not depend on B, what B multiplies, and B^2
         sums = [plus(one, times(way, other)) for one, other in zip(sums, locus.pull(cells), strict=True)]
     known, linear, squared = sums
+    # B determinant = known + linear B + squared B^2
     least = least_bound(known, determinant - linear, squared, cells.m)
     return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells) for axis in place)
 
@@ -233,6 +244,7 @@ def meet_circles(one: PlaneCircle, other: PlaneCircle, root: Root) -> Vector:
     signed = root(radicand)
     if not isinstance(radicand, Jet):
         return circles_meet(one, other, signed)
+    # the place is found from values alone; all derivatives follow from the linear equations
     place = circles_meet(_circle(one), _circle(other), value(signed))
     loci = [AtDistance(locus.centre, locus.radius * locus.radius, place) for locus in (one, other)]
     # the cross product of the arms is half the root
@@ -240,6 +252,7 @@ def meet_circles(one: PlaneCircle, other: PlaneCircle, root: Root) -> Vector:
     x, y = place_series(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
+        # half the root at its least bounds the cross product of the arms
         x, y = bound_acceleration(
             (x, y), loci, _across(loci, cells), 0.5 * cells.m.sqrt(radicand.least), cells
         )
@@ -287,6 +300,7 @@ def meet_circles_on_sphere(
         AtDistance(centre, 4.0 * half[0] * half[0], place)
         for centre, half in ((centre_1, half_1), (centre_2, half_2))
     )
+    # the place stays a unit vector: the third equation
     unit = AtDistance((0.0, 0.0, 0.0), 1.0, place)
     # the triple product of both chords and the place is that of the three places: the root
     inverse = 1.0 / value(signed)
@@ -307,6 +321,7 @@ def meet_circles_on_sphere(
     if isinstance(radicand, Bent):
         cells = radicand.cells
         across = _across((one, other), cells)
+        # the third way is the product of both chords' lengths, as the place is a unit vector
         ways = (*across, across[0] * across[1])
         x, y, z = bound_acceleration((x, y, z), (one, other, unit), ways, cells.m.sqrt(radicand.least), cells)
     return x, y, z
@@ -323,6 +338,7 @@ def _in_plane(loci: Sequence[AtDistance | OnLine], known: Sequence[Number], inve
     a, b = (locus.gradient for locus in loci)
     of_first, of_second = (times(inverse, x) for x in known)
     return (
+        # Cramer's rule for two products
         less(times(of_first, b[1]), times(of_second, a[1])),
         less(times(of_second, a[0]), times(of_first, b[0])),
     )

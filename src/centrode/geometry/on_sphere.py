@@ -63,6 +63,7 @@ class Sphere:
         x, y, z = self.pose_of(None, attitude, (0.0, 0.0), AT_REST.x)
         return [
             *(dot(axis, axis) - 1.0 for axis in (x, y, z)),
+            # unit length and right angles: six numbers say that nine are axes of a link
             *(dot(one, other) for one, other in ((x, y), (y, z), (z, x))),
         ]
 
@@ -110,6 +111,7 @@ class Sphere:
         first, second, base_first, base_second = sphere.require_reference(reference)
         # the arm of the reference is a dimension: so a link that does not fit is stretched, and tells
         length = sphere.length(m, tangent_inside(m, base_first, base_second))
+        # the length of the given arc, not of the one found: what does not fit is seen in the residual
         towards = sphere.rotate_tangent(m, at, tangent(at, self.place(m, base, base_second)), rotor)
         along = tangent_inside(m, first, second)
         return attitude_on(unit_vector(m, first), along, at, towards, length * sphere.length(m, along))
@@ -119,6 +121,8 @@ class Sphere:
     ) -> Attitude:
         pole, (radius,) = curve
         around_pivot = sphere.half_arc(m, pivot, pole)
+        # the pole lies on a circle about the pivot and, as the target is on the guide, on one about the
+        # target
         at_pole = meet_circles_on_sphere(at, around_pivot, target, sphere.half(m, radius), root)
         return sphere.attitude_by_two_points(m, pivot, pole, at, at_pole)
 
@@ -131,7 +135,10 @@ class Sphere:
 
     def stop(self, m: Namespace, pose: Attitude, curve: Curve, displacement: Number) -> SphereCircle:
         pole, (radius,) = curve
+        # a displacement is an arc along the circle: over the sine of its radius it is the angle about the
+        # pole
         inside = sphere.place_on_circle(m, pole, radius, displacement / m.sin(radius))
+        # a circle of no arc: a place
         return SphereCircle(vector_in_frame(pose, inside), (0.0, 1.0))
 
     def meet(self, one: SphereCircle, other: SphereCircle, root: Root, divisor: Root) -> Vector:
@@ -142,7 +149,9 @@ class Sphere:
 
     def lack(self, m: Namespace, one: SphereCircle, other: SphereCircle) -> tuple[float, float, float, float]:
         apart = float(self.distance(m, one.centre, other.centre))
+        # the arc from its half: both signs of a half arc are one circle
         first, second = (2.0 * atan2(abs(float(half[0])), float(half[1])) for half in (one.half, other.half))
+        # circles that reach around the sphere from the other side miss each other too
         around = first + second + apart - tau
         return apart - first - second, first - second - apart, second - first - apart, around
 
@@ -157,6 +166,7 @@ class Sphere:
         return m.abs(sphere.arc(m, unit_vector(m, pole), at) - radius)
 
     def period(self, m: Namespace, curve: Curve) -> Number:
+        # the length of a circle of that arc
         return tau * m.sin(curve[1][0])
 
     def slide(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve) -> Number:
@@ -183,6 +193,7 @@ class Sphere:
         self, m: Namespace, pose: Attitude, base: Attitude, rotor: tuple[Number, Number], reference: Reference
     ) -> Number:
         cosine, sine = sphere.components(*sphere.arms(m, pose, base, reference))
+        # the angle's rotor turned back by the given one: its arc tangent is zero where both agree
         return m.atan2(sine * rotor[0] - cosine * rotor[1], cosine * rotor[0] + sine * rotor[1])
 
     def turn_row(self, m: Namespace, pose: Attitude, base: Attitude, reference: Reference) -> Rows:
@@ -201,15 +212,18 @@ class Sphere:
     def slid_row(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve) -> Rows:
         pole, (radius,) = curve
         ahead, left, north, west = sphere.azimuth(m, point, pose, pole)
+        # d atan2(left, ahead) = (ahead d left - left d ahead) / (ahead^2 + left^2)
         factor = m.sin(radius) / (ahead * ahead + left * left)
         return sphere.of_both(m, point, times(factor, subtract(times(ahead, west), times(left, north))))
 
     def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
+        # along both tangents and back onto the sphere: to first order a shift by these arcs
         first, second = basis(m, point)
         moved = add(point, linear_combination((by[0], first), (by[1], second)))
         return times(1.0 / m.sqrt(dot(moved, moved)), moved)
 
     def moved_pose(self, m: Namespace, pose: Attitude, by: Sequence[Number]) -> Attitude:
+        # Cayley's rotation about half the vector agrees with the rotation to second order, and is rational
         half = (0.5 * by[0], 0.5 * by[1], 0.5 * by[2])
         x, y, z = (sphere.rotate_by_cayley(axis, half) for axis in pose)
         return Attitude(x, y, z)
@@ -222,6 +236,7 @@ class Sphere:
         return at
 
     def normalise(self, m: Namespace, pose: Attitude) -> Attitude:
+        # Gram and Schmidt with the first axis kept; the third follows
         x = times(1.0 / m.sqrt(dot(pose.x, pose.x)), pose.x)
         across = subtract(pose.y, times(dot(x, pose.y), x))
         y = times(1.0 / m.sqrt(dot(across, across)), across)

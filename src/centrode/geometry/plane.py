@@ -119,6 +119,7 @@ def _inverse(a: Vector) -> Vector:
 
     A link's own numbers do not move: one division serves all places, and all derivatives.
     """
+    # a two-point link lies along its first axis: exact
     if is_literal_zero(a[1]):
         return 1.0 / a[0], 0.0
     factor = 1.0 / dot(a, a)
@@ -142,6 +143,7 @@ def radicand_of_circles(one: PlaneCircle, other: PlaneCircle) -> Number:
     the triangle opens: ((r1 + r2)^2 - l^2)(l^2 - (r1 - r2)^2).
     """
     line = subtract(other.centre, one.centre)
+    # squares of lengths alone: no root is taken before the one that decides
     squared = dot(line, line)
     total, difference = one.radius + other.radius, one.radius - other.radius
     return (total * total - squared) * (squared - difference * difference)
@@ -150,7 +152,10 @@ def radicand_of_circles(one: PlaneCircle, other: PlaneCircle) -> Number:
 def circles_meet(one: PlaneCircle, other: PlaneCircle, root: Number) -> Vector:
     """Point where two circles meet, to the left of the way from centre to centre for a positive root."""
     line = subtract(other.centre, one.centre)
+    # l^2 is divided by once, and both parts of the answer share the quotient
     half = 0.5 / dot(line, line)
+    # (l^2 + r1^2 - r2^2) / (2 l^2), with the difference of squares as a product: no digits are lost for equal
+    # radii
     ahead = 0.5 + (one.radius + other.radius) * (one.radius - other.radius) * half
     left = root * half
     return (
@@ -167,6 +172,7 @@ def radicand_of_circle_and_line(one: PlaneCircle, other: Line) -> Number:
 
 def circle_meets_line(one: PlaneCircle, other: Line, root: Number) -> Vector:
     """Point where a circle meets a line, ahead of the foot of its centre for a positive root."""
+    # the foot of the centre on the line, and from there the root either way
     foot = dot(other.direction, subtract(one.centre, other.through))
     return along(other.through, other.direction, foot + root)
 
@@ -188,10 +194,13 @@ def aim(
     foot of the pivot on the line. The radicand is w^2 - e^2, w the distance from the pivot to the target, e
     that to the line.
     """
+    # the line's distance from the pivot in the link's own axes, with its side
     offset = cross(direction, subtract(through, pivot))
     to_target = subtract(target, at)
     squared = dot(to_target, to_target)
     half = root(squared - offset * offset)
+    # the direction of the line as it has to lie: that of the target, turned by the angle whose sine is
+    # -offset / w
     line = rotate_vector(to_target, (half / squared, -offset / squared))
     return pose_with_point(pivot, at, rotate_vector(line, reversed_rotor(direction)))
 

@@ -159,7 +159,7 @@ class Space(Protocol):
         """Two numbers that are zero where a link's point is at a place."""
 
     def in_link_rows(self, m: Namespace, point: Place, pose: Pose, local: Coordinates) -> list[Rows]:
-        """Their derivatives by point and link."""
+        """Derivatives of `in_link` by the coordinates of point and link."""
 
     def apart(self, m: Namespace, point: Place, pose: Pose, local: Coordinates) -> list[Number]:
         """Components of a place less that of a link's point: for looking at, where `in_link` is for Newton's method."""
@@ -168,19 +168,19 @@ class Space(Protocol):
         """Distance of a point from the curve of a guide, signed."""
 
     def on_guide_row(self, m: Namespace, point: Place, pose: Pose, curve: Curve) -> Rows:
-        """Its derivatives by point and link."""
+        """Derivatives of `on_guide` by the coordinates of point and link."""
 
     def turn(self, m: Namespace, pose: Pose, base: Pose, rotor: Rotor, reference: Reference) -> Number:
         """Angle by which a link is turned from where a rotor against a base has it, in (-pi, pi]."""
 
     def turn_row(self, m: Namespace, pose: Pose, base: Pose, reference: Reference) -> Rows:
-        """Its derivatives by link and base."""
+        """Derivatives of `turn` by the coordinates of link and base."""
 
     def slid(self, m: Namespace, point: Place, pose: Pose, curve: Curve, displacement: Number) -> Number:
         """How far a point is beyond a displacement along a guide."""
 
     def slid_row(self, m: Namespace, point: Place, pose: Pose, curve: Curve) -> Rows:
-        """Its derivatives by point and link."""
+        """Derivatives of `slid` by the coordinates of point and link."""
 
     # small motions
 

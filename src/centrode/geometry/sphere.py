@@ -101,12 +101,14 @@ def vector_in_frame(attitude: Attitude, inside: Vector) -> Vector:
 def tangent(a: Vector, b: Vector) -> Vector:
     """Vector at place a square to it, towards b; its length is the sine of the arc."""
     line = subtract(b, a)
+    # b - (a . b) a with a . b = 1 - |b - a|^2 / 2: differences keep the digits of near places
     return add(line, times(0.5 * dot(line, line), a))
 
 
 def tangent_inside(m: Namespace, first: Coordinates, second: Coordinates) -> Vector:
-    """The same between two points of a link, in its own axes."""
+    """Vector at a link's point, square to it, towards another of its points, in the link's axes (see `tangent`)."""
     if is_literal(first[1], 0.0) and is_literal(second[1], 0.0):
+        # on the link's own equator the tangent is known from the difference of longitudes
         sine = m.sin(second[0] - first[0])
         if is_literal(first[0], 0.0):
             return 0.0, sine, 0.0
@@ -116,6 +118,7 @@ def tangent_inside(m: Namespace, first: Coordinates, second: Coordinates) -> Vec
 
 def half_arc(m: Namespace, first: Coordinates, second: Coordinates) -> HalfArc:
     """Half the arc between two points of a link; its sign is that of the longitude on a two-point link."""
+    # of longitudes on the equator: exact differences, with a sign
     if is_literal(first[1], 0.0) and is_literal(second[1], 0.0):
         half = 0.5 * (second[0] - first[0])
         return m.sin(half), m.cos(half)
@@ -123,6 +126,8 @@ def half_arc(m: Namespace, first: Coordinates, second: Coordinates) -> HalfArc:
 
 
 def half_arc_of(m: Namespace, a: Vector, b: Vector) -> HalfArc:
+    # |a - b| and |a + b| are twice the sine and cosine of half the arc, exact for small arcs and for nearly
+    # opposite places
     """Half the arc between two places."""
     apart, together = subtract(a, b), add(a, b)
     return 0.5 * m.sqrt(dot(apart, apart)), 0.5 * m.sqrt(dot(together, together))
@@ -142,6 +147,7 @@ def attitude_on(inside: Vector, along: Vector, at: Vector, towards: Vector, squa
     left = cross(at, towards)
     # of a two-point link only two terms of the nine are left
     left_inside = (0.0, -along[2], along[1]) if is_literal(inside[0], 1.0) else cross(inside, along)
+    # the link's own orthogonal triple, carried over to where it lies; only the tangents have lengths to divide by
 
     def axis(k: int) -> Vector:
         return linear_combination(
@@ -190,7 +196,9 @@ def circles_meet(
     """Place where two circles meet, to the left of the arc centre_1 -> centre_2 for a positive root."""
     line = subtract(centre_2, centre_1)
     h, total, difference = _triangle(centre_1, half_1, centre_2, half_2)
+    # the squared sine of the whole arc, 4 h (1 - h)
     squared = 4.0 * h * (1.0 - h)
+    # 1 - cos r1, so that the place is the first centre and small parts
     lowered = 2.0 * half_1[0] * half_1[0]
     factor = 1.0 / squared
     ahead = 2.0 * (total * difference + h - lowered * h) * factor
@@ -205,6 +213,7 @@ def _triangle(
 ) -> tuple[Number, Number, Number]:
     """Squared sine of half the arc between the centres, sines of half the sum and the difference of the radii."""
     line = subtract(centre_2, centre_1)
+    # sin((r1 + r2)/2) and sin((r1 - r2)/2) by the sums of angles
     one, other = half_1[0] * half_2[1], half_1[1] * half_2[0]
     return 0.25 * dot(line, line), one + other, one - other
 
@@ -233,14 +242,14 @@ def basis(m: Namespace, at: Vector) -> tuple[Vector, Vector]:
 def rotate_by_cayley(vector: Vector, half: Vector) -> Vector:
     """A vector turned by Cayley's rotation: about `half`, by twice the arc tangent of its length."""
     once = cross(half, vector)
+    # v + 2 (h x v + h x (h x v)) / (1 + h h)
     return add(vector, times(2.0 / (1.0 + dot(half, half)), add(once, cross(half, once))))
 
 
 # Measures of the sphere and their gradients, by the coordinates of points and links.
 #
 # A gradient is a vector at a place; what depends on the place of a point in the axes of a link alone changes
-# by
-# the same gradient when the link turns.
+# by the same gradient when the link turns.
 
 FAINT = 1e-30
 """Far below rounding: it makes a place opposite to the right one infinitely wrong instead of undetermined."""
@@ -284,8 +293,9 @@ def components(arm: Vector, zero: Vector, axis: Vector) -> tuple[Number, Number]
 
 
 def angle_gradient(arm: Vector, zero: Vector, axis: Vector) -> Vector:
-    """Gradient of that angle by the rotation of the arm."""
+    """Gradient of the angle from the tangent `zero` to `arm` about `axis`, by the rotation vector of the arm."""
     left = cross(axis, zero)
+    # angle = atan2(sine, cosine): its gradient by the rotation of the arm is that of both products
     cosine, sine = dot(arm, zero), dot(arm, left)
     across = cross(arm, subtract(times(cosine, left), times(sine, zero)))
     return times(1.0 / (cosine * cosine + sine * sine), across)
@@ -301,6 +311,7 @@ def chart(m: Namespace, pose: Attitude, local: Coordinates) -> tuple[Vector, Vec
 def nearness(point: Vector, at: Vector) -> Number:
     """Squared cosine of half the arc between two places."""
     together = add(point, at)
+    # below rounding: the quotient is never 0/0
     return 0.25 * dot(together, together) + FAINT * FAINT
 
 
@@ -308,13 +319,15 @@ def stereographic(m: Namespace, point: Vector, pose: Attitude, local: Coordinate
     """Coordinates of a point about a link's point, projected from opposite to it: opposite is infinitely far."""
     at, first, second = chart(m, pose, local)
     apart, near = subtract(point, at), nearness(point, at)
+    # the faint part decides the sign where the point is exactly opposite
     return [(dot(first, apart) + FAINT * dot(apart, apart)) / near, dot(second, apart) / near]
 
 
 def stereographic_slopes(m: Namespace, point: Vector, pose: Attitude, local: Coordinates) -> list[Vector]:
-    """Their gradients."""
+    """Gradients of the two coordinates of `stereographic`, as vectors at the point."""
     at, *axes = chart(m, pose, local)
     near = nearness(point, at)
+    # gradients of the quotient, with |point + at|^2 in the denominator
     return [times(1.0 / near, subtract(axis, times(0.5 * dot(axis, point) / near, at))) for axis in axes]
 
 
@@ -329,6 +342,7 @@ def azimuth(
 def away(m: Namespace, point: Vector, pole: Vector) -> Vector:
     """Gradient at a point of its arc from a pole: the unit vector away from it."""
     towards = tangent(point, pole)
+    # the tangent towards the pole, of unit length, reversed
     return times(-1.0 / length(m, towards), towards)
 
 
@@ -340,4 +354,5 @@ def of_point(m: Namespace, point: Vector, slope: Vector) -> Row:
 
 def of_both(m: Namespace, point: Vector, slope: Vector) -> Rows:
     """A gradient by the coordinates of the point and of the link."""
+    # turning the link moves the point the other way in its axes: the moment of the gradient
     return of_point(m, point, slope), cross(slope, point)

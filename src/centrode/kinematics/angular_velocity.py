@@ -25,6 +25,7 @@ def attitudes_of(layout: PlanLayout, columns: Array) -> Array | None:
         return None
     taken = columns[:, layout.first_attitude : layout.first_slide]
     axes = taken.reshape(len(columns), len(layout.links), 3, 3, *columns.shape[2:])
+    # samples and mechanisms to the front, as in all arrays of a result
     return np.moveaxis(axes, (4, 5), (1, 2))
 
 
@@ -41,6 +42,8 @@ def spins_of(layout: PlanLayout, columns: Array) -> Array | None:
         first = layout.first_attitude + 9 * k
         axes = columns[:, first : first + 9].reshape(3, 3, 3, lanes, samples)
         for order in (1, 2):
+            # a_k' = w x a_k, and a_k x (w x a_k) summed over three axes is 2 w, hence the half; in second order
+            # the centripetal parts w x (w x a_k) add up to nothing
             spins[order - 1, :, :, k] = 0.5 * np.cross(axes[0], axes[order], axis=1).sum(axis=0).transpose(
                 1, 2, 0
             )
@@ -49,9 +52,8 @@ def spins_of(layout: PlanLayout, columns: Array) -> Array | None:
 
 # Angles of links that run on over turns, from their rotors.
 #
-# An angle belongs to the value of the drive, not to the samples asked for: turns are counted along the mesh
-# of
-# the path, outwards from the initial position, and a sample takes its turn from the nearest node.
+# An angle belongs to the value of the drive, not to the samples requested: turns are counted along the mesh
+# of the path, outwards from the initial position, and a sample takes its turn from the nearest node.
 
 Side: TypeAlias = npt.NDArray[np.int8]
 Turns: TypeAlias = npt.NDArray[np.int32]
@@ -74,6 +76,8 @@ class NodeTurns:
 
     def at(self, node: Lanes, cosine: Array, sine: Array, parameter: Array) -> Turns:
         """Turns of rotors (lanes, n) at parameters (n,) that are less than half a turn away from those at the nodes."""
+        # a passage of pi between the node and the sample adds or takes a turn; no arc tangent is needed to
+        # see it
         passed = _turns_between(self.cosine[:, node], self.below[:, node], cosine, _below(sine))
         turns: Turns = self.turns[:, node] + passed
         if self.quick:
@@ -82,7 +86,7 @@ class NodeTurns:
         return turns
 
     def at_single(self, lanes: Lanes, node: Lanes, cosine: Array, sine: Array, parameter: Array) -> Turns:
-        """The same of single mechanisms, one for each parameter: all (k,)."""
+        """Turns of the rotors of single mechanisms, one for each parameter; all arrays are (k,)."""
         rows = lanes if len(self.cosine) > 1 else np.zeros_like(lanes)
         passed = _turns_between(self.cosine[rows, node], self.below[rows, node], cosine, _below(sine))
         turns: Turns = self.turns[rows, node] + passed
@@ -102,11 +106,13 @@ def node_turns(
     cosine, sine = _fill_gaps(cosine, sine, start)
     below = _below(sine)
     turns = np.zeros(cosine.shape, dtype=np.int32)
+    # as with angles: half a turn between two nodes is decided by the rotors alone
     steps = _turns_between(cosine[:, :-1], below[:, :-1], cosine[:, 1:], below[:, 1:])
     with_quick_steps(steps, quick)
     if steps.any():
         np.cumsum(steps, axis=1, out=turns[:, 1:])
     first = np.arctan2(sine[:, start], cosine[:, start])
+    # shifted as a whole, so that the node at the start has the turns of the initial angle
     turns += (np.round((initial - first) / TURN).astype(np.int32) - turns[:, start])[:, None]
     return NodeTurns(cosine, below, turns, quick)
 
@@ -123,6 +129,7 @@ def _turns_between(cosine: Array, below: Side, next_cosine: Array, next_below: S
     exactly if their cosines have a negative sum.
     """
     across = (cosine + next_cosine < 0.0).view(np.int8)
+    # both signs: next_below - below is +1 from above to below through pi, -1 back, 0 on one side
     return np.asarray((next_below - below) * across)
 
 
@@ -133,13 +140,14 @@ def _on_mesh(x: object, nodes: int) -> Array:
 
 
 def _fill_gaps(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
-    """The same rotors with gaps filled by the last known one on the way from the start, in both directions."""
+    """Rotors (lanes, nodes) with gaps filled by the last known one on the way from the start, in both directions."""
     cosine, sine = np.broadcast_arrays(cosine, sine)
     if np.isfinite(cosine.sum() + sine.sum()):
         return cosine, sine
     known = np.isfinite(cosine + sine)
     lanes, count = known.shape
     nodes = np.arange(count, dtype=np.int32)
+    # -1 and count mark that nothing is known on the way yet
     source = np.where(known, nodes, np.int32(-1))
     behind = np.where(known[:, : start + 1], nodes[: start + 1], np.int32(count))
     behind = np.minimum.accumulate(behind[:, ::-1], axis=1)[:, ::-1]
@@ -147,6 +155,7 @@ def _fill_gaps(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
     source[:, :start] = behind[:, :start]
     missing = (source < 0) | (source >= count)
     source = np.where(missing, np.argmax(known, axis=1).astype(np.int32)[:, None], source)
+    # flat indices, so that one `take` serves cosine and sine
     flat = source + (np.arange(lanes) * count)[:, None]
     somewhere = known.any(axis=1, keepdims=True)
     cosine, sine = (np.ascontiguousarray(x).reshape(-1)[flat] for x in (cosine, sine))
@@ -160,4 +169,5 @@ def angle_and_rates(rotor: Array, turns: Turns, angle: Array) -> None:
     if turns.any():
         angle[0] += TURN * turns
     for order in (1, 2):
+        # with a unit rotor: c s' - s c', and c s'' - s c'', as the terms with both first derivatives cancel
         np.subtract(cosine * rotor[order, 1], sine * rotor[order, 0], out=angle[order])

@@ -72,16 +72,15 @@ from centrode.structure.rank import columns_of, independent_rows, match
 # How wheels mesh: the constants of gears and rolling contacts, from the initial angles of the description.
 #
 # A gear gives the angle of a link; where that link stands initially is what its own `angle` says, else zero.
-# A wheel
-# that is turned by something else, and so puts its centre or its track somewhere, starts at the line's own
-# point.
+# A wheel that is turned by something else, and so puts its centre or its track somewhere, starts at the
+# line's own point.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
 
 
 def with_phases(kinematics: Kinematics, phases: Mapping[str, float]) -> Kinematics:
-    """The same plan with constants of gears and rolling contacts added to its numbers."""
+    """The plan with constants of gears and rolling contacts [rad] added to its numbers."""
     if not phases:
         return kinematics
     numbers = kinematics.numbers
@@ -101,9 +100,11 @@ def phases_before(
     if link is not None and group.turning is not None and not isinstance(group.turning, Turning):
         meshing = group.turning.gear if isinstance(group.turning, Meshed) else group.turning.rolling
         trial = at.copy()
+        # as if the link stood where the description says: the constant is what the meshing then lacks
         trial.angles[link] = stated_angle(kinematics, link)
         found[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
     if isinstance(group, Meet):
+        # a wheel that something else turns stands with its centre at the line's own point, by definition
         for locus in group.loci:
             if isinstance(locus, Rolloff):
                 ahead = with_phases(kinematics, found)
@@ -144,6 +145,7 @@ def standing_links(kinematics: Kinematics, group: Newton, at: Positions) -> Newt
     ]
     first, width = columns_of(entities)
     guess = guesses(kinematics.structure.mechanism, kinematics.numbers, group, at)[0]
+    # without the meshings, which have no constants yet; links that stand take their places
     kept = [equation for equation in group.equations if not isinstance(equation[0], Meshing)]
 
     def row(equation: tuple[Constraint, int]) -> Array:
@@ -159,6 +161,7 @@ def standing_links(kinematics: Kinematics, group: Newton, at: Positions) -> Newt
         wanted = [link for link in angle_links(constraint) if link in group.links]
         for link in dict.fromkeys([*wanted, *group.links]):
             standing: tuple[Constraint, int] = (Standing(link, stated_angle(kinematics, link)), 0)
+            # the link's angle has to be something that the other equations leave free
             if independent_rows(np.array([*rows, row(standing)]))[-1]:
                 rows.append(row(standing))
                 kept.append(standing)
@@ -187,6 +190,7 @@ def _turn_at_start(
 def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: SideChoices) -> dict[str, float]:
     """Constants of a train's equations: each lets one link of its own stand at its initial angle."""
     bearing = {equation: meshing for equation in group.equations if (meshing := _mesh_of(equation))}
+    # constants zero: what the equations then lack are the constants
     blank = with_phases(kinematics, {identity_of(meshing): 0.0 for meshing in bearing.values()})
     rows = {
         equation: equation_at(equation, ARRAYS, blank.numbers, at, choices.continue_angle)
@@ -195,6 +199,7 @@ def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: Side
     owner = match(
         {
             e: _links_by_preference(kinematics, e, rows[e][0], group)
+            # equations without a constant choose first: they cannot let a link stand instead
             for e in sorted(rows, key=lambda e: e in bearing)
         }
     )
@@ -213,6 +218,7 @@ def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: Side
                     right[k] -= factor * float(at.angles[name])
     try:
         angles = dict(zip(group.links, np.linalg.solve(matrix, right).tolist(), strict=True))
+    # the links that were chosen do not determine the others
     except np.linalg.LinAlgError:
         raise InputError(
             name_of(group),
@@ -272,7 +278,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
     Raises
     ------
     InputError
-        It does not close (by how much is told), or the description does not say on which side a group is
+        It does not close (the error says by how much), or the description does not say on which side a group is
         assembled.
     """
     initial = kinematics.path.initial
@@ -292,6 +298,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 kinematics = with_phases(kinematics, phases)
                 if isinstance(group, Newton):
                     kinematics = _start_higher(kinematics, group, at, bounded)
+                # the bound is needed before: it tells how far below zero a radicand may be
                 elif group.signed:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
                     check_opens(kinematics, i, signs)
@@ -305,6 +312,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
             kinematics.count(i, at, ARRAYS, starting)
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             if not isinstance(group, Newton):  # its places have their bounds already
+                # the same group once more with bounds, as groups behind need them
                 solve_group(group, ROUNDED, kinematics.numbers, bounded, SideChoices(bounding, i))
             kinematics.count(i, bounded, ROUNDED, bounding)
     kinematics = with_phases(kinematics, phases_after(kinematics, at))
@@ -332,10 +340,12 @@ def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
 
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
     """Solve a group on the side that the description means; returns its sign."""
+    # both sides are tried; a side that does not close refuses by itself, as both do
     options = {sign: _option(kinematics, group, at, sign, bound) for sign in (1.0, -1.0)}
     stated = stated_side(kinematics, group)
     left, right = options.values()
     apart = _distance(kinematics.numbers.space, group, left, right)
+    # where both sides meet, angles cannot tell which is meant
     flat = apart < DEGENERATE * float(kinematics.numbers.scale)
     if stated is None and flat:
         raise InputError(
@@ -365,6 +375,7 @@ def _distance(space: Space, group: Group, one: Positions, other: Positions) -> f
     apart = [np.linalg.norm(np.subtract(one.points[p], other.points[p])) for p in points_of(group)]
     if isinstance(group, Aim):
         arm = np.linalg.norm(np.subtract(one.points[group.target], one.points[group.pivot]))
+        # an aimed link has no unknown point: the arm to its target makes its turn a length
         apart.append(arm * turned_apart(space, group.link, one, other))
     return float(max(apart, default=0.0))
 
@@ -420,6 +431,7 @@ def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:
         if drive.kind == "angle" and drive.relative_to == "frame" and drive.link is not None:
             named[drive.link] = float(at.drives[drive.id])
     angles = {key: float(angle) for key, angle in at.angles.items()}
+    # the turn that the drive's start or the description's angle names
     for link in kinematics.numbers.ends:
         near = at.angles.get(link, named[link]) or 0.0
         angles[link] = near + angle_off(kinematics.numbers, near, at, link)

@@ -79,6 +79,7 @@ def side_names(group: Group) -> tuple[str, ...]:
 def side_words(space: Space, group: Group) -> tuple[str, str]:
     """The words that tell the sides of a group: of the line between two centres, or along a line."""
     between_centres = isinstance(group, Meet) and group.kind == "RRR"
+    # "ahead" along a line that the locus meets twice; elsewhere left and right of the line between centres
     return ("left", "right") if between_centres or not space.crosses_once else ("ahead", "behind")
 
 
@@ -108,6 +109,7 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
                 links=_(" or ").join(links_of(group)), words=side_choice(kinematics.numbers.space, group)
             ),
         )
+    # the sum over all links that tell: one link alone may be drawn badly
     misfit = {
         sign: sum(
             abs(angle_off(kinematics.numbers, hint or 0.0, option, link)) for link, hint in hints.items()
@@ -124,7 +126,7 @@ def turned_apart(space: Space, link: str, one: Positions, other: Positions) -> f
 
 
 def check_sides(kinematics: Kinematics) -> None:
-    """Refuse sides of what no group is asked about, which would be passed over in silence."""
+    """Refuse sides of what is no group with two sides, which would be passed over in silence."""
     groups = [group for group in kinematics.structure.groups if group.signed]
     known = [name for group in groups for name in side_names(group)]
     for name in kinematics.structure.mechanism.assembly.sides:
@@ -144,10 +146,13 @@ def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> 
         return  # how those go on is not known yet
     start = Rounded.of(np.float64(path.initial))
     here = Rounded.of(kinematics.guard(ROUNDED, start, index, FixedSigns(ROUNDED, signs)))
+    # one place is enough where it is open: only a group that is flat in the initial position can be flat
+    # everywhere
     if abs(here.value) > SAFETY * here.bound:
         return
     away = Rounded.of(path.initial + path.unit * AWAY)
     there = Rounded.of(kinematics.guard(ROUNDED, away, index, FixedSigns(ROUNDED, signs)))
+    # flat at three places as well: generic places, so it is flat always
     if bool(np.all(np.abs(there.value) <= SAFETY * there.bound)):
         raise InputError(
             name_of(group),
@@ -178,6 +183,8 @@ def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:
     one, other = loci_of(group, ARRAYS, numbers, at, SideChoices(EvaluationPolicy(), 0))
     lack = numbers.space.lack(ARRAYS, one, other)
     by = f"{max(lack):.4g} {numbers.space.unit}"
+    # lacks are in the order that `lack` gives: too short together, the first too long, the second too long,
+    # too long together
     reason = lack.index(max(lack))
     links = [rod.link for rod in group.rods]
     if len(links) == 2:
@@ -253,6 +260,7 @@ class Starting(EvaluationPolicy):
         self.links = kinematics.structure.mechanism.links
 
     def continue_angle(self, group: int, key: str, angle: Number) -> Number:
+        # gears and tracks need the turn, not only the direction
         near = self.links[key].angle if key in self.links else None
         value = float(angle.value if isinstance(angle, Rounded) else angle)
         return angle if near is None else angle + tau * np.round((near - value) / tau)
@@ -292,6 +300,7 @@ class OneSide(Starting):
         self.bound = bound
 
     def root(self, group: int, radicand: Number) -> Number:
+        # what is below zero by rounding counts as closed: flat, at a limit
         if radicand < -SAFETY * self.bound:
             raise InputError(
                 name_of(self.solved),
@@ -326,6 +335,7 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
     found = residuals_at(structure.constraints, kinematics.numbers, at)
     residuals = {c.label: (value, c.angular) for c, value in found.items()}
     residuals |= {label: (value, False) for label, value in length_misfits(kinematics, at).items()}
+    # of all constraints the worst one is reported
     label = max(residuals, key=lambda name: residuals[name][0])
     value, angular = residuals[label]
     if value > RESIDUAL_TOLERANCE:

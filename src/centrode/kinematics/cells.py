@@ -29,13 +29,14 @@ PARTS = 4
 HALVINGS = 26
 """How often the way to a place where something happens is halved: from a cell of half a degree to `FINEST`."""
 COARSE = 1e-6
-"""The same for mechanisms that have many unknown cells: next to poles rounding alone may leave thousands."""
+"""Half width like `FINEST`, of a mechanism with many unknown cells: beside poles rounding alone may leave thousands."""
 MANY, MOST = 1_000, 10_000
 """Unknown cells of a mechanism from which on they are taken no further than that, and no further at all."""
 
 
 def clear(value: Array, slope: Array, bend: Array, half: Array | float) -> Mask:
     """Where a number stays off zero all over its cell."""
+    # Taylor's formula: within `half` the number strays by at most |slope| half + bend half^2 / 2
     return np.asarray((np.abs(slope) + (0.5 * half) * bend) * half < np.abs(value))
 
 
@@ -93,6 +94,7 @@ def towards(lane: Lanes, low: Array, high: Array, place: Array) -> CellPieces:
     """Stretches of the path, each with a place in it, in cells that get shorter towards the place and leave it out."""
     shares = 2.0 ** -np.arange(HALVINGS + 1.0)
     ways = np.concatenate([low - place, high - place])[:, None] * shares
+    # cells [w/2, w] of the way, with w halved from one to the next: centre at 3/4 of w, half width a quarter
     centre = (np.tile(place, 2)[:, None] + 0.75 * ways).ravel()
     half = 0.25 * np.abs(ways).ravel()
     lane = np.repeat(np.tile(lane, 2), len(shares))
@@ -109,6 +111,7 @@ def divide_cells(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
         there = np.isfinite(value)
         with np.errstate(all="ignore"):
             known = clear(value, slope, bend, rest.half) | straight(slope, bend, rest.half)
+        # what has no slope has no bound: dividing further would not help
         # where the law of a drive changes its formula at a change point there are no derivatives
         done = known | ~np.isfinite(slope) | (rest.half <= unit * _finest(rest.lane, there & ~known))
         every = CellPieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
@@ -122,6 +125,7 @@ def _finest(lane: Lanes, unknown: Mask) -> Array | float:
     if np.count_nonzero(unknown) <= MANY:
         return FINEST
     count = np.bincount(lane[unknown], minlength=int(lane.max()) + 1)
+    # past MANY unknown cells rounding next to a pole is the reason, and not events
     return np.asarray(np.select([count <= MANY, count <= MOST], [FINEST, COARSE], np.inf)[lane])
 
 
@@ -142,6 +146,7 @@ def changes(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array]:
     """
     first, last = _neighbours(pieces, slack)
     turned = np.sign(pieces.value[first]) != np.sign(pieces.value[last])
+    # two neighbouring nodes of the mesh were looked at before
     turned &= ~((last == first + 1) & pieces.nodes[first] & pieces.nodes[last])
     return pieces.lane[first[turned]], pieces.centre[first[turned]], pieces.centre[last[turned]]
 
@@ -164,6 +169,7 @@ def unsettled_stretches(pieces: CellPieces, slack: float) -> tuple[Lanes, Array,
 
 
 def _neighbours(pieces: CellPieces, slack: float) -> tuple[Lanes, Lanes]:
+    # neighbours abut if no more than the slack lies between them; a wall abuts with nothing
     """Pairs of cells with a sign that abut, or that only cells without one lie between."""
     apart = np.diff(pieces.centre) - pieces.half[1:] - pieces.half[:-1]
     broken = (np.diff(pieces.lane) != 0) | (apart > slack) | np.isinf(pieces.value[1:])

@@ -29,15 +29,11 @@ from centrode.structure.groups import links_of, points_of
 # What a group gives next to its change points: power series about the change point.
 #
 # Beside a change point the closed form of a group loses digits, while its motion is analytic there. So its
-# positions
-# are taken on a circle of complex values of the path's parameter around the change point, where nothing is
-# lost, and
-# Cauchy's integral gives the coefficients of their power series (Lyness and Moler, SIAM Journal on Numerical
-# Analysis
-# 4, 1967; Fornberg, ACM Transactions on Mathematical Software 7, 1981). The coefficients tell by themselves
-# whether
-# the circle holds a singularity: those that a power series does not have, of negative powers, are not zero
-# then.
+# positions are taken on a circle of complex values of the path's parameter around the change point, where
+# nothing is lost, and Cauchy's integral gives the coefficients of their power series (Lyness and Moler, SIAM
+# Journal on Numerical Analysis 4, 1967; Fornberg, ACM Transactions on Mathematical Software 7, 1981). The
+# coefficients tell by themselves whether the circle holds a singularity: those that a power series does not
+# have, of negative powers, are not zero then.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -105,10 +101,13 @@ class ChangePointSeries:
         """The series without the last terms of each, as far as these are rounding errors."""
         numbers = []
         for number, bound in zip(self.numbers, self.bounds, strict=True):
+            # a coefficient counts if it is above the noise or one of a higher power is: only the tail is cut
+            # off
             counts = np.abs(number) > NOISE * bound[:, None]
             counts = np.logical_or.accumulate(counts[:, ::-1], axis=1)[:, ::-1]
             length = int(np.max(np.sum(counts, axis=1), initial=1))
             numbers.append(np.where(counts, number, 0.0)[:, :length])
+        # all windows of the batch keep as many terms as the longest needs: one array
         return ChangePointSeries(numbers, self.bounds)
 
 
@@ -128,6 +127,7 @@ def inside(windows: Windows, along: Array, lanes: Lanes | None) -> tuple[Index, 
         first, last = (np.searchsorted(lanes[order], windows.lane, side=side) for side in ("left", "right"))
     counts = last - first
     chosen = np.repeat(np.arange(len(windows)), counts)
+    # for each window the places first ... last - 1 of the order: a ramp for all windows at once
     places = order[np.arange(len(chosen)) + np.repeat(first - np.cumsum(counts) + counts, counts)]
     within = np.abs(along[places] - windows.centre[chosen]) < windows.half[chosen]
     chosen, places = chosen[within], places[within]
@@ -162,6 +162,7 @@ def coefficients(number: Number, windows: int) -> Array:
     The first TERMS are those of the power series, the others those of what a series leaves over.
     """
     on_circle = np.broadcast_to(number, (windows * len(HALF_CIRCLE),)).reshape(windows, -1)
+    # hfft takes half a circle of values whose other half is conjugate: coefficients of real motions are real
     return np.asarray(np.fft.hfft(on_circle, NODES) / NODES)
 
 
@@ -184,6 +185,8 @@ def apply_series(
     if bare.any():
         bare_at = tuple(part[bare] for part in index)
         if isinstance(old, Jet):
+            # without a series the value of the closed form is the best there is, but its derivatives are
+            # rounding
             there = np.full(len(bare_at[0]), np.nan)
             old = Jet([old.value, *(_put_entries(c, shape, bare_at, there) for c in old.coefficients[1:])])
         index, chosen, along = tuple(part[~bare] for part in index), chosen[~bare], along[~bare]
@@ -193,11 +196,13 @@ def apply_series(
         return Jet(
             [
                 _put_entries(c, shape, index, x * scale**k)
+                # derivatives by the parameter: one factor 1 / radius for each order
                 for k, (c, x) in enumerate(zip(old.coefficients, known, strict=True))
             ]
         )
     if isinstance(old, Rounded):
         value = known[0]
+        # what the circle is known to, and the rounding of the sum itself
         error = bound[chosen] + UNIT_ROUNDOFF * np.abs(value)
         return Rounded(
             _put_entries(old.value, shape, index, value), _put_entries(old.bound, shape, index, error)
@@ -211,6 +216,7 @@ def _sum_series(series: Array, x: Array, order: int) -> list[Array]:
     The terms are added one by one: a matrix product rounds differently for different numbers of samples.
     """
     found = [np.zeros(x.shape, dtype=x.dtype) for _ in range(order + 1)]
+    # one more power: the Taylor coefficients of p x + c follow from those of p
     for k in range(series.shape[1] - 1, -1, -1):
         for j in range(order, 0, -1):
             found[j] = found[j] * x + found[j - 1]
@@ -268,6 +274,7 @@ class BranchedPlan:
         around, branches = self._surroundings(group), self.branches
         first = starts(around, self.nominal, self.start, branches.initial, branches.lanes)
         with np.errstate(all="ignore"):
+            # limits of the groups before end the track: nothing is known behind them
             self._tracks[group], events = trace(
                 around, first, branches.initial, extent, branches.reaches(), branches.smooth
             )
@@ -340,6 +347,7 @@ class BranchedPlan:
             if event.lane in limits and event.group <= group and event.kind == "limit":
                 limits[event.lane].append(event.at)
         units = np.array([self.kinematics.path.unit_at(event.at) for event in centres])
+        # of this group and those before: at a limit of any of them the motion is like a square root
         nearest = [
             min((abs(at - event.at) for at in limits[event.lane]), default=np.inf) for event in centres
         ]
@@ -364,7 +372,9 @@ class BranchedPlan:
             best[trying[whole]] = radius[trying[whole]]
             growing[trying[whole]] = True
             # a circle that holds a singularity ends the growing of one that held none before
+            # the circle grows as long as it holds none, up to its greatest radius
             larger = whole & (radius[trying] < windows.radius[trying])
+            # it shrinks until it holds none for the first time; below the least circle the series is given up
             smaller = (
                 ~whole & ~growing[trying] & (radius[trying] > LEAST_CIRCLE / WINDOW * windows.half[trying])
             )
@@ -373,6 +383,7 @@ class BranchedPlan:
             )
             trying = trying[larger | smaller]
         assert series is not None
+        # without a circle the stretch still has no derivatives: the closed form's are rounding there
         half = np.where(best > 0.0, np.minimum(windows.half, SHARE * best), BARE / WINDOW * windows.half)
         return replace(windows, half=half, radius=best), series.without_rounding()
 
@@ -385,9 +396,11 @@ class BranchedPlan:
             # an analytic function has no negative powers: what is left of them is rounding
             whole = whole & (np.max(np.abs(number[:, TERMS:]), axis=1) <= bound)
             with np.errstate(all="ignore"):
+                # the part of the motion that rounding takes; of all numbers the one that moves most counts
                 lost = np.fmin(lost, bound / np.sum(np.abs(number[:, 1:TERMS]), axis=1))
         # on a circle as small as rounding errors everything looks analytic
         shrunk = windows.radius < windows.half
+        # only circles that had to shrink are suspected
         whole &= ~shrunk | (lost <= LOST)
         return ChangePointSeries([number[:, :TERMS] for number in numbers], bounds), whole
 
@@ -409,6 +422,7 @@ class BranchedPlan:
         kinematics = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = kinematics.frame(ROUNDED, Rounded.of(ends))
+            # the closed form itself: a series would be bounded by itself
             kinematics.advance(at, range(group + 1), ROUNDED, Unmended(self, ROUNDED, ends, lanes, group))
         bounds = [Rounded.of(x).bound for x in numbers_of(kinematics, group, at)]
         return [np.max(np.broadcast_to(x, ends.shape).reshape(-1, 2), axis=1) for x in bounds]
@@ -426,6 +440,7 @@ class Smooth(EvaluationPolicy):
         self.lanes = lanes
 
     def root(self, group: int, radicand: Number) -> Number:
+        # the sign is that of the branch: +1 or -1 along the parameter
         return self.m.sqrt(radicand) * self.continuation.branches.sign(group, self.parameter, self.lanes)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
@@ -435,7 +450,7 @@ class Smooth(EvaluationPolicy):
         """Look at where a group of higher class is not what it should be."""
 
     def continue_angle(self, group: int, key: str, angle: Number) -> Number:
-        # not counted yet: the group itself is still being searched, and nothing behind it is asked for
+        # not counted yet: the group itself is still being searched, and nothing behind it is requested
         turns = self.continuation.branches.turns.get(key)
         return angle if turns is None else turns.continue_angle(angle, self.parameter, self.lanes)
 
@@ -444,7 +459,7 @@ class Smooth(EvaluationPolicy):
 
 
 class Unmended(Smooth):
-    """The same without the series of a group: what its own closed form gives beside a change point."""
+    """Signs as the branches have them; one group is given by its closed form also beside its change points."""
 
     def __init__(
         self, continuation: BranchedPlan, m: Namespace, parameter: Array, lanes: Lanes | None, group: int
@@ -453,6 +468,7 @@ class Unmended(Smooth):
         self.group = group
 
     def after(self, group: int, at: Positions) -> None:
+        # groups before are mended as usual: the group's own formula stands on good ground
         if group != self.group:
             super().after(group, at)
 
@@ -472,9 +488,12 @@ class Circling(Unmended):
 
     def root(self, group: int, radicand: Number) -> Number:
         root = self._by_circles(np.sqrt(radicand + 0j))
+        # at the real beginning the sign is that of the motion
         real = self._by_circles(self.continuation.branches.sign(group, self.parameter.real, self.which))
+        # the square root of complex numbers jumps at its cut: turned back where it would jump to the opposite
         turned = np.where((root[:, 1:] * root[:, :-1].conj()).real < 0.0, -1.0, 1.0)
         signs = np.cumprod(np.concatenate([real[:, :1], turned], axis=1), axis=1)
+        # at the real end it must have the motion's sign, or the circle went round a branch point
         self.followed &= signs[:, -1] == real[:, -1]
         return (root * signs).reshape(-1)
 
@@ -488,10 +507,12 @@ class Circling(Unmended):
             turns.continue_angle(along[:, k].real, parameter[:, k], self.which[:: len(HALF_CIRCLE)])
             for k in (0, -1)
         )
+        # along the half circle the angle is continued from value to value, past the cut of the arc tangent
         steps = np.round(-np.diff(along.real, axis=1) / TURN)
         whole = np.round((first - along[:, 0].real) / TURN)[:, None] + np.zeros(along.shape)
         whole[:, 1:] += np.cumsum(steps, axis=1)
         found = along + TURN * whole
+        # at the real end it must be the motion's own angle with its turns
         self.followed &= np.abs(found[:, -1].real - last) < 0.5 * TURN
         return found.reshape(-1)
 
@@ -500,7 +521,7 @@ class Circling(Unmended):
 
 
 class Rough(Smooth):
-    """The same for the mesh, on which places are looked at and not kept."""
+    """`Smooth` for the mesh: groups of higher class stand where their tracks foretell them, as signs need no more."""
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         self.judge(group, self.continuation.close(group, m, at, self.parameter, self.lanes, rough=True))

@@ -75,6 +75,7 @@ def meshed_angle(turning: Meshed, link: str, numbers: Dimensions, at: Positions)
     ratio, phase = numbers.gearing.ratio[gear.gear], numbers.gearing.phase[gear.gear]
     first, second = numbers.gearing.shares.get(gear.gear, (1.0, 1.0))
     if link == gear.carrier:
+        # solved for the carrier: theta2 - s2 theta_c = phase + ratio (theta1 - s1 theta_c)
         return (at.angles[gear.second] - ratio * at.angles[gear.first] - phase) / (second - ratio * first)
     carrier = at.angles[gear.carrier]
     if link == gear.second:
@@ -88,6 +89,8 @@ def rolled_turn(
     """Angle [rad] of a wheel against the body it rolls on, from where its centre is."""
     gearing, phase = numbers.gearing, numbers.gearing.phase[rolling.rolling]
     if isinstance(gearing.track[rolling.rolling], Straight):
+        # a wheel on a straight track turns by minus the way over the radius: forwards is clockwise seen from
+        # the left
         return phase - rolling.slide(numbers, at) / gearing.radius[rolling.rolling]
     key = bearing_key(rolling.rolling)
     bearing = at.angles[key] = continued(key, rolling.bearing(m, numbers, at))
@@ -116,6 +119,7 @@ def touched_circle(locus: Touch, numbers: Dimensions, at: Positions, rotor: Vect
     """Centre of the circle on which a wheel's centre is, or the carriage's origin where the track is carried."""
     centre = numbers.gearing.track[locus.contact.rolling].centre  # type: ignore[union-attr]
     if locus.carried and rotor is not None:
+        # the carriage's unknown vector is its origin: the point less its place on the turned carriage
         return subtract(at.points[locus.point], rotate_vector(centre, rotor))
     return place(at.poses[locus.contact.on], centre)
 
@@ -136,6 +140,7 @@ def beside_track(rolling: str, numbers: Dimensions) -> PointAndDirection:
     track = numbers.gearing.track[rolling]
     assert isinstance(track, Straight)
     left, (x, y) = numbers.gearing.radius[rolling], track.direction
+    # the left normal of the direction (x, y) is (-y, x)
     return add(track.through, (-left * y, left * x)), track.direction
 
 
@@ -186,6 +191,7 @@ def solved_angles(
     group: Train, rows: list[tuple[Mapping[str, Number], Number]], at: Positions
 ) -> dict[str, Number]:
     """Angles of a train's links from its equations: factors by link, and right sides."""
+    # a table without zeros: trains are sparse, and literal zeros would become jets
     unknown = group.links
     table = [{link: row[link] for link in unknown if link in row} for row, _right in rows]
     right: list[Number] = []
@@ -194,6 +200,8 @@ def solved_angles(
             if link not in unknown:
                 value = value - factor * at.angles[link]
         right.append(value)
+    # elimination in the order of pivots that structure chose: it does not depend on numbers, so every algebra
+    # takes the same way
     for k, (i, link) in enumerate(group.pivots):
         for j, _column in group.pivots[k + 1 :]:
             if link in table[j]:
@@ -203,6 +211,7 @@ def solved_angles(
                         table[j][other] = table[j].get(other, 0.0) - share * factor
                 right[j] = right[j] - share * right[i]
     angles: dict[str, Number] = {}
+    # back substitution, last pivot first
     for i, link in reversed(group.pivots):
         value = right[i]
         for other, factor in table[i].items():
@@ -225,6 +234,8 @@ def equation_at(
         rolling = equation.rolling
         spin = gearing.spin(rolling.rolling)
         right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
+        # the arm follows the wheel's centre: its angle less its direction in its own axes is the bearing of
+        # the centre
         return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
     given = _given_angle(equation, m, numbers, at)
     if numbers.reference(equation.link) is not None:  # on the sphere the angle is that between the two
@@ -342,6 +353,7 @@ def _turned_link(
     base = turning.relative_to
     if group.link != turning.link:  # it is the base that is unknown
         rotor, base = reversed_rotor(rotor), turning.link
+        # the arcs that measure the angle change places with the links
         reference = reference and reference[2:] + reference[:2]
     local = numbers.local[group.link][group.pivot]
     return numbers.space.turned_pose(m, at.poses[base], rotor, local, at.points[group.pivot], reference)
@@ -414,6 +426,7 @@ def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices
     if group.carriage is not None and rotor is not None:
         at.poses[group.carriage] = PlanePose(vector, rotor)
     for point in group.points:
+        # of a group without a carriage the unknown vector is the point itself
         at.points[point] = vector if rotor is None else add(vector, arms[point])
     for rod in group.rods:
         _two_points(rod.link, rod.centre, rod.point, m, numbers, at)
@@ -432,8 +445,10 @@ def _locus(
         found = _driven_or_rolled(locus, numbers, at, rotor)
     else:
         found = _of_point(locus, m, numbers, at, rotor)
+    # without a carriage the point is unknown itself
     if rotor is None:
         return found
+    # the locus of the point, shifted by its arm, is that of the carriage's origin
     arm = arms.get(locus.point, (0.0, 0.0))
     if isinstance(found, PlaneCircle):
         return PlaneCircle(subtract(found.centre, arm), found.radius)
@@ -447,6 +462,7 @@ def _of_point(
     if isinstance(locus, Rod):
         local = numbers.local[locus.link]
         return numbers.space.circle(m, at.points[locus.centre], local[locus.centre], local[locus.point])
+    # the slot lies on the turned carriage: its origin is the point less the slot's place
     if isinstance(locus, Slot):
         assert rotor is not None
         arm = rotate_vector(numbers.through[locus.guide], rotor)

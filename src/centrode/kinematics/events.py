@@ -1,6 +1,6 @@
 """Limits and change points: where a group's radicand reaches zero along the path.
 
-The radicand is looked at on a mesh that belongs to the mechanism, not to the samples asked for, with its derivative at
+The radicand is looked at on a mesh that belongs to the mechanism, not to the samples requested, with its derivative at
 each node and a bound of its second derivative in the cell about it. Cells in which it may have more than one zero are
 divided (`cells`). A minimum of the radicand is refined by the root of its derivative: zero within the rounding error of
 the formulas is a change point, below zero a pair of limits. Other sign changes are limits. A divisor's sign change is a
@@ -65,6 +65,8 @@ ROOM = 2.0
 
 def half_widths(mesh: Array) -> Array | float:
     """Half widths of the cells about the nodes of a mesh, which together cover it."""
+    # cells reach half way to both neighbours; on an even mesh one number says so, and formulas stay scalar
+    # there
     gaps = np.diff(mesh)
     widest = float(np.max(gaps))
     if np.min(gaps) >= 0.99 * widest:
@@ -77,6 +79,7 @@ def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]
     if not path.by_time:
         return path.drive_values(BENDS, BENDS.variable(at, half))
     cells = Cells(half, ARRAYS)
+    # laws are any formulas: their second derivative is looked at in the middle and at the ends of each cell
     looks = [Path.drive_values(path, JETS, Jet.variable(at + shift * half, 2)) for shift in (0.0, -1.0, 1.0)]
     found: dict[str, Number] = {}
     for drive, here in looks[0].items():
@@ -107,6 +110,8 @@ class Bending(Rough):
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         """What a group of higher class gives are jets: nothing is known of their second derivatives."""
+        # jets without a bound: the numbers behind this group are jets too, and their guards are searched
+        # without bounds
         known = at.map_numbers(lambda x: Jet(x.coefficients) if isinstance(x, Bent) else x)
         super().higher(group, JETS, known)
         which = self.continuation.kinematics.structure.groups[group]
@@ -120,6 +125,7 @@ class Bending(Rough):
         windows = continuation.windows_of(group)
         if windows is None:
             return
+        # the closed form's numbers, before the series replaces them: their bends hold outside the circle
         before = numbers_of(continuation.kinematics, group, at)
         super().after(group, at)
         index, chosen = inside(windows, self.parameter.reshape(-1), self.lanes)
@@ -147,10 +153,13 @@ class Bending(Rough):
 
 def _bends(series: Array, windows: Windows, chosen: Lanes, along: Array, half: Array, closed: Array) -> Array:
     """Bends over cells about places in windows, by the terms of the series; those of closed forms beyond it."""
+    # the farthest place of the cell counts, in radii of the circle
     share = (np.abs(along - windows.centre) + half) / windows.radius
     found = np.zeros(len(chosen))
     for k in range(series.shape[1] - 1, 1, -1):
+        # the second derivative of each term at the edge of the cell, in absolute value, by Horner's rule
         found = found * share + k * (k - 1.0) * np.abs(series[chosen, k])
+    # near the circle the remainder of the series is unknown: there the bound of the closed form is kept
     return np.where(share <= INSIDE, found / windows.radius**2, closed)
 
 
@@ -220,11 +229,9 @@ def guard_with_bound(continuation: BranchedPlan, group: int, lanes: Lanes, at: A
 # derivative.
 #
 # Cells that are known need nothing but the signs at their nodes. In the others the least sizes are found by
-# the root of
-# the derivative, as far as nodes foretell them; then the cells are divided until they are known (`cells`).
-# What is left
-# are places: a sign that is only rounding is none, and a least size within the rounding error of the formulas
-# is zero.
+# the root of the derivative, as far as nodes foretell them; then the cells are divided until they are known
+# (`cells`). What is left are places: a sign that is only rounding is none, and a least size within the
+# rounding error of the formulas is zero.
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
 Found: TypeAlias = tuple[Lanes, Array]
@@ -293,8 +300,10 @@ class Zeros:
             if known.all():
                 return NOWHERE, NOWHERE
             known |= straight(slope, bend, self.half)
+            # NaN, of groups that are open there, is not looked into: events lie where there is a value
             there = np.isfinite(value)
             stops = self._stops(group)
+            # a cell beside which a group before stops, or turns fast, is looked into though nodes say nothing
             rough = there & ~known
             rough[stops.lane, stops.node] |= ~known[stops.lane, stops.node]
             lanes, cells = np.nonzero(
@@ -302,6 +311,7 @@ class Zeros:
                 & there[:, 1:]
                 & (value[:, :-1] * value[:, 1:] < 0.0)
                 & ~(rough[:, :-1] | rough[:, 1:])
+                # known cells: the signs at neighbouring nodes tell everything
             )
             ends = lanes, self.mesh[cells], self.mesh[cells + 1]
             if not rough.any():
@@ -363,6 +373,7 @@ class Zeros:
         sign = np.sign(value)
         looked = rough[:, :-1] | rough[:, 1:]
         blind = stops.blind
+        # beside a stop, nodes foretell nothing, as slopes run like a square root there
         looked[stops.lane[blind], np.searchsorted(self.mesh, stops.at[blind]) - 1] = False
         looked &= sign[:, :-1] == sign[:, 1:]
         lanes, cells = low_minima(self.mesh, sign * value, sign * slope, looked)
@@ -380,6 +391,7 @@ class Zeros:
         """The rough cells in parts that are known, with the nodes beside them."""
         half = np.broadcast_to(self.half, self.mesh.shape)
         lanes = np.concatenate([each.lane for each in places])
+        # places in which something happens divide their own cells unevenly: parts get shorter towards them
         at = np.concatenate([each.at for each in places])
         nodes = np.concatenate([each.node for each in places])
         inside = rough[lanes, nodes] & np.isfinite(at)
@@ -387,9 +399,11 @@ class Zeros:
         order = np.lexsort((at, lanes))
         lanes, at, nodes = lanes[order], at[order], nodes[order]
         low, high = self.mesh[nodes] - half[nodes], self.mesh[nodes] + half[nodes]
+        # of two places in one cell each gets the part up to the middle between them
         together = (np.diff(lanes) == 0) & (np.diff(nodes) == 0)
         middle = 0.5 * (at[1:] + at[:-1])[together]
         low[1:][together], high[:-1][together] = middle, middle
+        # all other rough cells are cut evenly
         plain = rough.copy()
         plain[lanes, nodes] = False
         rows, cells = np.nonzero(plain)
@@ -397,6 +411,7 @@ class Zeros:
             parts_of(CellPieces.of(rows, self.mesh[cells], half[cells])), towards(lanes, low, high, at)
         )
         found = divide_cells(parts, lambda *cell: self.guards.bend_bound(group, *cell), self.branches.unit)
+        # nodes beside rough cells close the chain: their signs are known
         beside = np.zeros(rough.shape, dtype=bool)
         beside[:, 1:] |= rough[:, :-1]
         beside[:, :-1] |= rough[:, 1:]
@@ -408,6 +423,8 @@ class Zeros:
     def _sign_cells(
         self, group: int, pieces: CellPieces, stops: _Stops, minima: _Minima, greatest: Array
     ) -> CellPieces:
+        # walls and minima become cells of their own, so that neighbours in the order of the path tell what
+        # lies between
         """Cells in the order of the path, with the least sizes as cells of their own; zero where a sign is rounding."""
         size = np.where(np.isfinite(pieces.value), np.abs(pieces.value), 0.0)
         most = greatest.copy()  # where a group before turns fast, the nodes may have seen little of it
@@ -417,6 +434,7 @@ class Zeros:
         value = pieces.value.copy()
         if len(doubtful):
             _value, bound = self.guards.rounding_bound(group, pieces.lane[doubtful], pieces.centre[doubtful])
+            # a sign within the rounding error of the formulas is none
             value[doubtful[~(np.abs(value[doubtful]) > SAFETY * bound)]] = 0.0
         cores = CellPieces.of(minima.lane, minima.at, self._finest, minima.least)
         walls = CellPieces.of(stops.lane, stops.at, self._finest, np.inf).take(stops.walls)
@@ -432,6 +450,8 @@ class Zeros:
         lanes, low, high, sign = (
             np.concatenate(both)
             for both in zip(without_sign(pieces, slack), unsettled_stretches(pieces, slack), strict=True)
+            # of these stretches those with a minimum between their ends that nodes had foretold are looked into
+            # already
         )
         foretold = np.zeros(len(lanes), dtype=bool)
         for k in range(len(lanes)):
@@ -440,6 +460,7 @@ class Zeros:
         lanes, low, high, sign = lanes[~foretold], low[~foretold], high[~foretold], sign[~foretold]
         if len(lanes):
             falls, rises = (sign * self.guards.jets(group, lanes, x, 1).derivative(1) for x in (low, high))
+            # only a size that falls at the first end and rises at the last has a least value between them
             turns = (falls < 0.0) & (rises >= 0.0)
             lanes, low, high, sign = lanes[turns], low[turns], high[turns], sign[turns]
         return self._touching(group, lanes, self.guards.minima(group, lanes, low, high), sign)
@@ -469,12 +490,14 @@ class EventScan:
     def run(self) -> Positions:
         """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
         groups = self.kinematics.structure.groups
+        # the last group with a radicand or divisor: behind it nothing can lock
         last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
         with np.errstate(all="ignore"):
             at = bent_frame(self.kinematics, along, self.zeros.half)
             with suppress(ReachedRadicand):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last + 1), BENDS, _Searching(self, last))
+            # from there on values suffice, and angles are still counted
             plain = at.map_numbers(lambda x: x.value if isinstance(x, Jet) else x)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
         return plain
@@ -504,6 +527,7 @@ class EventScan:
             limits, touches = self.zeros.found(group, value, slope, bend, self.branches.largest[group])
             events = self._limits(group, *limits)
             events += [Event("change point", group, int(k), float(x)) for k, x in zip(*touches, strict=True)]
+        # recorded before the group's sign is requested
         self.branches.add(group, events)
 
     def find_poles(self, group: int, divisor: Number) -> None:
@@ -551,6 +575,7 @@ class EventScan:
             self._settle(settled, value, lanes[touches], cells[touches], SAFETY * bound[touches])
             dips = ~touches & (~certain | (least < 0.0))
             aside = np.where(certain, 0.0, BESIDE_POLE * (self.mesh[cells + 1] - self.mesh[cells]))
+            # on both sides of a minimum below zero the radicand passes zero once
             for first, last, edge in (
                 (self.mesh[cells], at - aside, value[lanes, cells]),
                 (at + aside, self.mesh[cells + 1], value[lanes, cells + 1]),
@@ -559,6 +584,7 @@ class EventScan:
                 roots = self.guards.roots(group, lanes[chosen], first[chosen], last[chosen])
                 found += self._limits(group, lanes[chosen], roots)
             settled[lanes[dips], cells[dips]] = True
+        # what a minimum explained is not explained again
         lanes, cells = sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self.guards.roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
@@ -574,11 +600,13 @@ class EventScan:
         lanes, cells, ends = cut_cells(self.branches.events, self.mesh, value)
         if not len(lanes):
             return lanes, ends
+        # the node of the cell that still has a value
         nodes = np.where(np.isfinite(value[lanes, cells]), self.mesh[cells], self.mesh[cells + 1])
         places = ends[:, None] + (nodes - ends)[:, None] * CLOSING_IN
         guard, bound = self.guards.rounding_bound(group, np.repeat(lanes, len(CLOSING_IN)), places.ravel())
         # what is rounding has no sign: groups that stop together do not stop each other
         signs = np.where(np.abs(guard) > SAFETY * bound, np.sign(guard), 0.0).reshape(places.shape)
+        # only the first change of sign counts: behind it the mechanism is locked
         rows, last, first = first_changes(signs)
         ends = np.sort([places[rows, last], places[rows, first]], axis=0)
         return lanes[rows], self.guards.roots(group, lanes[rows], *ends)
@@ -597,6 +625,7 @@ class EventScan:
     ) -> None:
         """Cells next to a change point whose signs are only rounding are not looked at again."""
         settled[lanes, cells] = True
+        # a radicand this near to its rounding error may change its sign by rounding in the next cells too
         near = np.maximum(np.abs(value[lanes, cells]), np.abs(value[lanes, cells + 1])) <= 100.0 * bound
         last = settled.shape[1] - 1
         settled[lanes[near], np.maximum(cells[near] - 1, 0)] = True
@@ -604,7 +633,7 @@ class EventScan:
 
 
 class _Counting(Rough):
-    """Counts the turns of angles along the mesh, for all that is asked for afterwards."""
+    """Counts the turns of angles along the mesh, for all that is requested afterwards."""
 
     def __init__(self, scan: EventScan, m: Namespace) -> None:
         super().__init__(scan.continuation, m, scan.mesh[None, :], None)

@@ -81,6 +81,8 @@ def first_jump(law: Law, first: float, last: float, least: float) -> Jump | None
     places = np.concatenate([_suspects(law, mesh), mesh[~np.isfinite(_values(law, mesh))]])
     if not len(places):
         return None
+    # shares of the range in times as great as those at which the law is looked at, so that sums with them do
+    # not vanish
     width = max(last - first, abs(first), abs(last))
     here = _values(law, places)
     near, far = (
@@ -89,13 +91,16 @@ def first_jump(law: Law, first: float, last: float, least: float) -> Jump | None
     )
     with np.errstate(all="ignore"):
         close, wide = (np.abs([after - before, here - before, after - here]) for before, after in (near, far))
+        # from far to near a continuous law loses most of its change
         jumps = ((close > least) & (close > KEPT * wide)).any(axis=0)
+        # a pole grows towards the place: it has no value there, and is no jump
         grows = (close > 2.0 * wide + least).any(axis=0)
     absent = ~np.isfinite(here) | ~np.isfinite(close).all(axis=0) | (jumps & grows)
     found = np.flatnonzero(jumps | absent)
     if not len(found):
         return None
     k = found[np.argmin(places[found])]
+    # next to zero the time is rounding of the range, and zero is what is meant
     time = places[k] if abs(places[k]) > NEAR * width else 0.0
     return Jump(float(time), float(near[0][k]), np.nan if absent[k] else float(near[1][k]))
 
@@ -106,12 +111,15 @@ def _suspects(law: TextLaw, mesh: Array) -> Array:
     for number, jet in enumerate(_watched_jets(law, mesh, 1)):
         value, slope = (np.broadcast_to(jet.derivative(k), mesh.shape) for k in (0, 1))
         with np.errstate(all="ignore"):
+            # it falls towards zero at the first node and rises from it at the second: it may touch zero
+            # between
             dips = (value[:-1] * slope[:-1] < 0.0) & (value[1:] * slope[1:] >= 0.0)
         cells = np.flatnonzero(dips & (np.sign(value[:-1]) == np.sign(value[1:])))
         nodes = mesh
         if len(cells):
             turns = _turns(law, number, mesh[cells], mesh[cells + 1])
             found.append(turns)
+            # the turning place is a node as well: on both sides signs are compared with it
             nodes = np.unique(np.append(mesh, turns))
         found.append(_changes(law, number, nodes))
     return np.concatenate(found)
@@ -134,6 +142,7 @@ def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
         return np.broadcast_to(np.sign(_watched_jets(law, x, 0)[number].value), x.shape)
 
     at = sign(nodes)
+    # the earliest places suffice: only the first jump is reported
     cells = np.flatnonzero(at[:-1] != at[1:])[:MOST]
     return bisect(lambda x: sign(x) == at[cells], nodes[cells], nodes[cells + 1])[1]
 

@@ -94,6 +94,7 @@ def by_time(orders: Orders, order: int, span: SampleGrid) -> Array | None:
     if order == 0 or by_parameter is None:
         return by_parameter
     along = (slice(None), *[None] * (by_parameter.ndim - 2))  # samples, then what stands behind them
+    # the chain rule: d/dt = rate d/dq, and second derivatives have rate^2 and the second rate
     values = by_parameter * (span.rate if order == 1 else span.rate**2)[along]
     if order == 2 and span.accelerates:
         values += orders[1] * span.second_rate[along]

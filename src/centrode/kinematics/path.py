@@ -27,9 +27,8 @@ from centrode.numerics.jets import Jet, JetFunctions
 
 # How fast several drives move together: the unit of time on which events are looked for, stretch by stretch.
 #
-# Stretches of time are counted from zero and double in length (dyadic), whatever range is asked for, so that
-# the
-# mesh belongs to the mechanism: a longer range adds nodes, and moves none.
+# Stretches of time are counted from zero and double in length (dyadic), whatever range is requested, so that
+# the mesh belongs to the mechanism: a longer range adds nodes, and moves none.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -60,13 +59,16 @@ class TimeScale:
 
     @classmethod
     def of(cls, rates: Callable[[Array], Array]) -> TimeScale:
-        """The pace of drives with these rates."""
+        """The time scale of drives with these rates, times [s] -> (n,) in units per second."""
         powers = 2.0 ** np.arange(SHORTEST, LONGEST + 1)
+        # only the later half of each stretch [0, power]: the earlier half is that of a lesser power, which
+        # `accumulate` adds
         times = powers[:, None] * np.linspace(0.5, 1.0, RATES // 4)
         fastest = np.maximum.accumulate(
             np.max(_finite(rates(times.reshape(-1))).reshape(times.shape), axis=1)
         )
         with np.errstate(over="ignore"):  # a law may grow without bound long after any range
+            # the longest stretch on which the fastest drive makes no more than a turn
             slow = np.nonzero(fastest * powers <= tau)[0]
         return cls(rates, float(powers[slow[-1]] if len(slow) else powers[0]))
 
@@ -93,9 +95,12 @@ class TimeScale:
     def nodes(self, low: float, high: float) -> Array:
         """Mesh nodes from the last one below `low` to the first one above `high`."""
         found = []
+        # a tenth of a unit on both sides: nodes of the next stretch may be those just beyond the ends
         for k in self._stretches(self._advance(low, -0.1), self._advance(high, 0.1)):
             first, last = _ends(k, self.base)
             step = self._unit(k) * tau / NODES_PER_TURN
+            # two more at both ends, so that rounding of the quotient loses none; those of other stretches are
+            # cut off below
             least = max(0, int(np.floor((low - first) / step)) - 2)
             most = int(np.ceil((min(high, last) - first) / step)) + 2
             nodes = first + (np.arange(least, most + 1, dtype=np.float64) + OFF_GRID) * step
@@ -106,6 +111,7 @@ class TimeScale:
         here = self._stretch(time)
         there = here + (1 if units > 0.0 else -1)
         reached = time + units * self._unit(here)
+        # the nearer of both stretches' units may be the greater one: the wider range is taken
         return (
             min(reached, time + units * self._unit(there))
             if units < 0.0
@@ -115,6 +121,7 @@ class TimeScale:
     def _stretch(self, time: float) -> int:
         """Number of the stretch: 0 from zero to the base, then doubling; -1 the base before zero, doubling too."""
         ratio = abs(time) / self.base
+        # frexp gives the power of two above the ratio, exactly
         power = max(frexp(ratio)[1], 0) if ratio >= 1.0 else 0
         if time >= 0.0:
             return power
@@ -149,6 +156,7 @@ def _finite(rates: Array) -> Array:
 
 def nearest_node(mesh: Array, parameter: Array) -> npt.NDArray[np.intp]:
     """Number of the mesh node nearest to each parameter."""
+    # between two nodes, their middle parts those that are nearer to one from those nearer to the other
     return np.searchsorted(0.5 * (mesh[1:] + mesh[:-1]), parameter)
 
 
@@ -226,7 +234,7 @@ class Path:
         return self.unit if self.pace is None else self.pace.unit_at(parameter)
 
     def within(self, low: float, high: float) -> Path:
-        """The same path with the unit that is fit for all of a range."""
+        """Path with one unit for all of a range of the parameter: the finest that counts in it."""
         return self if self.pace is None else replace(self, unit=self.pace.finest(low, high))
 
     def take(self, take: Callable[[Number], Number]) -> Path:
@@ -271,6 +279,8 @@ def unit_of(drive: Drive, scale: float) -> float:
 def _sense_at_start(driven: DrivenBy) -> float:
     """Sense in which the drive sets out: that of its first derivative that is not zero."""
     with np.errstate(all="ignore"):
+        # at a rest the first derivatives of a law are zero: the first one that is not says which way it goes
+        # on
         jet = driven.value(JETS, Jet.variable(np.float64(0.0), 6))
     if isinstance(jet, Jet):
         for order in range(1, jet.order + 1):
@@ -354,6 +364,7 @@ def _start_of_cylinder(drive: Drive, drawn: float | None, at_zero: float) -> flo
 def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:
     if drawn is None:
         return
+    # a whole turn off is the same place; remainders below 1e-9 rad are rounding of what was typed
     difference = (value - drawn + tau / 2) % tau - tau / 2
     if abs(difference) > 1e-9:
         raise InputError(
@@ -365,14 +376,14 @@ def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:
         )
 
 
-# Which samples a motion is asked at: values of the drive, or times where the drive is a law.
+# Which samples a motion has: values of the drive, or times where the drive is a law.
 
 MAX_TURNS = 500.0
 INSIDE = 0.005
-"""Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
+"""Share of the reachable range left out at both ends if none is requested: there speeds are infinite."""
 
 LEAST_JUMP = 1e-9
-"""Jumps of a law are told down to this share of 1 rad, or of the greatest length."""
+"""Jumps of a law are reported down to this share of 1 rad, or of the greatest length."""
 
 
 @dataclass(frozen=True)
@@ -400,7 +411,7 @@ def even_grid(
 ) -> SampleGrid:
     """Evenly spaced samples from start to stop: values of the drive [rad or m], or times [s] where the drive is a law.
 
-    `reach` are the nearest limits: the range of a displacement drive where none is asked for, and that of any drive
+    `reach` are the nearest limits: the range of a displacement drive where none is requested, and that of any drive
     where the `reachable` range is.
     """
     if isinstance(samples, bool) or not 1 <= samples <= reading.SAMPLES:
@@ -439,6 +450,7 @@ def _check_extent(path: Path, span: SampleGrid) -> None:
     """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
     for one in path.driven:
         jump = _jump(path, one, span.time)
+        # a jump to a finite value is reported before missing values: it says more of what to correct
         if jump is not None and np.isfinite(jump.after):
             what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
             raise InputError(
@@ -452,11 +464,13 @@ def _check_extent(path: Path, span: SampleGrid) -> None:
                 _("its law has no finite value with two derivatives everywhere in the range"),
                 _("correct the law, or ask for another range"),
             )
+        # a jump to no value is reported last, as the samples themselves may have hit it
         if jump is not None:
             raise InputError(
                 f"[[drives]] {one.drive.id}",
                 _("its law has no finite value at t = {time:.9g} s").format(time=jump.time),
                 _("correct the law, or ask for another range"),
+                # lengths count in units, so that 500 turns of the mesh are the same work for a displacement
             )
     if path.pace is not None:
         ends = min(path.initial, float(np.min(span.time))), max(path.initial, float(np.max(span.time)))
@@ -487,6 +501,7 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
 
 
 def _at_values(path: Path, values: Array) -> SampleGrid:
+    # with one drive at constant speed times follow from the values, and the law is not asked
     one, speed = path.driven[0], path.parameter.constant_speed
     if not speed:
         raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
@@ -497,7 +512,7 @@ def _at_values(path: Path, values: Array) -> SampleGrid:
 def _range(
     path: Path, start: float | None, stop: float | None, reach: tuple[float, float], reachable: bool
 ) -> tuple[float, float]:
-    """First and last value of the drive; what is not asked for is one turn, or the reachable range."""
+    """First and last value of the drive; what is not requested is one turn, or the reachable range."""
     if path.turns and not reachable:
         first = path.initial if start is None else start
         return first, first + path.forward * 2.0 * np.pi if stop is None else stop
@@ -511,6 +526,7 @@ def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
     low, high = reach
     if path.turns and np.isinf([low, high]).all():
         return path.initial, path.initial + path.forward * 2.0 * np.pi
+    # a reachable range of more than a turn would show the same positions again
     if path.turns:  # a limit on one side only bounds a turn
         low, high = max(low, high - 2.0 * np.pi), min(high, low + 2.0 * np.pi)
     if not np.isfinite(low) or not np.isfinite(high):
@@ -519,12 +535,14 @@ def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
             _("its range is unlimited"),
             _("say from where to where: --from and --to, or [study] from and to"),
         )
+    # next to limits speeds grow without bound: a little is left out at both ends
     inside = INSIDE * (high - low)
     return (low + inside, high - inside) if path.forward > 0 else (high - inside, low + inside)
 
 
 def _even_times(path: Path, samples: int, start: float | None, stop: float | None) -> SampleGrid:
     spans = [one.law.span for one in path.driven if one.law.span is not None]
+    # where every law has a value: the latest beginning and the earliest end
     first = start if start is not None else max((span[0] for span in spans), default=0.0)
     last = stop if stop is not None else min((span[1] for span in spans), default=None)
     if last is None:
@@ -540,6 +558,7 @@ def _at_times(path: Path, time: Array) -> SampleGrid:
 
 def _one_turn(path: Path) -> float:
     periods = [one.law.period for one in path.driven if isinstance(one.law, ShaftLaw)]
+    # the slowest drive makes one whole turn
     speeds = [abs(one.drive.speed) for one in path.driven if one.drive.kind == "angle" and one.drive.speed]
     if periods and not speeds:
         return max(periods)

@@ -117,6 +117,8 @@ class Kinematics:
     def advance(self, at: Positions, groups: range, m: Namespace, hooks: EvaluationPolicy) -> None:
         """Add what a stretch of the plan gives, the groups before it being known."""
         for i in groups:
+            # after the group: what it is replaced by near change points is what its links' angles are counted
+            # from
             solve_group(self.structure.groups[i], m, self.numbers, at, SideChoices(hooks, i))
             hooks.after(i, at)
             self.count(i, at, m, hooks)
@@ -124,6 +126,7 @@ class Kinematics:
     def count(self, group: int, at: Positions, m: Namespace, hooks: EvaluationPolicy) -> None:
         """Add the angles, with their turns, of links of a group on which gears or rolling wheels depend."""
         for link in self.structure.counted[group]:
+            # a link that a gear turns has its angle with its turns already
             if link not in at.angles:
                 at.angles[link] = hooks.continue_angle(group, link, own_angle(m, self.numbers, at, link))
 
@@ -132,7 +135,7 @@ class Kinematics:
         return self.guard_behind(self.frame(m, parameter), m, group, hooks)
 
     def guard_behind(self, at: Positions, m: Namespace, group: int, hooks: EvaluationPolicy) -> Number:
-        """The same from what is known before the first group of the plan."""
+        """`guard` from positions that hold what is known before the first group of the plan."""
         try:
             self.advance(at, range(group + 1), m, _UpTo(group, hooks))
         except ReachedRadicand as reached:
@@ -140,9 +143,10 @@ class Kinematics:
         raise ValueError(f"group {group} has neither a radicand nor a divisor")
 
     def take(self, lanes: Any) -> Kinematics:
-        """The same plan with the numbers of chosen mechanisms of the batch, one for each entry of `lanes`."""
+        """The plan with the numbers of chosen mechanisms of the batch, one for each entry of `lanes` (k,)."""
 
         def take(x: Number) -> Number:
+            # arrays of a batch are columns (lanes, 1): flat, one number is taken for each entry
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
         return Kinematics(self.structure, self.numbers.map_numbers(take), self.path.take(take))
@@ -187,7 +191,7 @@ class _UpTo(EvaluationPolicy):
 
 # Angles that groups depend on with their turns: counted on the mesh of the path, outwards from its start.
 #
-# A value anywhere takes its turns from the nearest node, so it does not depend on the samples asked for.
+# A value anywhere takes its turns from the nearest node, so it does not depend on the samples requested.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -209,6 +213,7 @@ class Turns:
 
     def continue_angle(self, angle: Number, parameter: Array, lanes: Lanes | None) -> Number:
         """An angle in (-pi, pi], over any algebra, with its turns at parameters as `EvaluationPolicy` has them."""
+        # turns are those of the nearest node, and the rest is the difference of angles: less than half a turn
         node = nearest_node(self.mesh, parameter)
         if lanes is None:
             where: Any = (slice(None), node.reshape(-1))
@@ -219,6 +224,7 @@ class Turns:
         if self.quick:
             value = np.broadcast_to(value, whole.shape)
             with_quick_turns(whole, value, np.reshape(parameter, -1), lanes, self.turns, self.quick)
+        # nothing is added where there are no turns, so that jets and bounds keep their bits
         return angle + TURN * whole if whole.any() else angle
 
 
@@ -230,10 +236,13 @@ def count_turns(
     values = np.broadcast_to(values, (values.shape[0], len(mesh)))
     node = int(np.argmin(np.abs(mesh - start)))
     values = _fill_gaps(values, node)
+    # from node to node an angle turns by less than half a turn: a greater difference is a passage of pi
     steps = np.round((values[:, :-1] - values[:, 1:]) / TURN)
     with_quick_steps(steps, quick)
     turns = np.zeros(values.shape)
     np.cumsum(steps, axis=1, out=turns[:, 1:])
+    # the count starts anywhere; the whole is shifted so that the node at the start has the initial angle's
+    # turns
     turns += (np.round((initial - values[:, node]) / TURN) - turns[:, node])[:, None]
     return Turns(mesh, values, turns, quick)
 
@@ -249,6 +258,7 @@ def _fill_gaps(values: Array, start: int) -> Array:
     behind = np.minimum.accumulate(behind[:, ::-1], axis=1)[:, ::-1]
     source = np.where(nodes >= start, ahead, behind)
     missing = (source < 0) | (source >= last)
+    # a lane without any value at the start takes its first known one; one without any value counts as zero
     source = np.where(missing, np.argmax(known, axis=1)[:, None], source)
     filled = np.take_along_axis(values, source, axis=1)
     return np.where(np.isfinite(filled), filled, 0.0)
@@ -309,13 +319,14 @@ class Branches:
     largest: dict[int, Array] = field(default_factory=dict)
 
     def add(self, group: int, events: Sequence[Event]) -> None:
-        """Record the events of a group; its sign is asked for only afterwards."""
+        """Record the events of a group; its sign is requested only afterwards."""
         if not events:
             return
         self.events += sorted(events, key=lambda event: (event.lane, event.at))
         per_lane: list[list[float]] = [[] for _ in range(self.lanes)]
         for event in self.events:
             if event.group == group and event.kind == "change point":
+                # padded with NaN, which lies between no two numbers: one comparison serves all lanes
                 per_lane[event.lane].append(self._behind_start(event.at))
         width = max((len(found) for found in per_lane), default=0)
         if width:
@@ -340,6 +351,7 @@ class Branches:
         low = np.minimum(parameter, self.initial)[..., None]
         high = np.maximum(parameter, self.initial)[..., None]
         between = ((table > low) & (table < high)).sum(axis=-1)
+        # two passages bring the first assembly back
         return np.asarray(base * (1.0 - 2.0 * (between % 2)))
 
     def reach(self, lane: int) -> tuple[float, float]:
@@ -359,6 +371,7 @@ class Branches:
 
     def _is_below(self, limit: Event) -> bool:
         """Whether a limit bounds the reach from below; one at the start itself bounds the side that does not close."""
+        # a limit at the start itself is on neither side: the side on which the group closes tells
         if limit.closes_above is not None and abs(limit.at - self.initial) <= AT_THE_START * self.unit:
             return limit.closes_above
         return limit.at <= self.initial
@@ -376,8 +389,7 @@ def branches_at_start(
 # Which column of the arrays of a motion holds what.
 #
 # Coordinates of moving points; the numbers that tell how links are turned; displacements of guides; cosine
-# and
-# sine of the angles that are not those of a link's own axes. How many numbers each takes, the space says.
+# and sine of the angles that are not those of a link's own axes. How many numbers each takes, the space says.
 
 
 @dataclass(frozen=True)
@@ -443,6 +455,7 @@ class PlanLayout:
         found += [x for link in self.links for x in self.space.attitude(at.poses[link])]
         for guide, point in zip(self.guides, self.guided, strict=True):
             found.append(slide_of(m, dimensions, at, guide, point))
+        # in the plane a link's attitude is the rotor of its angle; on the sphere three axes do not tell it
         if not self._own:
             found += [x for link in self.angles for x in rotor_of_angle(m, dimensions, at, link)]
         return found
@@ -487,6 +500,7 @@ def positions_from(
         at.points[point] = tuple(values[layout.axes * k : layout.axes * (k + 1)])
     for k, link in enumerate(layout.links):
         column = layout.first_attitude + size * k
+        # a pose is restored from the link's first point: its origin has no column
         point, local = next(iter(numbers.local[link].items()))
         attitude = values[column : column + size]
         at.poses[link] = numbers.space.pose_of(m, tuple(attitude), local, at.points[point])

@@ -73,6 +73,7 @@ def ready(mechanism: Mechanism) -> Ready:
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)
     if any(isinstance(group, Newton) for group in structure.groups):
+        # before assembling, as groups of higher class would fail first and be reported instead
         _refuse_surplus_drives(structure)
     assembled = assemble(kinematics)
     kinematics = replace(kinematics, numbers=assembled.numbers)
@@ -96,6 +97,7 @@ def _refuse_surplus_drives(structure: Structure) -> None:
 def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
     """Mobility by rank at real positions; refuse drives that differ from it."""
     structure = kinematics.structure
+    # drives left out: mobility is that of the mechanism, and drives are compared with it
     free = [c for c in structure.constraints if not is_drive(c)]
     width = sum(entity.unknowns for entity in structure.unknowns)
     rank = 0
@@ -104,9 +106,11 @@ def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
         looked.append(at)
         matrix = scaled_jacobian(free, structure.unknowns, kinematics.numbers, at)
         rank = max(rank, rank_of(matrix))
+        # full rank with nothing redundant cannot grow, so the search of other positions is spared
         if rank == matrix.shape[0] and not structure.redundant:
             break  # it cannot be greater anywhere
     mobility = width - rank
+    # the greatest rank counts: dead points and change points have less
     if mobility != structure.drives:
         raise InputError(
             "[[drives]]",
@@ -126,7 +130,9 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
     mesh = mesh_of(path, looks)
     branches = branches_at_start(path, assembled.signs, assembled.angles, smooth=True)
     continuation = BranchedPlan(kinematics, branches, assembled.positions, kinematics.numbers)
+    # signs and change points have to be known to go on past them
     EventScan(continuation, mesh).run()
+    # nodes of the mesh next to the places wanted: there everything has been looked at
     nodes = mesh[np.argmin(np.abs(mesh[:, None] - looks), axis=0)]
     with np.errstate(all="ignore"):
         there = kinematics.positions(ARRAYS, nodes[None, :], continuation.hooks(ARRAYS, nodes[None, :], None))

@@ -50,11 +50,13 @@ class QuickTurns:
         """One for each change point, or for several that are next to each other."""
         places: dict[int, list[tuple[float, float]]] = {}
         for group in range(len(self.continuation.kinematics.structure.groups)):
+            # groups at or behind `end` are still being searched
             known = group < self.end or self.continuation.has_windows(group)
             windows = self.continuation.windows_of(group) if known else None
             if windows is None:
                 continue
             node = np.clip(np.searchsorted(self.mesh, windows.centre) - 1, 0, len(self.mesh) - 2)
+            # a wide circle means that nothing turns fast
             narrow = (windows.radius > 0.0) & (windows.radius < NARROW * np.diff(self.mesh)[node])
             narrow &= (windows.centre > self.mesh[0]) & (windows.centre < self.mesh[-1])
             for lane, centre, half in zip(
@@ -133,13 +135,16 @@ def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> li
         wide = AROUND * float(mesh[node + 1] - mesh[node])
         first = max(int(np.searchsorted(mesh, centre - wide)) - 1, 0)
         last = min(int(np.searchsorted(mesh, centre + wide)), len(mesh) - 1)
+        # halved from the width of two steps down to half the window: places in a geometric series
         graded = half * 2.0 ** np.arange(-1.0, np.ceil(np.log2(wide / half)) + 1.0)
         inner = [centre, *(centre - graded), *(centre + graded)]
+        # stretches that overlap have to be one, or turns would be put in twice
         if pieces and first <= pieces[-1][1]:
             before = pieces.pop()
             first, last, inner = before[0], max(last, before[1]), before[2] + inner
         pieces.append((first, last, inner))
     found = []
+    # nodes of the mesh are kept, as turns are put in between them
     for first, last, inner in pieces:
         nodes = mesh[first : last + 1]
         between = [x for x in inner if nodes[0] < x < nodes[-1]]

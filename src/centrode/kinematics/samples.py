@@ -119,17 +119,20 @@ class SampleJudging(Smooth):
 
     def root(self, group: int, radicand: Number) -> Number:
         sign = self.continuation.branches.sign(group, self.parameter, self.lanes)
+        # a radicand that does not move has derivatives that are zero: groups behind need jets
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         value = np.broadcast_to(radicand.value, self.shape)
         below = self._at_zero(group, value)
         if below is None:
+            # without power series a negative radicand opens at once; with one, `after` may take that back
             if self.continuation.windows_of(group) is None:
                 np.logical_or(self.opened, value < 0.0, out=self.opened)
             else:
                 self._judged[group] = (value < 0.0, np.zeros(self.shape, dtype=bool))
             return JETS.sqrt(radicand) * sign
         self._judged[group] = ((value < 0.0) & ~below, below)
+        # a root of rounding would move the point: at zero it is zero exactly, and its derivatives infinite
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
 
     def judge(self, group: int, judged: ConvergedPlaces) -> None:
@@ -147,6 +150,7 @@ class SampleJudging(Smooth):
         """Where a radicand is zero within its rounding error; None if nowhere."""
         greatest = self.continuation.branches.largest[group]
         greatest = greatest[:, None] if self.lanes is None else greatest[self.lanes]
+        # rounding bounds cost some ten times the value, so they are computed for radicands near zero alone
         suspects = np.nonzero(np.abs(value) <= SUSPECT * greatest)
         if not len(suspects[0]):
             return None
@@ -181,6 +185,7 @@ def sample(
 ) -> None:
     """Fill in columns and statuses; with `lanes` as in `evaluate_columns`."""
     judged = evaluate_columns(continuation, samples, parameter, lanes)
+    # in this order: later statuses are stronger, and overwrite
     samples.status[judged.zero | ~samples.complete] = Status.SINGULAR
     samples.status[beyond_limits(continuation.branches, parameter, lanes)] = Status.CUT_OFF
     samples.status[judged.lost] = Status.UNCONVERGED
@@ -191,6 +196,7 @@ def beyond_limits(branches: Branches, parameter: Array, lanes: Lanes | None = No
     """Where a mechanism would have to pass a limit: (lanes, n), or (k,) with a lane for each parameter."""
     reach = branches.reaches()
     low, high = (reach[:, :1], reach[:, 1:]) if lanes is None else reach[lanes].T
+    # a sample at the limit itself, but for rounding, is not beyond it
     margin = 4.0 * np.spacing(np.abs(parameter))
     return np.asarray((parameter < low - margin) | (parameter > high + margin))
 
@@ -200,9 +206,11 @@ def settle(samples: Samples) -> None:
     if not samples.status.any():
         return  # incomplete samples have a status
     absent = (samples.status == Status.OPEN) | (samples.status == Status.UNCONVERGED)
+    # both arrays: columns are what is computed, angles what follows from them
     for numbers in (samples.columns, samples.angles):
         numbers[:, :, absent] = np.nan
         numbers[1:, :, samples.status == Status.SINGULAR] = np.nan
+    # infinities, of groups that go to infinity, are absent too
     samples.columns[~np.isfinite(samples.columns)] = np.nan
 
 
@@ -251,6 +259,7 @@ class ResultArrays:
             columns[0, k] = place
         opened = self.status == Status.OPEN
         if opened.any():
+            # what does not close has no frame either, so that a picture of the sample is empty
             columns[:, :, opened] = np.nan
 
     @property
@@ -316,6 +325,7 @@ def _angle_of(rotor: tuple[Number, Number]) -> Number:
 
 def fill_angles(course: UnwoundAngle, samples: Samples, parameter: Array) -> None:
     """Fill in the angles that are measured and that the plan itself does not give with their turns."""
+    # one node for each sample, the same for all links
     nearest = course.nearest(parameter)
     for k, link in enumerate(samples.layout.angles):
         if link in samples.followed:
@@ -334,6 +344,7 @@ def fill_slides(course: UnwoundAngle, samples: Samples, parameter: Array) -> Non
             continue
         nodes = course.turns(partial(_rotor_of_slide, guide, point), _initial(course, guide, point))
         slide = samples.columns[0, layout.first_slide + k]
+        # a displacement along a closed guide is an angle about its pole, and counted like one
         angle = slide * (TURN / period)
         slide += period * nodes.at(course.nearest(parameter), np.cos(angle), np.sin(angle), parameter)
 
@@ -363,6 +374,7 @@ def _initial(course: UnwoundAngle, guide: str, point: str) -> float:
 def contacts_at(kinematics: Kinematics, at: Positions, samples: Samples) -> Array:
     """Contact points (lanes, n, rolling wheels, 2) [m] in description order; NaN where there is no position."""
     wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
+    # in the order of the description, as its constraints are
     found = np.empty((*samples.status.shape, len(wheels), 2))
     for k, contact in enumerate(wheels):
         for axis, x in enumerate(contact_point(contact, ARRAYS, kinematics.numbers, at)):
@@ -405,6 +417,7 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     with np.errstate(all="ignore"):
         for kept, size, angular in each_residual(kinematics, ARRAYS, at):
             found = size / (1.0 if angular else kinematics.numbers.scale)
+            # maximum lets NaN win: a constraint without a value leaves the sample without a residual
             worst = np.maximum(worst, found)
             greatest[kept] = float(np.nanmax(found, initial=0.0))
     if samples.status.any():
@@ -416,6 +429,7 @@ def each_residual(kinematics: Kinematics, m: Namespace, at: Positions) -> Iterat
     """Every constraint, drives included, with the size of its residual over any algebra, and whether it has no unit."""
     numbers, space = kinematics.numbers, kinematics.numbers.space
     for constraint in kinematics.structure.constraints:
+        # hinges by the distance of the two places, which does not depend on the axes
         left = constraint.apart if isinstance(constraint, PointInLink) else constraint.residual
         size = [m.abs(r) for r in left(m, numbers, at)]
         yield constraint, functools.reduce(m.max, size), constraint.angular
@@ -431,6 +445,7 @@ def open_what_does_not_close(samples: Samples, residual: Array) -> None:
     if broken.any():
         samples.status[broken] = Status.OPEN
         residual[broken] = np.nan
+        # what was opened is taken out of the arrays
         settle(samples)
 
 
@@ -481,6 +496,7 @@ class MotionOnPath:
         fill_angles(self.course, samples, parameter)
         at = positions_from(kinematics, samples.layout, samples.columns[0], samples.angles[0], parameter)
         residual, worst = residuals(kinematics, samples, at)
+        # slides after residuals: constraints know no rounds along a guide
         open_what_does_not_close(samples, residual)
         fill_slides(self.course, samples, parameter)
         return Filled(at, residual, worst)

@@ -80,6 +80,7 @@ def requested_grid(ready: Ready, samples: int | None, start: float | None, stop:
     study = ready.mechanism.study
     start = study.start if start is None else start
     stop = study.stop if stop is None else stop
+    # the description's number before the program's own
     count = samples if samples is not None else study.samples or DEFAULT_SAMPLES
     reachable = study.range == REACHABLE
     reach = _reach_if_needed(ready, start, stop, reachable)
@@ -104,6 +105,7 @@ def solve(
     parts = []
     for first in range(0, lanes, size):
         rows = slice(first, min(first + size, lanes))
+        # parts of a batch write into one room: nothing is joined afterwards
         part = kinematics if lanes == 1 else of_lanes(kinematics, rows)
         parts.append(_solve_part(ready, part, span, room.samples.of(rows)))
         if progress is not None:
@@ -123,6 +125,7 @@ def solve(
         room.attitudes,
         room.status,
         np.concatenate([part.residual for part in parts]),
+        # the first of equal parts: the same constraint whatever the parts
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
         np.concatenate([part.contacts for part in parts]),
     )
@@ -155,6 +158,7 @@ def fit_for(ready: Ready, span: SampleGrid) -> Ready:
     """With several drives: the path's unit of time, by which groups of higher class are followed, fit for the span."""
     kinematics = ready.kinematics
     ends = np.append(span.parameter, kinematics.path.initial)
+    # with the initial position, from which groups are followed
     path = kinematics.path.within(float(np.min(ends)), float(np.max(ends)))
     return replace(ready, kinematics=replace(kinematics, path=path))
 
@@ -166,6 +170,7 @@ def _reach_if_needed(
     if path.by_time or (path.turns and not reachable) or (start is not None and stop is not None):
         return -np.inf, np.inf
     extent = 2.0 * np.pi * TURNS if path.turns else SEARCH * path.unit
+    # on both sides, as a drive may run either way
     ends = np.array([path.initial - extent, path.initial + extent])
     continuation = start_of(ready, ready.kinematics)
     EventScan(continuation, mesh_of(path, ends)).run()
@@ -215,7 +220,7 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples:
 
 
 def _join_branches(parts: Sequence[Branches]) -> Branches:
-    """The branches of a batch from those of its parts: signs and events, which is what is asked for afterwards."""
+    """The branches of a batch from those of its parts: signs and events, which is what is requested afterwards."""
     if len(parts) == 1:
         return parts[0]
     lane = 0

@@ -42,6 +42,7 @@ class TurnedStretch:
     @classmethod
     def of(cls, stretch: ParameterStretch, angle: Array) -> TurnedStretch:
         """Turns counted from place to place; where an angle is absent none are passed."""
+        # from place to place an angle turns by less than half a turn, by the choice of the places
         steps = np.round(-np.diff(angle) / TURN)
         passed = np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])
         return cls(stretch, angle, passed)
@@ -64,6 +65,7 @@ def with_quick_steps(steps: Counts, turned: Sequence[TurnedStretch]) -> None:
     for part in turned:
         lane = part.stretch.lane if len(steps) > 1 else 0
         first = part.stretch.first
+        # what was concluded from neighbouring nodes alone is replaced
         steps[lane, first : first + len(part.steps)] = part.steps
 
 

@@ -66,23 +66,29 @@ def spline(x: Sequence[float], y: Sequence[float]) -> list[Cubic]:
 
 
 def _parabola(y: Sequence[float], steps: list[float], rates: list[float]) -> list[Cubic]:
+    # the second divided difference: half the second derivative of the parabola
     bend = (rates[1] - rates[0]) / (steps[0] + steps[1])
     first = rates[0] - bend * steps[0]
     return [(y[0], first, bend, 0.0), (y[1], first + 2 * bend * steps[0], bend, 0.0)]
 
 
 def _hermite(y: float, step: float, rate: float, left: float, right: float) -> Cubic:
+    # by how much the mean of both slopes exceeds the rate, doubled: it gives the cubic term
     excess = left + right - 2 * rate
     return y, left, (rate - left - excess) / step, excess / step / step
 
 
 def _slopes(h: list[float], rate: list[float]) -> list[float]:
     """Slopes at the knots: equal second derivatives inside, equal third derivatives at the second and last but one."""
+    # the widths of the first two and of the last two segments, which share a cubic each (not-a-knot)
     d, e = h[0] + h[1], h[-1] + h[-2]
     upper = [d, *h[:-1]]
     diagonal = [h[1]] + [2 * (a + b) for a, b in pairwise(h)] + [h[-2]]
     lower = [*h[1:], e]
+    # the not-a-knot conditions with the third slope eliminated by its neighbours' equation, so that the
+    # system stays tridiagonal
     right = [((h[0] + 2 * d) * h[1] * rate[0] + h[0] ** 2 * rate[1]) / d]
+    # equal second derivatives on both sides of a knot
     right += [3 * (h[i] * rate[i - 1] + h[i - 1] * rate[i]) for i in range(1, len(h))]
     right.append((h[-1] ** 2 * rate[-2] + (2 * e + h[-1]) * h[-2] * rate[-1]) / e)
     for i in range(1, len(diagonal)):
@@ -117,6 +123,7 @@ class TableLaw:
 
     def __post_init__(self) -> None:
         _check(self.times, self.values)
+        # outside the table there is no law: rows of NaN in front and behind
         cubics = (_NOWHERE, *_cubics(self.times, self.values), _NOWHERE)
         lefts = (self.times[0], *self.times)
         rows = tuple((left, *cubic) for left, cubic in zip(lefts, cubics, strict=True))
@@ -162,11 +169,14 @@ def _check(times: tuple[float, ...], values: tuple[float, ...]) -> None:
 class _Onward(JetFunctions):
     """Jets whose `abs`, `sign`, `min` and `max` take, where they decide by a zero, the sign just behind it."""
 
+    # where a number is zero, the sign of its first coefficient that is not zero holds behind the place
     def sign(self, x: Number) -> Number:
         if not isinstance(x, Jet):
             return self.base.sign(x)
         found: Number = 0.0
         for coefficient in x.coefficients:
+            # once a sign is found its square is 1, and later coefficients are left out: no branch on a value
+            # of an array
             found = found + (1.0 - found * found) * self.base.sign(coefficient)
         return found
 
@@ -191,6 +201,7 @@ class TextLaw:
 
     def jet(self, m: Any, t: Number) -> Number:
         """s(t) [rad or m] over the algebra of `m`; derivatives at a kink are those that hold from there on."""
+        # only plain jets: an algebra that watches for jumps has its own signs
         if isinstance(t, Jet) and type(m) is JetFunctions:
             m = _Onward(m.base)
         # A constant formula still has to have the shape of t.

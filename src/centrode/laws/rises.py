@@ -50,6 +50,7 @@ class Piece:
 
     def mirrored(self) -> Piece:
         """The piece of 1 - s(1 - u): the other half of a curve that is symmetric about its middle."""
+        # 1 - s(1 - u): odd powers keep their sign, even ones and the square change it
         powers = tuple(c if k % 2 else -c for k, c in enumerate(self.powers, 1))
         return replace(
             self, origin=1.0 - self.origin, value=1.0 - self.value, powers=powers, square=-self.square
@@ -59,6 +60,7 @@ class Piece:
         """The piece of a curve that runs from (start, before) to (start + unit, after), not from (0, 0) to (1, 1)."""
         rise = after - before
         return Piece(
+            # by shares of the ends, so that the last piece ends at the given value exactly
             between(start, start + unit, self.origin),
             between(before, after, self.value),
             tuple(c * rise for c in self.powers),
@@ -69,7 +71,7 @@ class Piece:
         )
 
     def row(self, degree: int) -> Row:
-        """Its numbers, with powers up to a degree."""
+        """The numbers of this formula as a row of a table, its powers filled up with zeros to a degree."""
         missing = (0.0,) * (degree - len(self.powers))
         numbers = (self.origin, self.unit, self.wave, self.cycloid, self.square)
         return (*numbers, self.value, *self.powers, *missing)
@@ -104,6 +106,7 @@ class Pieces:
     def _formula(self, row: Row, m: Any, t: Number) -> Number:
         origin, unit, wave, cycloid, square, *powers = row
         x = (t - origin) / unit
+        # with x times zero the number has the shape and the order of t
         value = x * 0.0 + powers.pop()
         while powers:
             value = value * x + powers.pop()
@@ -130,6 +133,7 @@ def row_at(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:
     Rows are one more than breaks. At a break the right one is taken, at the last break the left one.
     """
     if isinstance(t, float | int) or not hasattr(t, "__array_namespace__"):
+        # bisect_right takes the right piece at a break; at the last break the left one is meant
         place = bisect_right(breaks, t) - (1 if t == breaks[-1] else 0)
         return rows[place]
     # The array says itself which library it belongs to: this room imports none.
@@ -150,6 +154,7 @@ class RiseCurve:
     whole: Pieces = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        # beyond both ends the formulas there go on: jets at the very ends need a neighbourhood
         pieces = (self.pieces[0], *self.pieces, self.pieces[-1])
         object.__setattr__(self, "whole", Pieces.of(self.breaks, pieces))
 
@@ -159,6 +164,7 @@ class RiseCurve:
 
 
 def _symmetric(*half: tuple[float, Piece]) -> RiseCurve:
+    # given to the middle; the other half mirrors it, so both meet there exactly
     """The curve with s(u) + s(1 - u) = 1 from the pieces of its first half, each with its end."""
     ends = [end for end, _piece in half]
     pieces = [piece for _end, piece in half]

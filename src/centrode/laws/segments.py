@@ -44,6 +44,7 @@ def polynomial(conditions: Sequence[Condition]) -> list[tuple[float, Piece]]:
     whole multiples, so that whole numbers do. Confluent divided differences: J. Stoer, R. Bulirsch,
     Introduction to Numerical Analysis, 2002, section 2.1.5.
     """
+    # denominators of floats are powers of two: the greatest of them serves all
     ticks = max(time.as_integer_ratio()[1] for time, _given in conditions)
     nodes = [int(Fraction(time) * ticks) for time, _given in conditions]
     series = [_series(given, ticks) for _time, given in conditions]
@@ -52,6 +53,7 @@ def polynomial(conditions: Sequence[Condition]) -> list[tuple[float, Piece]]:
     unit = conditions[-1][0] - conditions[0][0]
     found = []
     for end, node, (time, _given) in zip(ends, nodes, conditions, strict=True):
+        # whole numbers up to here: each coefficient is rounded once
         rounded = _coefficients_in_units(_about(powers, node), int(Fraction(unit) * ticks), divisor)
         found.append((end, Piece(time, rounded[0], tuple(rounded[1:]), unit=unit)))
     return found
@@ -68,6 +70,7 @@ def _powers(nodes: list[int], series: list[list[Fraction]]) -> tuple[list[int], 
     newton = _differences(nodes, series)
     divisor = math.lcm(*(coefficient.denominator for coefficient in newton))
     powers: list[int] = []
+    # Newton's form multiplied out from the last factor on: powers * (x - node) + coefficient
     for coefficient, node in zip(reversed(newton), reversed(repeated), strict=True):
         powers = [b - node * a for a, b in zip([*powers, 0], [0, *powers], strict=True)]
         powers[0] += int(coefficient * divisor)
@@ -82,6 +85,7 @@ def _differences(nodes: list[int], series: list[list[Fraction]]) -> list[Fractio
     for width in range(1, len(repeated)):
         ends = list(zip(repeated, repeated[width:], strict=False))
         column = [
+            # where a node is repeated the divided difference is the Taylor coefficient
             taylor[width] if left == right else (after - before) / (right - left)
             for ((left, taylor), (right, _taylor)), (before, after) in zip(
                 ends, pairwise(column), strict=True
@@ -94,6 +98,7 @@ def _differences(nodes: list[int], series: list[list[Fraction]]) -> list[Fractio
 def _about(powers: list[int], node: int) -> list[int]:
     """The polynomial in powers of the distance from a node, by repeated division."""
     shifted = list(powers)
+    # Horner's scheme again and again: the remainders are the coefficients about the node
     for k in range(len(shifted)):
         for i in reversed(range(k, len(shifted) - 1)):
             shifted[i] += node * shifted[i + 1]
@@ -127,7 +132,7 @@ def b_spline(conditions: Sequence[Condition], degree: int) -> list[tuple[float, 
     Returns
     -------
     Polynomials, each with the time up to which it holds. That of the last stretch is given about its beginning
-    and about its end, so that what is asked for at the ends holds there exactly.
+    and about its end, so that the conditions at the ends hold there exactly.
 
     Raises
     ------
@@ -146,6 +151,7 @@ def b_spline(conditions: Sequence[Condition], degree: int) -> list[tuple[float, 
     unit = last - first
     rates = [[rate * unit**k for k, rate in enumerate(given)] for _time, given in conditions]
     places = [(time - first) / unit for time, _given in conditions]
+    # with few conditions the polynomial through them is the spline of the greatest degree they determine
     degree = min(degree, sum(map(len, rates)) - 1)
     knots = _knots(places, rates, degree)
     coefficients = _coefficients(places, rates, knots, degree)
@@ -154,20 +160,24 @@ def b_spline(conditions: Sequence[Condition], degree: int) -> list[tuple[float, 
         raise InputError("", what, _("give smaller rates, or a shorter time"))
     found = []
     for place, end, taylor in _stretches(knots, coefficients, degree):
+        # what is given at the ends is put in as it is: sums of basis functions would round it
         given = {0.0: rates[0], 1.0: rates[-1]}.get(place, [])
         taylor[: len(given)] = [rate / math.factorial(k) for k, rate in enumerate(given)][: degree + 1]
         origin = last if place == 1.0 else first + place * unit
         found.append((first + end * unit, Piece(origin, taylor[0], tuple(taylor[1:]), unit=unit)))
+    # the last stretch holds up to its end: the two polynomials about its ends are one
     return [*found[:-1], (last, found[-1][1])]
 
 
 def _knots(places: Numbers, rates: list[Numbers], degree: int) -> Numbers:
     """All knots from 0 to 1, those at the ends degree + 1 times."""
+    # as many conditions at the ends as the ends of such a spline need: then knots lie at the inner times
     needed = (degree + 1) / 2
     inner = places[1:-1]
     if not len(rates[0]) == len(rates[-1]) == needed:
         repeated = [place for place, given in zip(places, rates, strict=True) for _rate in given]
         count = len(repeated) - degree - 1
+        # else at means of neighbouring times, which keeps the system regular (Schoenberg and Whitney)
         inner = [math.fsum(repeated[k : k + degree]) / degree for k in range(1, count + 1)]
     return [0.0] * (degree + 1) + inner + [1.0] * (degree + 1)
 
@@ -175,6 +185,7 @@ def _knots(places: Numbers, rates: list[Numbers], degree: int) -> Numbers:
 def _coefficients(places: Numbers, rates: list[Numbers], knots: Numbers, degree: int) -> Numbers:
     left = _at_end(rates[0], knots, degree)
     mirrored = [1.0 - knot for knot in reversed(knots)]
+    # seen from the other end odd derivatives change their sign
     flipped = [-rate if k % 2 else rate for k, rate in enumerate(rates[-1])]
     right = _at_end(flipped, mirrored, degree)[::-1]
     inner = [given[0] for given in rates[1:-1]]
@@ -185,6 +196,7 @@ def _coefficients(places: Numbers, rates: list[Numbers], knots: Numbers, degree:
         span = bisect_right(knots, place) - 1
         start = span - degree
         basis = _basis(knots, span, degree, place)
+        # what the known coefficients at both ends give is taken to the right side
         side = value - math.fsum(b * known[start + k] for k, b in enumerate(basis))
         width = {start + k - len(left): b for k, b in enumerate(basis)}
         rows.append({k: b for k, b in width.items() if 0 <= k < len(inner)})
@@ -217,9 +229,11 @@ def _at_end(rates: Numbers, knots: Numbers, degree: int) -> Numbers:
 def _solve_banded(rows: list[dict[int, float]], sides: Numbers) -> Numbers:
     """The solution of a banded system by elimination without pivoting."""
     count = len(rows)
+    # B-splines are positive where they are not zero, and their collocation matrices need no pivoting
     for k in range(count):
         for below in range(k + 1, count):
             if k not in rows[below]:
+                # below the band there is nothing
                 break
             share = rows[below].pop(k) / rows[k][k]
             for column, number in rows[k].items():
@@ -240,6 +254,7 @@ def _basis(knots: Numbers, span: int, degree: int, place: float) -> Numbers:
         raised = [0.0] * (order + 1)
         for k, value in enumerate(values):
             low, high = knots[span + 1 + k - order], knots[span + 1 + k]
+            # the share of the stretch that the two lower splines have
             share = (place - low) / (high - low)
             raised[k] += (1.0 - share) * value
             raised[k + 1] += share * value
@@ -253,6 +268,7 @@ def _stretches(knots: Numbers, coefficients: Numbers, degree: int) -> list[tuple
     derived = [coefficients]
     for order in range(1, degree + 1):
         above, width = derived[-1], degree + 1 - order
+        # knots differ by one less from derivative to derivative
         steps = [knots[order + k + width] - knots[order + k] for k in range(len(above) - 1)]
         derived.append([width * (b - a) / step for (a, b), step in zip(pairwise(above), steps, strict=True)])
     found = []
@@ -260,6 +276,7 @@ def _stretches(knots: Numbers, coefficients: Numbers, degree: int) -> list[tuple
         span = degree + number
         middle = low + (high - low) / 2
         last = number == len(edges) - 2
+        # the last stretch twice: about its beginning for its first half, and about its end
         parts = [(low, middle), (high, high)] if last else [(low, high)]
         for origin, end in parts:
             taylor = []
@@ -350,7 +367,7 @@ class LawSegment:
         return INNER_JUMPS.get(self.curve)
 
     def pieces(self, start: float, before: float) -> list[tuple[float, Piece]]:
-        """Its formulas, each with the time [s] at which it ends, from a time and a value of the law."""
+        """Formulas of the segment, each with the time [s] of its end; `before` is the law's value at `start` [s]."""
         if self.curve in THROUGH_POINTS:
             asked = self._conditions(before)
             found = polynomial(asked) if self.curve == POLYNOMIAL else b_spline(asked, self.degree)
@@ -362,7 +379,7 @@ class LawSegment:
         return list(zip(ends, placed, strict=True))
 
     def _conditions(self, before: float) -> list[Condition]:
-        """What is asked of the polynomial or the B-spline, at times from the segment's start."""
+        """Derivatives that are requested of the polynomial or the B-spline, at times from the segment's start."""
         way: list[Condition] = [(time, (value,)) for time, value in self.through]
         return [(0.0, (before, *self.at_start)), *way, (self.time, (self.to or 0.0, *self.at_end))]
 
@@ -401,6 +418,8 @@ class SegmentedLaw:
             value = value if segment.to is None else segment.to
             ends.append(breaks[-1])
         # A turn may lack a rounding error of the period: the formulas at its ends then go on.
+        # a law that repeats has its own formulas before 0 and behind the end: a place may lie there by
+        # rounding
         before, after = (pieces[0], pieces[-1]) if self.repeat else (Piece(0.0, 0.0), Piece(0.0, value))
         object.__setattr__(self, "whole", Pieces.of(breaks, (before, *pieces, after)))
         object.__setattr__(self, "ends", tuple(ends))
@@ -431,5 +450,6 @@ class SegmentedLaw:
         """s(t) [rad or m] over the algebra of `m`; the segment is chosen by the plain value of t."""
         if not self.repeat:
             return self.whole.jet(m, t)
+        # whole turns are taken off the time and their gains added, so that formulas stay within a period
         turn = plain(t) // self.period
         return self.whole.jet(m, t - turn * self.period) + turn * self.gain

@@ -45,6 +45,8 @@ class Arrays:
         """Angle of the vector (x, y); of a complex one that of its real part and a complex rest near zero."""
         if not (np.iscomplexobj(y) or np.iscomplexobj(x)):
             return np.arctan2(y, x)
+        # arctan2 takes no complex numbers; turned back by the angle of the real part, the rest has a small
+        # quotient, and arctan continues it analytically
         angle = np.arctan2(np.real(y), np.real(x))
         cosine, sine = np.cos(angle), np.sin(angle)
         return angle + np.arctan((y * cosine - x * sine) / (x * cosine + y * sine))

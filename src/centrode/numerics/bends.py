@@ -105,6 +105,8 @@ class Bent(Jet):
         if isinstance(other, Bent):
             return self._with(Jet.__add__(self, other).coefficients, plus(self.bend, other.bend))
         if isinstance(other, Jet):
+            # a plain jet says nothing of its second derivative, so neither does the result: it is a plain jet
+            # too
             return Jet.__add__(self, other)
         return (
             self
@@ -136,9 +138,11 @@ class Bent(Jet):
     def __mul__(self, other: Number) -> Jet:
         if isinstance(other, Bent):
             product = jets.product(self.coefficients, other.coefficients)
+            # (x x)'' = 2 (x x'' + x'^2): fewer operations than the product of two, and the same bound
             if other is self:
                 fastest = self.fastest
                 return self._with(product, 2.0 * plus(times(self.most, self.bend), fastest * fastest))
+            # (a b)'' = a b'' + 2 a' b' + a'' b, each factor at its greatest in the cell
             carried = plus(times(self.most, other.bend), times(other.most, self.bend))
             return self._with(product, plus(carried, times(2.0 * self.fastest, other.fastest)))
         if isinstance(other, Jet):
@@ -173,6 +177,9 @@ def _divide_bends(a: Bent, b: Bent) -> Bent:
     """Quotient q: q'' = (a'' - 2 q' b' - q b'') / b, where |q'| and |q| grow with the bound of q'' itself."""
     cells = a.cells
     value, slope = jets.quotient(a.coefficients, b.coefficients)
+    # |q| and |q'| at the edge of the cell are those of the centre, grown by Q h^2/2 and Q h with the bound Q
+    # = |q''| sought. So Q |b| <= known + Q (2 |b'| h + |b''| h^2/2), and what multiplies Q goes to the left
+    # side
     steep = 2.0 * b.fastest
     near = plus(cells.size(value), cells.size(slope) * cells.half)
     known = plus(plus(a.bend, cells.size(slope) * steep), times(near, b.bend))
@@ -188,6 +195,8 @@ def least_bound(known: Number, linear: Number, squared: Number, m: Namespace) ->
         return known / (root * root)
     root = m.sqrt(linear)
     linear = root * root
+    # the lesser root of the quadratic, in the form that subtracts nothing and stands also for a small
+    # `squared`
     return 2.0 * known / (linear + m.sqrt(linear * linear - 4.0 * squared * known))
 
 
@@ -207,6 +216,7 @@ class BendFunctions:
         if not isinstance(x, Bent):
             return self.jets.sqrt(x)
         root = jets.square_root(x.coefficients, self.base.sqrt(x.coefficients[0]))
+        # the square root of what is not positive is NaN: a cell in which x may be zero has no bound
         least = self.base.sqrt(x.least)
         speed = 0.5 * x.fastest / least
         return x._with(root, plus(0.5 * x.bend if not is_zero(x.bend) else 0.0, speed * speed) / least)
@@ -226,6 +236,7 @@ class BendFunctions:
         return jets.sine_and_cosine(x.coefficients, self.base.sin(value), self.base.cos(value))
 
     def _of_wave(self, x: Bent) -> Number:
+        # (sin x)'' = x'' cos x - x'^2 sin x, with sine and cosine at most 1
         fastest = x.fastest
         return plus(fastest * fastest, x.bend)
 
@@ -237,9 +248,11 @@ class BendFunctions:
         y, x = (c if isinstance(c, Bent) else Bent(c, 0.0, 0.0, cells) for c in (y, x))
         flat = self.jets.atan2(Jet(y.coefficients), Jet(x.coefficients))
         length = self.base.sqrt(x.coefficients[0] * x.coefficients[0] + y.coefficients[0] * y.coefficients[0])
+        # sizes of a vector are bounded by the sum of those of its two components: no root has to be taken
         strays, speed, bend = (
             plus(a, b) for a, b in ((x.strays, y.strays), (x.fastest, y.fastest), (x.bend, y.bend))
         )
+        # NaN where the vector may vanish in the cell: its angle has no bound there
         root = self.base.sqrt(length - strays)
         least = root * root
         return Bent(

@@ -17,13 +17,13 @@ Run: TypeAlias = Callable[..., Scanned]
 Take: TypeAlias = Callable[[npt.ArrayLike | None, Array], Array]
 AUTO, ARRAYS, MACHINE_CODE = "auto", "arrays", "machine code"
 
-# llvmlite is heavy and may be missing: it is imported when the first kernel is asked for
+# llvmlite is heavy and may be missing: it is imported when the first kernel is requested
 _kernels = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
 _streaming = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
 
 
 def choose_executor(executor: str) -> str:
-    """The executor that is used where `executor` is asked for: "auto" takes machine code if it can."""
+    """The executor that is used where `executor` is requested: "auto" takes machine code if it can."""
     if executor not in (AUTO, ARRAYS, MACHINE_CODE):
         raise ValueError(f"no such executor: {executor}")
     if executor == AUTO:
@@ -46,7 +46,7 @@ def runner(
     Raises
     ------
     ImportError
-        Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
+        Machine code is requested, and llvmlite (the extra `fast`) is not installed.
     """
     if choose_executor(executor) == ARRAYS:
         return functools.partial(run_on_arrays, scan, number=number)
@@ -62,9 +62,9 @@ def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, thread
     Raises
     ------
     ImportError
-        Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
+        Machine code is requested, and llvmlite (the extra `fast`) is not installed.
     """
-    lanes = np.array(parameters, np.float64)  # of its own: what is handed over once may change afterwards
+    lanes = np.array(parameters, np.float64)  # a copy: the caller may change its own array afterwards
     if choose_executor(executor) == ARRAYS:
 
         def take(inputs: npt.ArrayLike | None, out: Array) -> Array:

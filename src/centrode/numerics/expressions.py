@@ -28,8 +28,10 @@ def ieee_quotient(a: float, b: float) -> float:
     """Quotient by IEEE 754: infinite by zero, NaN for 0/0."""
     if b != 0.0:
         return a / b
+    # only NaN differs from itself; of zero by zero and of NaN by zero there is no value
     if a == 0.0 or a != a or b != b:
         return NAN
+    # copysign sees the sign of a zero, which a comparison does not: 1 / -0 is -infinity
     return math.copysign(math.inf, a) * math.copysign(1.0, b)
 
 
@@ -40,6 +42,7 @@ def square_root(x: float) -> float:
 
 def minimum(a: float, b: float) -> float:
     """The lesser of two numbers; NaN if one of them is."""
+    # comparisons with NaN are false: a NaN in b comes out by itself, one in a has to be looked for
     return a if a < b or a != a else b
 
 
@@ -50,6 +53,7 @@ def maximum(a: float, b: float) -> float:
 
 def least(a: float, b: float) -> float:
     """The lesser of two numbers; the other one if one is NaN."""
+    # as in `minimum`, but here a NaN in b has to be looked for, and a NaN in a loses by itself
     return a if a < b or b != b else b
 
 
@@ -163,6 +167,8 @@ class Node:
 
 Operand: TypeAlias = Node | float
 
+# weak: an expression is forgotten with the last formula that holds it. Locked: nodes are compared by
+# identity, so two threads that build the same expression have to get the same node
 _known: weakref.WeakValueDictionary[bytes, Node] = weakref.WeakValueDictionary()
 _one_at_a_time = threading.Lock()
 
@@ -211,8 +217,11 @@ def _node(operation: str, arguments: tuple[Node, ...], detail: str | float) -> N
 
 def _key(operation: str, arguments: tuple[Node, ...], detail: str | float) -> bytes:
     keys = [x.key for x in arguments]
+    # a + b and b + a have the same bits, so they may be one node; products too
     if operation in OPERATIONS and OPERATIONS[operation].commutes:
         keys.sort()
+    # bits of a fixed byte order, not the value: 0 and -0 are two constants, and other machines get the same
+    # key
     own = detail.encode() if isinstance(detail, str) else struct.pack("<d", detail)
     return hashlib.blake2b(b"\0".join([operation.encode(), own]) + b"".join(keys), digest_size=16).digest()
 
@@ -231,6 +240,8 @@ def _check_kinds(operation: str, nodes: tuple[Node, ...]) -> None:
 
 def _rewritten(operation: str, nodes: tuple[Node, ...]) -> Node | None:
     """A simpler node of the same value to the last bit, if a rule gives one."""
+    # only what IEEE 754 rounds correctly: sin(2) stays an operation, or its bits would be those of the
+    # library at hand
     if operation in FOLDED and all(x.operation == CONSTANT for x in nodes):
         return constant(FOLDED[operation](*(x.detail for x in nodes)))
     rule = _RULES.get(operation)
@@ -244,12 +255,15 @@ def _opposite_of(x: Node) -> Node | None:
 
 
 def _is(x: Node, value: float) -> bool:
+    # bits again: rules for 0 do not hold for -0
     return x.operation == CONSTANT and struct.pack("<d", x.detail) == struct.pack("<d", value)
 
 
 def _add(a: Node, b: Node) -> Node | None:
+    # -0 + x is x whatever x is; 0 + x is not, as 0 + (-0) is 0
     if _is(a, -0.0) or _is(b, -0.0):
         return b if _is(a, -0.0) else a
+    # IEEE 754 defines a - b as a + (-b), so these keep every bit
     if (y := _opposite_of(b)) is not None:
         return apply_operation("subtract", a, y)
     if (x := _opposite_of(a)) is not None:
@@ -258,10 +272,13 @@ def _add(a: Node, b: Node) -> Node | None:
 
 
 def _subtract(a: Node, b: Node) -> Node | None:
+    # x - 0 is x also for x = -0; x - (-0) is not, and stays
     if _is(b, 0.0):
         return a
+    # -0 - b is -b for both zeros; 0 - b is not, as 0 - 0 is 0
     if _is(a, -0.0):
         return apply_operation("negate", b)
+    # doubling is exact, so this rounds once, as -b - b does
     if _opposite_of(a) is b:
         return apply_operation("multiply", -2.0, b)
     y = _opposite_of(b)
@@ -274,6 +291,7 @@ def _multiply(a: Node, b: Node) -> Node | None:
             return other
         if _is(factor, -1.0):
             return apply_operation("negate", other)
+        # signs go outside, so that products which differ by a sign alone share the node of the product
         if (x := _opposite_of(factor)) is not None:
             return apply_operation("negate", apply_operation("multiply", x, other))
     return None
@@ -284,6 +302,7 @@ def _divide(a: Node, b: Node) -> Node | None:
         return apply_operation("negate", apply_operation("divide", x, b))
     if (y := _opposite_of(b)) is not None:
         return apply_operation("negate", apply_operation("divide", a, y))
+    # both are rounded once from the same exact value if the reciprocal is exact
     if b.operation == CONSTANT:
         reciprocal = exact_reciprocal(float(b.detail))
         return None if reciprocal is None else apply_operation("multiply", a, reciprocal)

@@ -62,6 +62,8 @@ class Graph:
 def topological_order(roots: Iterable[Node]) -> list[Node]:
     """The nodes that roots consist of, arguments first; without recursion, so that depth does not matter."""
     found: dict[Node, None] = {}
+    # a stack gives back the last first: reversed, nodes come in the order of a recursion from the first
+    # output on
     stack = [(node, False) for node in reversed(list(roots))]
     while stack:
         node, arguments_done = stack.pop()
@@ -80,7 +82,7 @@ def rebuilt(
 ) -> dict[str, Node]:
     """Outputs with some nodes replaced, and everything above these built anew.
 
-    `replace_letters(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
+    `replaced(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None to keep it.
     """
     new: dict[Node, Node] = {}
     for node in topological_order(outputs.values()):
@@ -89,6 +91,7 @@ def rebuilt(
         if other is not None:
             new[node] = as_node(other)
         elif arguments != node.arguments:
+            # rules are applied again: with other arguments a simpler expression may have the same bits
             new[node] = apply_operation(node.operation, *arguments)
         else:
             new[node] = node
@@ -109,6 +112,7 @@ def split_graph(
         if node.operation == VARIABLE:
             if node.detail in wanted:
                 alone.add(node)
+        # functions of constants alone (sin 2 is not folded) count among them: they are the same everywhere
         elif node.arguments and all(x in alone or x.operation == CONSTANT for x in node.arguments):
             alone.add(node)
     if only is None:
@@ -116,9 +120,11 @@ def split_graph(
         tops |= {node: None for node in graph.outputs.values() if node in alone}
     else:
         tops = {node: None for node in graph.order if node in alone and node.operation in only}
+    # parts are handed over as numbers in rows, and a condition is none
     parts = {f"{prefix} {i}": x for i, x in enumerate(x for x in tops if x.arguments and not x.is_condition)}
     places = {node: variable(name) for name, node in parts.items()}
     rest = Graph(rebuilt(graph.outputs, lambda node, _arguments: places.get(node)))
+    # where only some operations are taken out, one part may lie inside another that has been taken out too
     return Graph({name: node for name, node in parts.items() if name in rest.variables}), rest
 
 
@@ -140,6 +146,7 @@ def gradient(output: Node, variables: Sequence[Node]) -> list[Operand]:
     needed = _dependent_nodes(order, variables)
     guarded = _nodes_below_selections(order)
     by: dict[Node, Operand] = {output: 1.0}
+    # backwards, a node comes after all that is computed from it: its derivative is whole when it is handed on
     for node in reversed(order):
         if node not in by or node not in needed or not node.arguments or node.is_condition:
             continue
@@ -176,12 +183,15 @@ def _collect(by: dict[Node, Operand], node: Node, part: Operand) -> None:
 def _chain_rule_product(node: Node, outer: Operand, factor: Operand, guarded: bool) -> Operand:
     """Product by the chain rule; a condition as the factor selects instead."""
     if isinstance(factor, Node) and factor.is_condition:
+        # a condition stands for 1 or 0: selecting takes in NaN beside it, a product would not
         return m.where(factor, outer, 0.0)
+    # nothing is multiplied by the 1 with which the output begins
     if isinstance(outer, float) and outer == 1.0:
         return factor
     product = outer * factor
     if not guarded or not isinstance(factor, Node) or not isinstance(outer, Node):
         return product
+    # what is not selected has the outer derivative 0, and its own may be infinite: 0 times that is NaN
     return m.where(m.equal(outer, 0.0), 0.0, product)
 
 
@@ -191,6 +201,7 @@ def _root(node: Node, x: Node) -> tuple[Operand, ...]:
 
 def _quotient(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
     reciprocal = 1.0 / b
+    # -a / b^2 from the quotient itself: no second division
     return reciprocal, -(node * reciprocal)
 
 
@@ -204,6 +215,7 @@ def _power(node: Node, x: Node, exponent: Node) -> tuple[Operand, ...]:
 
 
 def _least(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    # NaN loses here: the first argument counts also where the second is NaN
     first = m.either(m.less(a, b), m.not_equal(b, b))
     return first, m.opposite(first)
 
@@ -214,6 +226,7 @@ def _greatest(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
 
 
 def _lesser(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    # NaN wins here: the first argument counts also where it is NaN itself
     first = m.either(m.less(a, b), m.not_equal(a, a))
     return first, m.opposite(first)
 
@@ -304,5 +317,6 @@ def _in_brackets(text: Text, strength: int) -> str:
 
 
 def _number(x: float) -> Text:
+    # repr of a whole number would lose the sign of -0; a leading minus binds as a sign before a product does
     text = repr(int(x)) if x.is_integer() and abs(x) < 1e6 and (x or math.copysign(1, x) > 0) else repr(x)
     return text, 9 if text[0].isdigit() else 7

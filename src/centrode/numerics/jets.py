@@ -22,6 +22,7 @@ class Jet:
     """
 
     __slots__ = ("coefficients",)
+    # arrays leave operators to the jet, else they would make an array of jets
     __array_priority__ = 1000
     __array_ufunc__ = None
 
@@ -45,6 +46,7 @@ class Jet:
 
     def derivative(self, order: int) -> Number:
         """The derivative of the given order; order 0 is the value."""
+        # a product with 0! or 1! would be a pass over an array for nothing
         return self.coefficients[order] * factorial(order) if order > 1 else self.coefficients[order]
 
     def slope(self) -> Jet:
@@ -52,7 +54,7 @@ class Jet:
         return Jet([k * c for k, c in enumerate(self.coefficients)][1:])
 
     def lower_order(self) -> Jet:
-        """The same jet one order lower, to meet a slope."""
+        """Jet without its highest coefficient, of the order that `slope` has."""
         return Jet(self.coefficients[:-1])
 
     def __repr__(self) -> str:
@@ -84,6 +86,7 @@ class Jet:
     def __mul__(self, other: Operand) -> Jet:
         if isinstance(other, Jet):
             return Jet(product(self.coefficients, other.coefficients))
+        # a literal zero stays one, so that what is computed from it is skipped too
         return Jet([a if _is_zero(a) else a * other for a in self.coefficients])
 
     __rmul__ = __mul__
@@ -94,13 +97,17 @@ class Jet:
         return Jet([a / other for a in self.coefficients])
 
     def __rtruediv__(self, other: Number) -> Jet:
+        # a number over a series: the number is a series whose derivatives are literal zeros
         return Jet(quotient((other, *([0.0] * self.order)), self.coefficients))
 
     def __pow__(self, exponent: float) -> Jet:
         if exponent == int(exponent) and exponent >= 0:
+            # products alone, so that a base below zero has a power and any algebra will do; `power` divides
+            # by the base
             result: Operand = 1.0
             for _ in range(int(exponent)):
                 result = self * result
+            # the zeroth power is a constant, but of the same order as what it meets
             return result if isinstance(result, Jet) else self * 0.0 + 1.0
         return Jet(power(self.coefficients, exponent))
 
@@ -139,6 +146,8 @@ def quotient(a: Coefficients, b: Coefficients) -> list[Number]:
     """Coefficients of the quotient of two series."""
     if len(a) == 1:
         return [a[0] / b[0]]
+    # the value is divided, so that it has the bits of the plain formula; derivatives share one reciprocal, as
+    # a division costs several products
     inverse = 1.0 / b[0]
     # by a power of two the product has the quotient's bits
     result: list[Number] = [a[0] * inverse if _is_power_of_two(a[0]) else a[0] / b[0]]
@@ -154,6 +163,7 @@ def quotient(a: Coefficients, b: Coefficients) -> list[Number]:
 def square_root(a: Coefficients, root: Number) -> list[Number]:
     """Coefficients of the square root, given that of the value."""
     result: list[Number] = [root]
+    # s s = a gives 2 s_0 s_k = a_k - sum of s_i s_(k-i) over 0 < i < k, so one division serves all orders
     half = 0.5 / root
     for k in range(1, len(a)):
         total = a[k]
@@ -165,6 +175,7 @@ def square_root(a: Coefficients, root: Number) -> list[Number]:
 
 def power(a: Coefficients, exponent: float) -> list[Number]:
     """Coefficients of a real power."""
+    # with p = a^e, from a p' = e a' p, coefficient by coefficient
     result: list[Number] = [a[0] ** exponent]
     for k in range(1, len(a)):
         total: Number = 0.0
@@ -177,6 +188,7 @@ def power(a: Coefficients, exponent: float) -> list[Number]:
 def exponential(a: Coefficients, value: Number) -> list[Number]:
     """Coefficients of the exponential, given that of the value."""
     result: list[Number] = [value]
+    # from p' = a' p
     for k in range(1, len(a)):
         total: Number = 0.0
         for j in range(1, k + 1):
@@ -188,6 +200,7 @@ def exponential(a: Coefficients, value: Number) -> list[Number]:
 def sine_and_cosine(a: Coefficients, sine: Number, cosine: Number) -> tuple[list[Number], list[Number]]:
     """Coefficients of sine and cosine, given those of the value."""
     sines, cosines = [sine], [cosine]
+    # from s' = a' c and c' = -a' s
     for k in range(1, len(a)):
         s: Number = 0.0
         c: Number = 0.0
@@ -273,6 +286,8 @@ class JetFunctions:
         value = self.base.atan2(y.value, x.value)
         if not x.order:
             return Jet((value,))
+        # the angle's derivative is a quotient of series, so no arc tangent of a series is needed; it is
+        # integrated term by term
         turning = x.lower_order() * y.slope() - y.lower_order() * x.slope()
         return integral((turning / (x * x + y * y).lower_order()).coefficients, value)
 
@@ -283,6 +298,8 @@ class JetFunctions:
         return self.base.sign(x.value if isinstance(x, Jet) else x)
 
     def min(self, x: Number, y: Number) -> Number:
+        # by abs, so that the sides' derivatives follow from the sign; where x = y, with sign 0, it is their
+        # mean
         return 0.5 * (x + y - self.abs(x - y))
 
     def max(self, x: Number, y: Number) -> Number:

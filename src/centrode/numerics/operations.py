@@ -76,6 +76,7 @@ FUNCTIONS = ONE_ARGUMENT | TWO_ARGUMENTS
 # What follows from sin, cos, sqrt and atan2 where an algebra has no function of its own.
 DERIVED: dict[str, Callable[[Any, Number], Number]] = {
     "tan": lambda m, x: m.sin(x) / m.cos(x),
+    # both factors near 1 are exact to rounding where 1 - x * x would have lost half of the digits
     "asin": lambda m, x: m.atan2(x, m.sqrt((1.0 - x) * (1.0 + x))),
     "acos": lambda m, x: m.atan2(m.sqrt((1.0 - x) * (1.0 + x)), x),
     "atan": lambda m, x: m.atan2(x, 1.0),

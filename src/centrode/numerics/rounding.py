@@ -38,6 +38,8 @@ class Rounded:
     def __add__(self, other: Number) -> Rounded:
         b = Rounded.of(other)
         value = self.value + b.value
+        # what both carry along, and the rounding of this sum: at most half a unit of the last place of its
+        # value
         return Rounded(value, self.bound + b.bound + UNIT_ROUNDOFF * np.abs(value))
 
     __radd__ = __add__
@@ -54,6 +56,7 @@ class Rounded:
     def __mul__(self, other: Number) -> Rounded:
         b = Rounded.of(other)
         value = self.value * b.value
+        # the product of both bounds is of second order and left to `SAFETY`
         carried = np.abs(self.value) * b.bound + np.abs(b.value) * self.bound
         return Rounded(value, carried + UNIT_ROUNDOFF * np.abs(value))
 
@@ -74,6 +77,7 @@ class RoundedFunctions:
 
     def sin(self, x: Number) -> Rounded:
         x = Rounded.of(x)
+        # a root, a sine or a cosine is known to half a unit of the last place of 1 at the worst
         return Rounded(np.sin(x.value), np.abs(np.cos(x.value)) * x.bound + UNIT_ROUNDOFF)
 
     def cos(self, x: Number) -> Rounded:
@@ -90,6 +94,7 @@ class RoundedFunctions:
 
     def min(self, x: Number, y: Number) -> Rounded:
         x, y = Rounded.of(x), Rounded.of(y)
+        # the lesser of two numbers moves no further than the one that moves more
         return Rounded(np.minimum(x.value, y.value), np.maximum(x.bound, y.bound))
 
     def max(self, x: Number, y: Number) -> Rounded:
@@ -112,12 +117,14 @@ class RoundedFunctions:
         # near zero the slope says nothing: there the root of the bound itself bounds the error
         near = np.sqrt(np.abs(x.value) + 2.0 * x.bound)
         with np.errstate(divide="ignore", invalid="ignore"):
+            # from four bounds on, the slope is right within the same share anywhere between value and truth
             bound = np.where(x.value > 4.0 * x.bound, x.bound / (2.0 * value), near)
         return Rounded(value, bound + UNIT_ROUNDOFF * value)
 
     def atan2(self, y: Number, x: Number) -> Rounded:
         y, x = Rounded.of(y), Rounded.of(x)
         value = np.arctan2(y.value, x.value)
+        # the differential (x dy - y dx) / (x^2 + y^2), of sizes
         carried = (np.abs(x.value) * y.bound + np.abs(y.value) * x.bound) / (
             x.value * x.value + y.value * y.value
         )

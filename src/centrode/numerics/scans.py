@@ -139,6 +139,8 @@ def call_of(
 def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:
     """A buffer for outputs that is used again, (outputs, steps, lanes): rows begin where lines of the cache do."""
     size = np.dtype(number).itemsize
+    # rows are filled up to whole lines, and one line more is taken to shift the first row onto a line's
+    # beginning
     row = -(-lanes * size // LINE) * LINE
     whole = np.empty(outputs * steps * row + LINE, np.uint8)
     first = -whole.ctypes.data % LINE
@@ -201,6 +203,7 @@ class Reduction(NamedTuple):
 
 def greatest(name: str, value: Node) -> Reduction:
     """The greatest value of all steps; NaN if there is none."""
+    # NaN loses against any number, so a NaN to start with is left only where there was no number at all
     return Reduction({name: as_node(m.greatest(value, variable(name)))}, {name: math.nan})
 
 
@@ -232,7 +235,10 @@ def total_with_gradient(name: str, value: Node, by: Sequence[Node], moving: Coll
     standing = {**parts.outputs, **own}
     slopes = Graph.of(
         dict(zip(standing, gradient(rest.outputs[""], [variable(x) for x in standing]), strict=True))
+        # first by the parts that stand while the steps go on, as if they were variables: these derivatives are
+        # added up
     )
+    # then the parts are put back in, so that the scan needs no further parameters
     carried = slopes.substitute(parts.outputs).outputs
     labels = {x: f"{name} through {x}" for x in standing}
     state = {name: _more(name, value, value)}
@@ -249,6 +255,7 @@ def total_with_gradient(name: str, value: Node, by: Sequence[Node], moving: Coll
 def greatest_with_gradient(name: str, value: Node, by: Sequence[Node]) -> Reduction:
     """The greatest value and its derivatives there; of equals the first one counts."""
     so_far = variable(name)
+    # NaN stands before the first value: nothing is greater than it, so that is looked for by itself
     better = m.either(m.less(so_far, value), m.opposite(m.is_number(so_far)))
     state = {name: m.where(better, value, so_far)}
     for x, part in zip(by, gradient(value, by), strict=True):
@@ -270,6 +277,7 @@ def end_of(reduction: Reduction, parameters: Sequence[str]) -> Scan:
 
 
 def _more(name: str, value: Node, part: Operand) -> Node:
+    # a gap adds nothing, and does not make the whole sum a gap
     so_far = variable(name)
     return m.where(m.is_number(value), so_far + part, so_far)
 
@@ -313,6 +321,7 @@ def evaluate(
     graph: Graph, values: Mapping[str, Number], number: npt.DTypeLike = np.float64
 ) -> dict[str, Number]:
     """Outputs of a graph at values of its variables; arrays broadcast, NaN and infinity pass without a warning."""
+    # how many nodes still wait for each result; an output waits until the end
     left = Counter(x for node in graph.order for x in node.arguments)
     left.update(graph.outputs.values())
     found: dict[Any, Number] = {}
@@ -358,6 +367,7 @@ def run_on_arrays(
 
 def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> None:
     """Steps that do not hang on each other, as many at a time as the cache holds."""
+    # as many steps as fill `CHUNK` numbers: one step of many lanes, or many of few
     size = max(1, CHUNK // max(1, call.lanes))
     for first in range(0, call.steps, size):
         some = slice(first, first + size)

@@ -57,7 +57,8 @@ class Extremes:
 
 def sign_changes(value: Array) -> tuple[Lanes, Lanes]:
     """Rows and cells (k) of values (rows, nodes) between finite neighbours of opposite signs."""
-    # most rows of a batch have none, and their least value says so
+    # most rows of a batch have none, and their least value says so comparisons with NaN are false, so rows
+    # with gaps are looked into
     rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
     some = value[rows]
     with np.errstate(all="ignore"):
@@ -78,6 +79,7 @@ def crossing_brackets(nodes: Array, values: Array) -> tuple[Array, Array]:
     sides = np.cumsum(np.append(False, nodes[1:] <= np.nextafter(nodes[:-1], np.inf)))
     gaps = np.cumsum(~np.isfinite(values))
     first, last = known[:-1], known[1:]
+    # one zero may stand at a node between the two; two of them in a row are a dwell
     crossed = (np.sign(values[first]) != np.sign(values[last])) & (last - first <= 2)
     crossed &= (sides[first] == sides[last]) & (gaps[first] == gaps[last])
     return nodes[first[crossed]], nodes[last[crossed]]
@@ -92,12 +94,16 @@ def foretold_brackets(function: WithSlope, nodes: Array, value: Array, slope: Ar
     step = np.diff(nodes)
     with np.errstate(all="ignore"):
         change = value[:-1] * value[1:] < 0.0
+        # where v0 + v0' t = v1 - v1' (h - t): the tangents bound what a curve without a turn of its curvature
+        # can reach
         meet = (value[1:] - value[:-1] - slope[1:] * step) / (slope[:-1] - slope[1:])
         there = value[:-1] + slope[:-1] * meet
         dips = (value[:-1] * value[1:] > 0.0) & (there * value[:-1] <= 0.0) & (meet > 0.0) & (meet < step)
     cells, dipping = np.flatnonzero(change), np.flatnonzero(dips)
     inner = nodes[dipping] + meet[dipping]
     if len(dipping):
+        # tangents overstate how far it goes: a pair of roots is there only if the function itself is beyond
+        # zero
         deep = function(inner)[0] * value[dipping] < 0.0
         dipping, inner = dipping[deep], inner[deep]
     low = np.concatenate([nodes[cells], nodes[dipping], inner])
@@ -114,6 +120,7 @@ def newton_roots(function: WithSlope, low: Array, high: Array) -> Array:
     if not len(low):
         return np.empty(0)
     low, high = low.copy(), high.copy()
+    # which side of the root a place is on follows from the sign at the lower end: the function may fall or grow
     sign_low = np.sign(function(low)[0])
     x = 0.5 * (low + high)
     active = np.ones(x.shape, dtype=bool)
@@ -125,6 +132,7 @@ def newton_roots(function: WithSlope, low: Array, high: Array) -> Array:
         with np.errstate(all="ignore"):
             step = x - value / slope
         inside = (step > low) & (step < high) & np.isfinite(step)
+        # bisection keeps the bracket shrinking where the slope is zero or points elsewhere
         following = np.where(inside, step, 0.5 * (low + high))
         # a Newton step of the last bits may point out of the bracket: it has arrived, nothing throws it back
         last_bits = 2.0 * np.spacing(np.abs(x))
@@ -153,6 +161,8 @@ def interpolated_roots(function: Function, low: Array, high: Array) -> Array:
     best, share = np.where(np.abs(value) <= np.abs(value_other), x, other), np.full(len(x), 0.5)
     best = np.where(np.isnan(value) | np.isnan(value_other), np.nan, best)
     active = np.sign(value) * np.sign(value_other) < 0.0
+    # an interpolated step may shorten the bracket by less than half, so more steps are allowed than bisection
+    # takes
     for _step in range(2 * STEPS):
         if not active.any():
             break
@@ -169,6 +179,8 @@ def interpolated_roots(function: Function, low: Array, high: Array) -> Array:
         active &= (value != 0.0) & (apart > width) & ~np.isnan(value)
         with np.errstate(all="ignore"):
             along, rise = (x - other) / (third - other), (value - value_other) / (value_third - value_other)
+            # Chandrupatla's criterion: the inverse quadratic through the three places is monotone between the
+            # two of the bracket
             monotone = (rise**2 < along) & ((1.0 - rise) ** 2 < 1.0 - along)
             straight = value / (value_other - value) * value_third / (value_other - value_third)
             bent = value / (value_third - value) * value_other / (value_third - value_other)
@@ -201,6 +213,8 @@ def bisect(holds: Callable[[Array], Mask], low: Array, high: Array) -> tuple[Arr
     width = np.spacing(np.maximum(np.abs(low), np.abs(high)))
     for _halving in range(STEPS if len(low) else 0):
         middle = 0.5 * (low + high)
+        # the middle of two neighbouring numbers rounds to one of them: then there is nothing between to look
+        # at
         if ((np.abs(high - low) <= width) | (middle == low) | (middle == high)).all():
             break
         before = holds(middle)
@@ -231,6 +245,7 @@ def extremes(function: Function, slope: Function, nodes: Array) -> Extremes:
     values = function(nodes)
     size = float(np.nanmax(np.abs(values)))
     places = nodes
+    # a level function has slopes of rounding alone, and any node is as good an extreme as another
     if float(np.nanmax(values) - np.nanmin(values)) > LEVEL * size:
         places = np.append(nodes, _turns(slope, nodes, values))
         values = np.append(values, function(places[len(nodes) :]))
@@ -241,6 +256,7 @@ def extremes(function: Function, slope: Function, nodes: Array) -> Extremes:
 def _turns(slope: Function, nodes: Array, values: Array) -> Array:
     """Where a slope changes its sign, at the highest and the lowest places where these are too many."""
     low, high = crossing_brackets(nodes, slope(nodes))
+    # more turns than a smooth function has on a mesh: all but the most extreme ones are rounding
     if len(low) > MOST_TURNS:
         beside = values[np.searchsorted(nodes, low)]
         order = np.argsort(beside, kind="stable")
@@ -270,11 +286,13 @@ def maxima_between(function: Function, low: Array, high: Array) -> tuple[Array, 
     shares, rows = np.linspace(0.0, 1.0, PARTS + 1), np.arange(len(low))
     for _round in range(ROUNDS if len(low) else 0):
         cuts = low[:, None] + shares * (high - low)[:, None]
+        # the last cut may miss the end by rounding, and extremes like to lie there
         cuts[:, -1] = high
         found = np.asarray(function(cuts), dtype=np.float64)
         found = np.where(np.isnan(found), -np.inf, found)
         best = np.argmax(found, axis=1)
         top = found[rows, best]
+        # strictly: of equal values the first one is kept
         better = top > value
         place, value = np.where(better, cuts[rows, best], place), np.where(better, top, value)
         before, after = np.maximum(best - 1, 0), np.minimum(best + 1, PARTS)

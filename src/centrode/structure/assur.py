@@ -42,10 +42,8 @@ from centrode.structure.rank import is_bare, slider_of
 # Class and order of groups that are solved as a whole, by their inner contours.
 #
 # A group's class is that of its highest contour: a link with three inner joints is a contour of class III, a
-# closed
-# chain of k inner joints one of class k; its order is the number of outer joints (Artobolevsky, Theory of
-# Mechanisms
-# and Machines, section 14).
+# closed chain of k inner joints one of class k; its order is the number of outer joints (Artobolevsky, Theory
+# of Mechanisms and Machines, section 14).
 
 Joint = tuple[str, str]
 
@@ -65,6 +63,7 @@ class Contours:
         for joint, links in inner.items():
             for link in links:
                 sides.setdefault(link, []).append(joint)
+        # three inner joints or more make a link a rigid contour; two make it a side of one
         rigid = max((3 for joints in sides.values() if len(joints) > 2), default=2)
         loops = [
             _shortest_loop(inner, sides, joint, link) for joint, links in inner.items() for link in links
@@ -87,6 +86,8 @@ def contours_of(mechanism: Mechanism, group: Newton) -> Contours:
         if guide.link is None and guide.point in group.points:
             found.joints.setdefault(("hinge", guide.point), []).append(slider)
             inside.append(slider)
+        # the slider's link is not written in the description, but it is a link of the group with an outer
+        # hinge
         elif guide.link is None and guide.on in group.links:
             # a slider between the link and a known point belongs to the group as well
             inside.append(slider)
@@ -110,10 +111,12 @@ def _shortest_loop(
     """Joints in the shortest closed chain that passes a link at a joint; 0 if there is none."""
     # from the link, not over the joint, back to another link of the joint
     distance = {link: 1}
+    # breadth first, so that the first way back is the shortest
     waiting = deque([link])
     while waiting:
         here = waiting.popleft()
         for step in sides[here]:
+            # going back over the joint itself would close nothing
             if step == joint:
                 continue
             for other in inner[step]:
@@ -156,6 +159,7 @@ def assur_groups(structure: Structure) -> tuple[AssurGroup, ...]:
         if isinstance(group, RigidPoint):
             continue
         own = _members(structure.mechanism, group)
+        # a slider is named with the group that it slides in first, and counts there alone
         members = tuple(name for name in own if name not in taken)
         taken.update(members)
         if members:
@@ -185,6 +189,7 @@ def _term(mechanism: Mechanism, group: Group, members: tuple[str, ...]) -> Assur
 
 def roman(number: int) -> str:
     """A small number in Roman figures."""
+    # 9 and 4 are written by subtraction, so they stand among the figures
     figures = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
     found = ""
     for value, figure in figures:
@@ -218,6 +223,7 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
         for locus in group.loci:
             if isinstance(locus, (Rail, Slot, Stop)):
                 guide = mechanism.guide(locus.guide)
+                # a guided link that belongs to the group is there already
                 if is_bare(guide) or guide.link not in names:
                     names.append(slider_of(guide))
             if isinstance(locus, CylinderCircle):
@@ -225,6 +231,7 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
     if isinstance(group, Newton):
         bare = [guide for guide in mechanism.guides if is_bare(guide)]
         names += [slider_of(g) for g in bare if g.point in group.points or g.on in group.links]
+    # a dict keeps the first place of each name
     return tuple(dict.fromkeys(names))
 
 

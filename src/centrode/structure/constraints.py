@@ -73,7 +73,7 @@ class Positions:
         return cls(fixed, {FRAME: space.at_rest}, drives)
 
     def map_numbers(self, function: Callable[[Number], Number]) -> Positions:
-        """The same positions with every number replaced by function(number)."""
+        """Positions whose every number is function(number) of these: places, poses, values of drives, angles."""
         return Positions(
             {name: tuple(map(function, at)) for name, at in self.points.items()},
             {name: mapped_pose(pose, function) for name, pose in self.poses.items()},
@@ -82,12 +82,12 @@ class Positions:
         )
 
     def copy(self) -> Positions:
-        """The same positions, to which others may be added apart."""
+        """A copy of the positions, to which others may be added without changing these."""
         return Positions(dict(self.points), dict(self.poses), self.drives, dict(self.angles))
 
 
 def mapped_pose(pose: Pose, function: Callable[[Number], Number]) -> Pose:
-    """The same pose with every number replaced by function(number), in their order."""
+    """A pose whose every number is function(number) of this one, taken in their order: origin, then rotor or axes."""
     return type(pose)(*(tuple(map(function, vector)) for vector in pose))
 
 
@@ -124,8 +124,10 @@ class DistanceDrive:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         x, y = subtract(at.points[self.second], at.points[self.first])
+        # a power, not m.sqrt: rows are derivatives at plain numbers, and any of those has powers
         length = (x * x + y * y) ** 0.5
         first, second = self.bodies
+        # the unit vector from one point to the other, with opposite signs
         return [{first: (-x / length, -y / length), second: (x / length, y / length)}]
 
 
@@ -160,6 +162,7 @@ class GearRatio:
         """Link -> factor of its angle in the equation."""
         ratio = numbers.gearing.ratio[self.gear]
         first, second = numbers.gearing.shares.get(self.gear, (1.0, 1.0))
+        # the carrier's own weight makes the sum vanish when all three turn together
         return {self.first: -ratio, self.second: 1.0, self.carrier: ratio * first - second}
 
     def constant(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
@@ -175,10 +178,12 @@ class GearRatio:
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         row: Row = {}
         for link, factor in self.weights(numbers).items():
+            # on the sphere an angle is measured on a body, which turns as well
             base = numbers.gearing.measured.get(link, FRAME)
             for body, slope in zip((link, base), _slopes(numbers, at, link, base), strict=True):
                 entity, before = Entity("link", body), row.get(Entity("link", body), (0.0, 0.0, 0.0))
                 row[entity] = tuple(old + factor * x for old, x in zip(before, slope, strict=True))
+        # what an angle is measured on may be the frame, whose derivatives are no unknowns
         return [{entity: slope for entity, slope in row.items() if entity.name in self.links}]
 
 
@@ -249,7 +254,10 @@ class Contact(_OnTrack):
         point, on = self.bodies
         x, y = self.heading(numbers, at)
         if isinstance(numbers.gearing.track[self.rolling], Straight):
+            # of cross(direction, offset): the left normal by the centre, and by the body what its shift and
+            # turn undo
             return [{point: (-y, x), on: (y, -x, -dot((x, y), self._arm(at)))}]
+        # the distance grows along the heading; the body's turn moves the circle's centre by its arm
         return [{point: (x, y), on: (-x, -y, cross((x, y), self._arm(at)))}]
 
 
@@ -300,7 +308,10 @@ class NoSlip(_OnTrack):
             radius = numbers.gearing.radius[self.rolling]
             x, y = direction[0] / radius, direction[1] / radius
         else:
+            # the bearing turns by the part across the heading over the distance of the centres
             share = numbers.gearing.spin(self.rolling) / dot(direction, self.offset(numbers, at))
+            # spin times the direction square to the heading, clockwise: the residual falls as the centre goes
+            # round
             x, y = share * direction[1], -share * direction[0]
         return [{wheel: (0.0, 0.0, 1.0), point: (x, y), on: (-x, -y, cross((x, y), arm) - 1.0)}]
 
@@ -356,6 +367,7 @@ def contact_point(constraint: Contact | NoSlip, m: Namespace, numbers: Dimension
     heading, offset = constraint.heading(numbers, at), constraint.offset(numbers, at)
     start = subtract(at.points[constraint.centre], offset)
     if isinstance(track, Straight):
+        # a straight track is touched at the foot of the centre
         return along(start, heading, dot(heading, offset))
     # a ring around its pin touches on the far side of the pin
     far = m.sign(track.radius - numbers.gearing.radius[constraint.rolling]) if track.inside else 1.0
@@ -544,6 +556,7 @@ def _row(bodies: tuple[Entity, ...], slopes: Rows) -> Row:
 
 
 def constraints_of(mechanism: Mechanism) -> tuple[Constraint, ...]:
+    # drives first: rows of the Jacobian are kept in this order, so a drive is never the redundant one
     """All constraints of a mechanism: drives, links, guides, gears, rolling, each in description order."""
     found: list[Constraint] = []
     for drive in mechanism.drives:

@@ -37,6 +37,7 @@ def references_of(
     """Of driven links and those of gears: ends of the own arc, and of the reference arc in the base's axes."""
     found = {}
     for link, body in measured_on(mechanism).items():
+        # the angle lies between the own arc and the arc from the same pivot to the end of the reference
         pivot, second = list(local[link])[:2]
         base = frame if body == FRAME else local[body]
         found[link] = (local[link][pivot], local[link][second], base[pivot], base[ends[link][0]])
@@ -102,7 +103,7 @@ class Dimensions:
     gearing: Gearing = field(default_factory=Gearing)
 
     def map_numbers(self, function: Callable[[Number], Number]) -> Dimensions:
-        """The same dimensions with every number replaced by function(number)."""
+        """Dimensions whose every number is function(number) of these."""
 
         def vectors(pairs: Mapping[str, Vector]) -> dict[str, Vector]:
             return {name: tuple(map(function, v)) for name, v in pairs.items()}
@@ -140,9 +141,12 @@ class Dimensions:
         for points in (self.frame, *self.local.values()):
             places = [self._inside(at) for at in points.values()]
             for at in places:
+                # from the first point only: within a factor of two the greatest distance, and one pass
                 longest = _larger(longest, self.space.distance(PLAIN, at, places[0]))
         for guide, on in self.bodies.items():
             points = self.frame if on == FRAME else self.local[on]
+            # a guide's distance from one point of its body, as the point it goes through may lie anywhere
+            # along it
             for at in list(points.values())[:1]:
                 reach = self.space.reach(PLAIN, self.curve(guide), self._inside(at))
                 longest = _larger(longest, reach)
@@ -161,6 +165,7 @@ class Dimensions:
 def _larger(a: Number, b: Number) -> Number:
     if isinstance(a, float) and isinstance(b, float):
         return max(a, b)
+    # the greater of two arrays without an array library: (a + b + |a - b|) / 2
     return 0.5 * (a + b + abs(a - b))
 
 
@@ -186,8 +191,10 @@ def dimensions_of(
         curve = _circle if space is SPHERE else _line
         through[guide.id], direction[guide.id] = curve(guide, places, values)
         angle = mechanism.guide_turn(guide)
+        # an angle of zero gives exact numbers, and literal zeros cost nothing in formulas
         turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
     gearing = gearing_of(mechanism, lambda body: frame if body == FRAME else local[body], values)
+    # masses may vary too, and no dimension is missing because a motion does not need them
     values.used |= _paths_of_masses(mechanism)
     values.refuse_the_rest()
     bodies = {guide.id: guide.on for guide in mechanism.guides}
@@ -209,6 +216,7 @@ def _paths_of_masses(mechanism: Mechanism) -> set[str]:
 
 
 def _local(name: str, link: Link, values: _Values) -> dict[str, Vector]:
+    # a plate has points of its own; a link of two points lies along its first axis
     if link.length is None:
         return {
             point: values.vector(f"links.{name}.points.{point}", at) for point, at in link.coordinates.items()

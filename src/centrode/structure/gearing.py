@@ -58,7 +58,7 @@ class Gearing:
     measured: Mapping[str, str] = field(default_factory=dict)
 
     def map_numbers(self, function: Callable[[Number], Number]) -> Gearing:
-        """The same with every number replaced by function(number)."""
+        """The numbers with each replaced by function(number)."""
         return replace(
             self.scale_lengths(function),
             ratio={name: function(x) for name, x in self.ratio.items()},
@@ -67,7 +67,7 @@ class Gearing:
         )
 
     def scale_lengths(self, function: Callable[[Number], Number]) -> Gearing:
-        """The same with every length replaced by function(length); ratios, directions and phases stay."""
+        """The numbers with every length replaced by function(length); ratios, directions and phases stay."""
         return replace(
             self,
             radius={name: function(x) for name, x in self.radius.items()},
@@ -75,7 +75,7 @@ class Gearing:
         )
 
     def with_phases(self, phases: Mapping[str, Number]) -> Gearing:
-        """The same with these phases added."""
+        """The numbers with these phases [rad] added, gear or rolling -> constant of its equation."""
         return replace(self, phase={**self.phase, **phases})
 
     def reach(self, rolling: str) -> Number:
@@ -83,12 +83,14 @@ class Gearing:
         track, radius = self.track[rolling], self.radius[rolling]
         if isinstance(track, Straight):
             return radius
+        # inside, a ring around its pin is larger than the circle: hence the size of the difference
         return abs(track.radius - radius) if track.inside else track.radius + radius
 
     def spin(self, rolling: str) -> Number:
         """Turn of a wheel over the turn of its centre about the circle's, both against the body that carries it."""
         track, radius = self.track[rolling], self.radius[rolling]
         assert isinstance(track, Round)
+        # rolling inside, a wheel smaller than the circle turns against the sense of its centre
         return (radius - track.radius if track.inside else track.radius + radius) / radius
 
 
@@ -165,9 +167,8 @@ def _check_room(wheel: Rolling, radius: Number, track: Track) -> None:
 # hold.
 #
 # A wheel's turn against the carrier is its own angle where that is measured from an arc of the carrier. Where
-# it is
-# measured from an arc of the frame, about the point about which the carrier turns too, the carrier's angle is
-# taken off.
+# it is measured from an arc of the frame, about the point about which the carrier turns too, the carrier's
+# angle is taken off.
 
 
 def shares_of(mechanism: Mechanism, gear: str) -> tuple[float, float]:
@@ -193,8 +194,10 @@ def measured_on(mechanism: Mechanism) -> dict[str, str]:
 
 def _share(mechanism: Mechanism, gear: Gear, wheel: str) -> float:
     carrier = gear.carrier
+    # measured on the carrier, the angle is the turn against the carrier already
     if carrier == FRAME or (wheel != FRAME and _base(mechanism, gear, wheel) == carrier):
         return 0.0
+    # measured on the frame about the carrier's own pivot, the carrier's angle has to be taken off once
     if _base(mechanism, gear, carrier) == FRAME and wheel in (FRAME, *_about(mechanism, carrier)):
         return 1.0
     raise InputError(
@@ -226,6 +229,7 @@ def _base(mechanism: Mechanism, gear: Gear, link: str) -> str:
             ),
         )
     driven = {drive.link: drive.relative_to for drive in mechanism.drives if drive.link}
+    # a driven link's angle is measured where its drive's is
     bodies = [driven[link]] if link in driven else [gear.carrier, FRAME]
     for body in bodies:
         if (

@@ -262,10 +262,13 @@ class Meet:
             return "RRR" if self.circles == 2 else "RRP"
         return "RPP" if any(isinstance(locus, Slot) for locus in self.loci) else "PRP"
 
+    # in the plane a circle meets anything in two places, two lines in one; on the sphere curves of guides are
+    # circles too
     @property
     def signed(self) -> bool:
         if self.circles or self.crosses_once:
             return bool(self.circles)
+        # a stop is a single place already: nothing has to be chosen
         return not any(isinstance(locus, Stop) for locus in self.loci)
 
 

@@ -96,6 +96,7 @@ def relation_to_known(group: GroupToSolve, constraint: Constraint, link: str) ->
         if not all(group.knows_link(other) for other in constraint.links if other != link):
             return None
         first, second = shares_of(group.mechanism, constraint.gear)
+        # the carrier's factor ratio * first - second vanishes: it turns freely
         if link == constraint.carrier and _ratio(group.mechanism, constraint) * first == second:
             raise _singular((link,))
         return Meshed(constraint)
@@ -112,11 +113,13 @@ def wheel_locus(group: GroupToSolve, constraint: Constraint, carriage: str | Non
     straight = _description(group.mechanism, constraint.rolling).along.radius is None
     centre_known = group.knows_point(constraint.centre)
     carried = constraint.on == carriage
+    # either the unknown carries the track past a known wheel, or the wheel is unknown at a known track
     if carried != centre_known or not (carried or group.knows_link(constraint.on)):
         return None
     if isinstance(constraint, Contact):
         return Touch(constraint.centre, constraint, carried, "P" if straight else "R")
     turns_known = constraint.link == carriage or group.knows_link(constraint.link)
+    # on a line the wheel's turn gives the place along it; on a circle the bearing, which is an angle
     return Rolloff(constraint.centre, constraint, carried) if straight and turns_known else None
 
 
@@ -125,6 +128,7 @@ def train(group: GroupToSolve) -> Train | None:
     hinges = [c for c in group.constraints if isinstance(c, PointInLink)]
     others = [c for c in group.constraints if not isinstance(c, PointInLink)]
     equations = [equation_of(group, c) for c in others]
+    # as many equations as angles, and every one of them between angles alone
     if len(equations) != len(group.links) or len(equations) < 2 or None in equations:
         return None
     found = tuple(equation for equation in equations if equation is not None)
@@ -182,6 +186,7 @@ def _placing_order(
         for link in waiting:
             own = [c.point for c in hinges if c.link == link]
             known = [point for point in own if group.knows_point(point) or point in brought]
+            # two known points would fix the link's angle, which the equations give already
             if len(known) > 1:
                 return None
             if known:
@@ -203,6 +208,7 @@ def _pivots(group: GroupToSolve, equations: Sequence[AngleEquation]) -> tuple[tu
     table = [{link: row.get(link, 0.0) for link in group.links} for row in rows]
     found: list[tuple[int, str]] = []
     for _step in group.links:
+        # what is left of rows and columns; of equal sizes the first row counts, hence -i
         rest = [
             (abs(table[i][link]), -i, link)
             for i in range(len(table))
@@ -210,9 +216,11 @@ def _pivots(group: GroupToSolve, equations: Sequence[AngleEquation]) -> tuple[tu
             if all(i != row and link != column for row, column in found)
         ]
         size, k, link = max(rest, key=lambda entry: entry[:2])
+        # what is left is rounding beside factors of the order of one
         if size < SINGULAR:
             raise _singular(group.links)
         found.append((-k, link))
+        # eliminated in all rows left, as the formula does it over any algebra
         for i in range(len(table)):
             if all(i != row for row, _column in found):
                 share = table[i][link] / table[-k][link]
@@ -229,6 +237,7 @@ def _weights(mechanism: Mechanism, equation: AngleEquation) -> Mapping[str, floa
     if isinstance(equation, Arm):
         spin = _spin(_description(mechanism, equation.rolling.rolling))
         return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}
+    # on the sphere the angle is the one that is given, measured on the body it is against
     if mechanism.space == "sphere":
         return {equation.link: 1.0}
     return dict(zip(angles_in(equation), (1.0, -1.0), strict=True))
@@ -318,6 +327,7 @@ def classify(
         tuple(dict.fromkeys(constraint for constraint, _row in equations)),
         crosses_once,
     )
+    # from the simplest on: a group that one form fits is not looked at by the next
     for attempt in (_rigid_point, _single_link, _aim_with_block, _meet, train):
         found = attempt(group)
         if found is not None:
@@ -349,6 +359,8 @@ def _single_link(group: Unsolved) -> Group | None:
             return Aim(link, ends[0], c.guide, c.point)
         if isinstance(c, Contact) and c.on == link:
             touch = wheel_locus(group, c, link)
+            # a link resting on a straight track of its own is aimed at the wheel; a round one has no such
+            # line
             return Aim(link, ends[0], "", c.centre, contact=c) if touch and touch.letter == "P" else None
     return None
 
@@ -373,7 +385,9 @@ def _aim_with_block(group: Unsolved) -> Group | None:
 
 def _meet(group: Unsolved) -> Group | None:
     """One unknown vector with two loci; everything else in the group must hang on it."""
+    # a link whose angle is known beforehand carries its points with it
     carriages = [link for link in group.links if group.turning(link) is not None]
+    # two of them are a group of higher class
     if len(carriages) > 1:
         return None
     carriage = carriages[0] if carriages else None
@@ -388,6 +402,7 @@ def _meet(group: Unsolved) -> Group | None:
             return None
         used.add(found[0])
         turning = found[1]
+        # the carriage's own points are its part of the unknown vector
         used |= {c for c in group.constraints if isinstance(c, PointInLink) and c.link == carriage}
     loci: list[Locus] = []
     for link in group.links:
@@ -404,7 +419,9 @@ def _meet(group: Unsolved) -> Group | None:
         if locus is not None:
             loci.append(locus)
             used.add(c)
+    # circles first, so that the sign has one meaning whatever the description's order
     loci.sort(key=lambda locus: locus.letter != "R")  # circles first
+    # whatever no locus uses would not be fulfilled: the group is another one then
     if len(loci) != 2 or used != set(group.constraints):
         return None
     return Meet(group.points, (loci[0], loci[1]), carriage, turning, group.crosses_once)
@@ -506,10 +523,12 @@ def structure_of(mechanism: Mechanism) -> Structure:
     kept = _independent(mechanism, matrix, owners)
     drive_rows = sum(is_drive(c) for c in constraints)
     # with all rows independent, so are those without the drives
+    # if nothing is redundant no second elimination is needed
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, matrix, kept, owners, mobility)
     groups = _groups(mechanism, dimensions.space, unknowns, kept, owners)
+    # a constraint is redundant if any of its equations is
     repeating = _left_out(owners, kept)
     redundant = tuple(dict.fromkeys(constraint for constraint, _row in repeating))
     return Structure(mechanism, dimensions, constraints, redundant, repeating, unknowns, groups, mobility)
@@ -523,6 +542,7 @@ def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constrai
     a guide that keeps a wheel at its track does so better than the contact, which says nothing of the wheel.
     """
 
+    # drives first, then plates with many points, as these are kept while independent
     def rank(row: int) -> int:
         owner = owners[row]
         if is_drive(owner):
@@ -564,6 +584,7 @@ def _check_drives(
     numbers = drives_against_mobility(drives, mobility)
     if repeated:
         raise InputError("[[drives]]", numbers, _("take away: {drives}").format(drives="; ".join(repeated)))
+    # as many independent rows as unknowns: everything is fixed once the drives are
     if sum(kept) == matrix.shape[1]:
         return
     locked = _locked_drives(matrix, owners)
@@ -580,6 +601,7 @@ def _locked_drives(matrix: Matrix, owners: Sequence[Constraint]) -> list[str]:
     """Drives of what the other constraints hold already."""
     rows = [row for row, owner in enumerate(owners) if not is_drive(owner)]
     drives = [row for row, owner in enumerate(owners) if is_drive(owner)]
+    # drives behind all others: one that is not independent of these drives nothing
     free = independent_rows(matrix[rows + drives])[len(rows) :]
     return [owners[row].label for row, moves in zip(drives, free, strict=True) if not moves]
 
@@ -593,6 +615,7 @@ def drives_against_mobility(drives: int, mobility: int) -> str:
 
 def _left_out(owners: Sequence[Constraint], kept: Sequence[bool]) -> tuple[tuple[Constraint, int], ...]:
     """Equations that are not kept, each as its constraint and its row there."""
+    # reversed, so that the first row of a constraint is the one that stays
     first = {constraint: row for row, constraint in reversed([*enumerate(owners)])}
     return tuple(
         (owner, row - first[owner])
@@ -609,6 +632,7 @@ def _groups(
     owners: Sequence[Constraint],
 ) -> tuple[Group, ...]:
     """Groups in an order in which each needs only what stands before it."""
+    # the frame and its points are no unknowns
     inside = set(unknowns)
     neighbours = {
         (row, owners[row]): [
@@ -622,6 +646,7 @@ def _groups(
     for (entity, _k), (row, _constraint) in owner.items():
         matched[entity].append(row)
     depends = {
+        # what an unknown's own equations speak of beside it has to be known before, or together with it
         entity: list(
             dict.fromkeys(
                 other for row in own for other in owners[row].bodies if other != entity and other in inside
@@ -633,7 +658,9 @@ def _groups(
     for row, constraint in enumerate(owners):
         first.setdefault(constraint, row)
     groups = []
+    # each component is solved as a whole, and stands behind all that it depends on
     for component in in_order(strong_components(depends), depends):
+        # in the order of the description, so that signs do not depend on the matching
         rows = sorted(row for entity in component for row in matched[entity])
         equations = [(owners[row], row - first[owners[row]]) for row in rows]
         groups.append(classify(mechanism, component, equations, space.crosses_once))

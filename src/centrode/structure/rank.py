@@ -30,8 +30,7 @@ from centrode.structure.gearing import Gearing, Round, Straight, Track
 # says.
 #
 # An arm or a guide that keeps a wheel at its track does so because the arm turns about the circle's centre,
-# or because
-# the guide is parallel to the line. These two coincidences belong to the structure and are kept.
+# or because the guide is parallel to the line. These two coincidences belong to the structure and are kept.
 
 COINCIDE = 1e-9
 """Places closer than this (in the greatest length) are one, directions closer than this (sine) parallel."""
@@ -46,19 +45,24 @@ def random_gearing(
 ) -> Gearing:
     """Ratios, radii and tracks at random; `at` and `directions` are the random positions and lines of guides."""
     ratio = {
-        gear.id: float(random.choice([-1.0, 1.0]) * random.uniform(0.3, 3.0)) for gear in mechanism.gears
+        # away from 0 and from infinity, of either sign: nothing about them is special
+        gear.id: float(random.choice([-1.0, 1.0]) * random.uniform(0.3, 3.0))
+        for gear in mechanism.gears
     }
     radius = {wheel.id: float(random.uniform(0.2, 0.6)) for wheel in mechanism.rolling}
     track: dict[str, Track] = {}
     for wheel in mechanism.rolling:
         own = numbers.gearing.track[wheel.id]
+        # drawn in any case, so that the other random numbers do not depend on the kind of track
         place = float(random.normal()), float(random.normal())
         if isinstance(own, Straight):
             track[wheel.id] = Straight(place, _direction(mechanism, numbers, at, directions, wheel, random))
         else:
+            # a track about a point of the body keeps being about it
             named = point_at(numbers, wheel.on, own.centre)
             centre = place if named is None else local_of(at, wheel.on, named)
             track[wheel.id] = Round(centre, float(random.uniform(0.7, 1.5)), own.inside)
+    # constants do not enter derivatives
     phase = dict.fromkeys((*ratio, *radius), 0.0)
     return Gearing(ratio, radius, track, phase, numbers.gearing.shares, numbers.gearing.measured)
 
@@ -93,6 +97,7 @@ def _direction(
     for guide in mechanism.guides:
         own = numbers.direction[guide.id]
         if guide.on == wheel.on and parallel(own, track.direction):
+            # directions in the body's axes, which the random realisation chose
             return directions[guide.id]
         # the body that carries the track slides on the guide without turning
         seen = rotate_vector(own, reversed_rotor(numbers.turn[guide.id]))
@@ -142,6 +147,7 @@ def jacobian(
 def independent_rows(matrix: Matrix) -> npt.NDArray[np.bool_]:
     """Mask of the rows that are independent of the rows before them (twice-repeated Gram-Schmidt)."""
     count, width = matrix.shape
+    # mechanisms without redundancy are the rule: one factorisation answers for all rows
     if all_independent(matrix):
         return np.ones(count, dtype=bool)
     basis = np.zeros((min(count, width), width))
@@ -149,9 +155,11 @@ def independent_rows(matrix: Matrix) -> npt.NDArray[np.bool_]:
     rank = 0
     for i, row in enumerate(matrix):
         norm = np.linalg.norm(row)
+        # a zero row, or a full basis: nothing more can be independent
         if norm == 0.0 or rank == width:
             continue
         rest = row / norm
+        # once leaves a part of the size of rounding over what is left; twice is enough (Kahan and Parlett)
         for _pass in range(2):
             rest = rest - basis[:rank].T @ (basis[:rank] @ rest)
         size = np.linalg.norm(rest)
@@ -166,6 +174,7 @@ def all_independent(matrix: Matrix) -> bool:
     """Whether all rows are independent, by one orthogonalisation: much faster than asking row by row."""
     count, width = matrix.shape
     norms = np.linalg.norm(matrix, axis=1)
+    # more rows than columns cannot be independent
     if count > width or not norms.all():
         return False
     # as long as no row is dependent, the diagonal is what Gram-Schmidt leaves of each
@@ -175,6 +184,7 @@ def all_independent(matrix: Matrix) -> bool:
 
 def random_realisation(mechanism: Mechanism, numbers: Dimensions) -> tuple[Dimensions, Positions]:
     """Random positions, and the lengths that make them fit: the same structure with nothing special about it."""
+    # a fixed seed: a mechanism has the same plan every time
     random = np.random.default_rng(1)
     points = {name: _pair(random.normal(size=2)) for name in mechanism.points}
     poses = {FRAME: PlanePose((0.0, 0.0), (1.0, 0.0))}
@@ -195,6 +205,7 @@ def random_realisation(mechanism: Mechanism, numbers: Dimensions) -> tuple[Dimen
     fitted = Dimensions(
         {name: points[name] for name in numbers.frame},
         {link: {point: local(link, point) for point in inside} for link, inside in numbers.local.items()},
+        # a guide goes through its point's random place, so that the constraint holds
         {guide.id: local(guide.on, guide.point) for guide in mechanism.guides},
         direction,
         turn,
@@ -230,6 +241,8 @@ def scaled_jacobian(
     matrix = jacobian(constraints, unknowns, numbers, at)
     for entity, column in columns_of(unknowns)[0].items():
         own = slice(column, column + entity.unknowns)
+        # columns by motions of the size of the mechanism: with turns in rad beside metres no threshold would
+        # fit
         matrix[:, own] = matrix[:, own] @ np.array(_motions(entity, numbers, at, scale)).T
     units = [1.0 if c.angular else scale for c in constraints for _row in range(c.size)]
     return np.asarray(matrix / np.array(units)[:, None])
@@ -294,6 +307,7 @@ class Count:
 
 def count(mechanism: Mechanism, redundant: Collection[Constraint] = ()) -> Count:
     """Count links and pairs of a mechanism; `redundant` are the constraints that repeat others."""
+    # a point that is shared by k bodies is k - 1 hinges
     members: Counter[str] = Counter(list(mechanism.frame.points))
     for link in mechanism.links.values():
         members.update(list(link.coordinates))
@@ -304,6 +318,7 @@ def count(mechanism: Mechanism, redundant: Collection[Constraint] = ()) -> Count
         members.update(ends)
     hinges = sum(number - 1 for number in members.values())
     kept_at_track = {c.rolling for c in redundant if isinstance(c, Contact)}
+    # where an arm or a guide keeps the distance, the contact is redundant and a pair of another kind
     rolling = sum(wheel.id not in kept_at_track for wheel in mechanism.rolling)
     links = len(mechanism.links) + len(blocks) + 2 * len(cylinders)
     lower = hinges + len(mechanism.guides) + len(cylinders) + rolling
@@ -339,6 +354,7 @@ def match(neighbours: Mapping[Left, Sequence[Right]]) -> dict[Right, Left]:
         came_from, free = _augmenting_path(start, neighbours, owner)
         while free is not None:
             left = came_from[free]
+            # along the path back to its start every unknown changes its owner: the matching grows by one
             owner[free], mate[left], free = left, free, mate.get(left)
     return owner
 
@@ -355,6 +371,7 @@ def _augmenting_path(
             if right in came_from:
                 continue
             came_from[right] = left
+            # a taken unknown may be had if its owner finds another
             if right not in owner:
                 return came_from, right
             queue.append(owner[right])
@@ -367,12 +384,14 @@ def strong_components(depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]
     low: dict[Node, int] = {}
     on_stack: set[Node] = set()
     stack: list[Node] = []
+    # for the order of results
     found: list[list[Node]] = []
     rank = {node: k for k, node in enumerate(depends)}
 
     for root in depends:
         if root in index:
             continue
+        # an explicit stack in place of recursion: linkages may be long
         work = [(root, iter(depends[root]))]
         index[root] = low[root] = len(index)
         stack.append(root)
@@ -386,6 +405,7 @@ def strong_components(depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]
                     on_stack.add(other)
                     work.append((other, iter(depends[other])))
                     break
+                # only what is on the stack belongs to the same component
                 if other in on_stack:
                     low[node] = min(low[node], index[other])
             else:
@@ -407,6 +427,7 @@ def in_order(
     """Components with dependencies first; of those that are ready, the first in the order of `depends`."""
     rank = {node: k for k, node in enumerate(depends)}
     home = {node: k for k, component in enumerate(components) for node in component}
+    # the component itself is not waited for
     waits = {
         k: {home[other] for node in component for other in depends[node]} - {k}
         for k, component in enumerate(components)
@@ -416,6 +437,8 @@ def in_order(
         for other in before:
             followers[other].append(k)
     first = {k: min(rank[node] for node in component) for k, component in enumerate(components)}
+    # a heap by description order: of those that are ready the first, so that a plan reads as the description
+    # does
     ready = [(first[k], k) for k, before in waits.items() if not before]
     heapq.heapify(ready)
     ordered = []

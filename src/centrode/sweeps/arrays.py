@@ -1,4 +1,4 @@
-"""Sweeps on NumPy arrays, and what every way to compute is told: the motions of some mechanisms, column by column."""
+"""Sweeps on NumPy arrays, and the job of every executor: the motions of some mechanisms, column by column."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ NUMBER = 8
 AT_SAMPLES, ON_MESH = 9, 2
 """Numbers alive at once for each column of the layout, at a sample and at a node of the mesh (measured)."""
 OF_ANCHORS = 5
-"""The same at a node of the mesh where a group of higher class is followed along it."""
+"""Numbers alive at once for each column, at a node of the mesh where a group of higher class is followed along it."""
 
 
 @dataclass(frozen=True)
 class SweepTask:
-    """What is computed for every mechanism: a mechanism made ready, its samples, what is asked for, what varies."""
+    """What is computed for every mechanism: a mechanism made ready, its samples, what is requested, what varies."""
 
     ready: Ready
     span: SampleGrid
@@ -74,7 +74,7 @@ class ArraysExecutor:
 def fill_columns(task: SweepTask, solved: Solved, values: Rows, results: Results) -> None:
     """Fill in all columns from the motions of some mechanisms."""
     ok = solved.status == Status.OK
-    # copied at once: what is asked for may be a view of everything that was computed
+    # copied at once: what is requested may be a view of everything that was computed
     for name, part in task.asked.results(solved, values, ok).items():
         results[name][...] = part
     for name in task.asked.slopes.values():

@@ -25,7 +25,7 @@ from centrode.model.units import to_si
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 
-# What a sweep may take of memory and ask for at most; named here, told in docs/sweeps.md.
+# What a sweep may take of memory and ask for at most; named here, explained in docs/sweeps.md.
 
 WORKING_SET = 256_000_000
 """Bytes that the mechanisms solved together may take, results aside (one mechanism alone may take more)."""
@@ -95,6 +95,7 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
         return "length"
     if word in _ALONG:
         return "length" if mechanism.space == "plane" else "arc"
+    # on the sphere lengths of links are arcs; only radii of wheels and centres of mass are metres
     if word in _MASSES:
         return word
     return "angle" if word in _ANGLES else "ratio"
@@ -113,6 +114,7 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
     Raises InputError at the path: none, not in one dimension, not finite, a text that is no number, a range.
     """
     kind = kind_of(mechanism, path)
+    # a tuple of a range is not a list of values: it would pass as three numbers
     if (
         isinstance(given, tuple)
         and len(given) == 3
@@ -223,6 +225,7 @@ def draw_sample(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
     bounds = {path: _bounds(mechanism, path, given) for path, given in asked.ranges.items()}
     unit = _in_unit_cube(asked.method, len(bounds), count, np.random.default_rng(seed))
     columns = zip(bounds.items(), unit.T, strict=True)
+    # the last value may pass the end by rounding
     return {path: np.clip(low + (high - low) * column, low, high) for (path, (low, high)), column in columns}
 
 
@@ -307,6 +310,7 @@ class Crossed:
         return {path: (path, values) for path, values in self.axes.items()}
 
     def rows(self, first: int, stop: int) -> Rows:
+        # the last path runs fastest, as in the arrays of the result
         places = np.unravel_index(np.arange(first, stop), self.shape)
         return {path: values[at] for (path, values), at in zip(self.axes.items(), places, strict=True)}
 
@@ -348,7 +352,9 @@ def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> 
         what = _("{count} mechanisms were asked for").format(count=math.prod(design.shape))
         raise InputError("vary", what, _("ask for at most {most}").format(most=MECHANISMS))
     extremes = {
-        path: np.array([values.min(), values.max()]) for path, (_along, values) in design.coordinates.items()
+        # only the ends: what lies between them is possible where both are
+        path: np.array([values.min(), values.max()])
+        for path, (_along, values) in design.coordinates.items()
     }
     dimensions_of(mechanism, extremes, ARRAYS)  # refuses what no mechanism can have, before any is computed
     return design
@@ -377,11 +383,13 @@ def _axis(mechanism: Mechanism, path: str, given: Any) -> Array:
     count = count_of(path, given[2], LISTED)
     if count < 2:
         raise InputError(path, _("a range needs two values or more"), _("give one value as a list"))
+    # both ends, as a range is given by them
     return np.linspace(low, high, count)
 
 
 def path_digests(design: Design) -> dict[str, str]:
-    """The values by which two designs are told apart: path -> a digest of its values along the design."""
+    """The values by which two designs are distinguished: path -> a digest of its values along the design."""
+    # a digest of the bytes: two designs are the same if every bit is
     told = {}
     for path, (dimension, values) in design.coordinates.items():
         digest = hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()

@@ -64,7 +64,7 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     """The executor of a name for a task, and what a result says of it.
 
     "auto" is machine code where it can compute the task and the task is long enough to be worth compiling for.
-    Raises InputError where machine code is asked for and cannot.
+    Raises InputError where machine code is requested and cannot.
     """
     arrays = ArraysExecutor()
     if task.asked.slopes:

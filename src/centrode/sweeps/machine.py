@@ -2,7 +2,7 @@
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
 and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`machine_code.events`; with
-groups of higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does.
+groups of higher class they are computed by arrays), and what is requested is taken from them as `ArraysExecutor` does.
 """
 
 from __future__ import annotations
@@ -55,8 +55,7 @@ from centrode.sweeps.outputs import SweepColumn
 # mechanism.
 #
 # A fold of what another fold gave (`max(abs(x - mean(x)))`) needs that one first: samples are passed once for
-# each
-# depth of folds.
+# each depth of folds.
 
 
 @dataclass(frozen=True)
@@ -70,10 +69,11 @@ class Fold:
 
     @property
     def state(self) -> Reduction:
-        """Its state in a scan over samples; NaN at a sample makes the whole NaN."""
+        """The fold as a state that a scan over samples carries on; NaN at a sample makes the result NaN."""
         m, so_far = EXPRESSIONS, variable(self.name)
         if self.kind == "sum":
             return Reduction({self.name: as_node(so_far + self.value)}, {self.name: 0.0})
+        # `min` and `max` of nodes let NaN win, as folds over arrays do
         extreme, start = (m.min, math.inf) if self.kind == "min" else (m.max, -math.inf)
         return Reduction({self.name: as_node(extreme(self.value, so_far))}, {self.name: start})
 
@@ -86,6 +86,7 @@ class Folds(Expressions):
     found: dict[tuple[str, bytes], Fold] = field(default_factory=dict)
 
     def fold(self, name: str, value: Operand) -> Operand:
+        # range and mean are made of simpler folds, which other formulas may share
         """The number that a fold of FOLDS gives."""
         if name == "range":
             return self.fold("max", value) - self.fold("min", value)
@@ -108,6 +109,7 @@ class Folds(Expressions):
 
     def _depth(self, node: Node) -> int:
         used = set(Graph({"": node}).variables)
+        # a fold inside a fold has to be finished first: so many passes lie before this one
         return 1 + max((fold.depth for fold in self.found.values() if fold.name in used), default=-1)
 
 
@@ -144,7 +146,7 @@ class Slopes:
     standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
     folds : whose results have derivatives of their own
     moving : variables that differ from sample to sample
-    known : fold -> its states, once they have been asked for
+    known : fold -> its states, once they have been requested
     """
 
     through: Mapping[str, Through]
@@ -162,6 +164,7 @@ class Slopes:
         return cls(through, traced.standing, folds, moving)
 
     def of_node(self, node: Node) -> dict[str, Node]:
+        # what jumps, or was found by iteration, is put aside as a variable: it has no derivative
         """Path -> derivative of an expression, that of the folds it uses included."""
         still = self._without_standing(node)
         used = frozenset(Graph({"": still}).variables)
@@ -176,6 +179,8 @@ class Slopes:
             for x, factor in through:
                 total = total + partial[x] * factor
             for name, part in of_folds.items():
+                # the chain through a fold's result: its own derivatives are summed up while the samples are
+                # passed
                 total = total + part * self.states_of(name).at_end[path]
             found[path] = total
         return dict(Graph.of(found).substitute(self.standing).outputs)
@@ -183,6 +188,7 @@ class Slopes:
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
         so_far = variable(fold.name)
+        # strictly better, so that of equal values the first sample's derivatives stay
         better = m.less(fold.value, so_far) if fold.kind == "min" else m.less(so_far, fold.value)
         state = {}
         for label, part in self.states_of(fold.name).parts.items():
@@ -216,11 +222,13 @@ class Slopes:
         once a mechanism, at the end.
         """
         still = self._without_standing(fold.value)
+        # what differs from sample to sample, and what jumps, cannot stand still
         jumping = self.moving | self.standing.keys()
         variables = [x for x in Graph({"": still}).variables if x not in jumping]
         parts, rest = split_graph(Graph({"": still}), variables, f"{fold.name} part")
         standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
         factors = {x: self.of_node(node) for x, node in standing.items()}
+        # parts that no value moves need no state
         moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
         slopes = gradient(rest.outputs[""], [variable(x) for x in moved])
         labels = {x: f"{fold.name} through {x}" for x in moved}
@@ -231,6 +239,7 @@ class Slopes:
                 ends[path] = (
                     ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
                 )
+        # the parts are put back as expressions: states are folded from variables of the plan alone
         outputs = found.substitute({**self.standing, **parts.outputs}).outputs
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
@@ -274,10 +283,11 @@ def _through(path: str, varied: Varied) -> Through:
     if path not in directions or not all(isinstance(x, Node) for x in directions[path]):
         raise Untraceable(mark("derivatives by what moves nothing"))
     cosine, sine = directions[path]
+    # d cos = -sin and d sin = cos by the angle
     return [(cosine, -sine), (sine, cosine)]
 
 
-# What a sweep is asked for as expressions: columns of a sample, or of folds over samples, and derivatives.
+# Outputs of a sweep as expressions: columns of a sample, or of folds over samples, and derivatives.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = dict[str, Array]
@@ -357,6 +367,7 @@ class Expressed:
         nodes = [node for column in self.columns.values() for node in column]
         nodes += [fold.value for fold in self.folds.found.values()]
         used = frozenset(Graph({str(k): node for k, node in enumerate([*nodes, residual])}).variables)
+        # turns follow from the place before on a walk, else by a centre
         told_by = before_of if self.traced.steps else centre_of
         links = tuple(link for link in self.traced.turning if told_by(link) in used)
         names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
@@ -392,6 +403,8 @@ class Expressed:
             folds += sum(len(self.slopes.states_of(fold.name).parts) for fold in self.folds.found.values())
         angles = 10 * len(self.judging.links)
         walked = 2 * len(self.judging.walk.state) if self.traced.steps else 0
+        # about ten numbers for each link's angle (jump, ends, extremes of each winding), two for each state
+        # of a walk: before and after a step
         return len(self.varied.names) + folds + angles + walked + 2 * len(self.traced.radicands) + 2
 
 
@@ -443,6 +456,7 @@ class EachForItself:
         """Lanes are samples, steps are mechanisms."""
         outputs = self.asked.outputs
         used = Graph(outputs).variables
+        # the parameter stays an input in any case: something has to say how many samples there are
         along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
         return Scan(along, tuple(name for name in used if name not in along), outputs)
 
@@ -480,8 +494,7 @@ def judging_states(asked: Expressed) -> Reduction:
 # computed.
 #
 # A number of a mechanism is one stream of its samples. The result's arrays are views that have the samples in
-# front
-# of the numbers; nothing is put in another order.
+# front of the numbers; nothing is put in another order.
 
 AnyArray: TypeAlias = npt.NDArray[Any]
 
@@ -513,6 +526,7 @@ def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColu
     """Fresh memory for columns, with streams where there is any."""
     kept = streamed_columns(columns)
     found = StreamedColumns(
+        # what has no sample dimension is an array of its own, in the order of the result
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
     if kept:
@@ -523,6 +537,7 @@ def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColu
             streams = found.streams[first : first + count].reshape(
                 *column.shape[1:], *found.streams.shape[1:]
             )
+            # a view with mechanisms and samples in front: nothing is copied
             found[column.name] = np.moveaxis(streams, (-2, -1), (0, 1))
             first += count
     return found
@@ -550,8 +565,9 @@ class EverySample:
     samples: int
 
     def rooms(self) -> Iterator[tuple[slice, Array]]:
-        """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is asked for."""
+        """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is requested."""
         streams = self.results.streams if isinstance(self.results, StreamedColumns) else None
+        # a whole slice has its place in the result, and is written straight there
         if streams is not None and isinstance(self.at, slice):
             yield slice(0, streams.shape[1]), streams
             return
@@ -559,6 +575,7 @@ class EverySample:
         places = np.arange(len(self.results["samples_ok"]))[self.at]
         size = max(1, designs.KERNEL_BUFFER // (NUMBER * numbers * self.samples))
         buffer = room_of(numbers, min(size, len(places)), self.samples)
+        # as many mechanisms as the buffer holds, which stays in the cache
         for first in range(0, len(places), size):
             where = places[first : first + size]
             room = buffer[:, : len(where)]
@@ -570,6 +587,7 @@ class EverySample:
         for name, nodes in self.columns.items():
             target = self.results[name].reshape(*self.results[name].shape[:2], len(nodes))
             for k in range(len(nodes)):
+                # number by number, as streams come; the target has them side by side
                 target[where, :, k] = next(stream)
 
 
@@ -587,7 +605,7 @@ class MachineCodeExecutor:
     Attributes
     ----------
     task : what is computed
-    asked : the same as expressions
+    asked : the outputs as expressions
     threads : that share the mechanisms
     kernels : "machine code"; "arrays" runs the same scans on NumPy
     """
@@ -609,8 +627,9 @@ class MachineCodeExecutor:
     ) -> MachineCodeExecutor:
         """The executor of a task; the numbers of one mechanism or more say what varies.
 
-        Raises Untraceable, with a reason that is told.
+        Raises Untraceable, with a reason for the user.
         """
+        # reported before anything is traced
         if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
         varied = varied_of(numbers, values)
@@ -627,6 +646,7 @@ class MachineCodeExecutor:
 
     def lanes(self, task: SweepTask) -> int:
         """How many mechanisms are computed together."""
+        # a mechanism that is written takes the room of its columns beside its states
         written = 0 if task.asked.reduced else sum(column.bytes for column in task.asked.columns)
         return max(
             1,
@@ -642,6 +662,7 @@ class MachineCodeExecutor:
             rows |= beginnings(task.ready, numbers, len(next(iter(rows.values()))))
         judged = self.asked.judging.judge(rows)
         rows |= judged.values
+        # mechanisms that turn out doubtful at a sample are taken out again below
         clear = judged.clear.copy()
         if clear.any():
             everywhere = bool(clear.all())
@@ -649,6 +670,7 @@ class MachineCodeExecutor:
             some = rows if everywhere else {name: row[at] for name, row in rows.items()}
             clear[at] = self._without_events(some, at, results)
         left = np.nonzero(~clear)[0]
+        # few mechanisms with events are not worth a kernel of their own
         worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
         if worth and self._eventful.possible:
             self._with_events(left, numbers, values, results)
@@ -672,7 +694,7 @@ class MachineCodeExecutor:
     def _on_arrays(
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
-        """The same for few of them, by arrays alone."""
+        """Fill in mechanisms that have events by arrays alone: for a few of them nothing is compiled."""
         most = self.arrays.lanes(self.task)
         for first in range(0, len(left), most):
             lanes = left[first : first + most]
@@ -699,6 +721,8 @@ class MachineCodeExecutor:
         )
         results["samples_ok"][at] = self.asked.samples
         results["worst_residual"][at] = found[RESIDUAL]
+        # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes to
+        # the arrays
         clear: Mask = found[RESIDUAL] <= 0.5 * CLOSED
         for slack in {SLACK, SURE} & found.keys():
             clear &= found[slack] > 0.0
@@ -708,6 +732,7 @@ class MachineCodeExecutor:
         """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
         rows = dict(rows)
         columns = self.asked.final
+        # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
             rows |= self._passing.reduced(self._states(depth), rows)
         nodes = {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
@@ -724,6 +749,7 @@ class MachineCodeExecutor:
         parts = [fold.state for fold in folds]
         if self.task.asked.slopes:
             parts += [self.asked.slopes.of_fold(fold) for fold in folds]
+        # judging costs little and is done with the first pass
         if depth == 0:
             parts.append(judging_states(self.asked))
         return together(*parts)

@@ -38,7 +38,7 @@ class Output:
     Attributes
     ----------
     name : str
-        As it is asked for: "velocity", "position.C", "position.C.x".
+        As it is requested: "velocity", "position.C", "position.C.x".
     quantity : str
         Its name in the vocabulary.
     where : for each dimension behind the sample an index, or all of it
@@ -54,7 +54,7 @@ class Output:
     attributes: Mapping[str, Any]
 
     def of(self, solved: Solved, values: Values) -> Array:
-        """Its values (lanes, samples, ...): the same bits as in the motion's dataset.
+        """Values of the output (lanes, samples, ...), bit by bit those of the motion's dataset.
 
         `values` are those that vary, by their paths.
         """
@@ -102,6 +102,7 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
 
 def quantities_of(motion: xr.Dataset) -> list[str]:
     """Names of the quantities that a motion has at every sample, in reading order."""
+    # statuses have a column of their own
     told = [name for name in QUANTITIES if name in motion.data_vars and "sample" in motion[name].dims]
     return [name for name in told if name != "status"]
 
@@ -154,6 +155,7 @@ def output_of_quantity(motion: xr.Dataset, name: str, quantity: str, rest: str) 
 
 def _label(name: str, rest: str, labels: list[str]) -> tuple[str, str]:
     """The longest label that `rest` begins with (labels may hold dots), and what stands behind it."""
+    # the longest first: a label may begin another one
     for label in sorted(labels, key=len, reverse=True):
         if rest == label or rest.startswith(label + "."):
             return label, rest[len(label) + 1 :]
@@ -185,6 +187,7 @@ def fold_samples(name: str, values: Array, ok: Mask) -> Array:
     Rounding of a mean stays below n eps times the mean of the absolute values. A NaN at an ok sample makes the
     whole NaN.
     """
+    # the mask against all further axes
     counted = ok.reshape(*ok.shape, *[1] * (values.ndim - 2))
     counts = counted.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -196,6 +199,7 @@ def _fold(name: str, values: Array, counted: Mask, counts: Any) -> Any:
     if name in ("mean", "sum"):
         total = values.sum(axis=1, where=counted)
         return total / counts if name == "mean" else total
+    # of `max` only the greatest is wanted; from zero it is what is taken off
     least = values.min(axis=1, where=counted, initial=np.inf) if name != "max" else 0.0
     if name == "min":
         return least
@@ -234,7 +238,7 @@ class Variable:
     output: Output | None = None
 
     def of(self, solved: Solved, values: Rows) -> Array:
-        """Its values, (lanes, n) or what broadcasts to it."""
+        """Values of the variable, (lanes, n) or what broadcasts to it."""
         if self.output is not None:
             return self.output.of(solved, values)
         if self.kind == "varied":
@@ -255,15 +259,16 @@ class OutputFormula:
     variables: Mapping[str, Variable]
 
     def of(self, solved: Solved, values: Rows, ok: Mask) -> Array:
-        """Its value for each mechanism (lanes,); NaN where no sample is ok."""
+        """Value of the formula for each mechanism (lanes,); NaN where no sample is ok."""
         given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
         with np.errstate(all="ignore"):
             found = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
+        # one number a mechanism stands in a column of one
         flat = np.broadcast_to(found, (len(ok), 1))[:, 0]
         return np.where(ok.any(axis=1), flat, np.nan)
 
     def traced(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
-        """Its value where numbers are expressions: `solved` is of one sample, `m` folds."""
+        """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
         given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
         return self.text(m, **given)
 
@@ -303,12 +308,14 @@ def _formula(
     motion: xr.Dataset, name: object, text: object, known: Mapping[str, tuple[str, ...]]
 ) -> OutputFormula:
     taken = isinstance(name, str) and (name in RESERVED or name in motion.dims)
+    # a name that means something else in the result would hide it
     if not isinstance(name, str) or not _NAME.fullmatch(name) or taken:
         what = _("{name} cannot be the name of a result").format(name=value_text(name))
         raise InputError("reduce", what, _("use letters, digits and underscores"))
     where = "reduce" if name == VALUE else f"reduce {name}"
     if not isinstance(text, str):
         raise InputError(where, _("a formula is a text"), _('such as "range(position_C_x)"'))
+    # only words of the motion become variables: a formula may have hundreds to choose from
     words = dict.fromkeys(_WORD.findall(text[:TEXT_LENGTH]))
     used = tuple(word for word in words if word in known)
     _refuse_unknown(where, words, known)
@@ -319,7 +326,7 @@ def _formula(
 
 
 def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[str, ...]]) -> None:
-    """A misspelt name is told with the nearest one: there may be hundreds."""
+    """A misspelt name is reported with the nearest one: there may be hundreds."""
     for word in words:
         if word not in known and word not in CONSTANTS and word not in FUNCTIONS | FOLDS:
             what = _("unknown name {name}").format(name=value_text(word))
@@ -339,6 +346,7 @@ def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
 
 def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
     """The value must be one number a mechanism: two samples tell."""
+    # of two samples: what still has two values varies from sample to sample
     two = {name: np.ones((1, 1 if variable.kind == "varied" else 2)) for name, variable in variables.items()}
     with np.errstate(all="ignore"):
         found = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
@@ -349,7 +357,7 @@ def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Va
         )
 
 
-# What a sweep is asked for: outputs at every sample, outputs reduced, or formulas.
+# What a sweep computes: outputs at every sample, outputs reduced, or formulas.
 
 AnyArray: TypeAlias = npt.NDArray[Any]
 Reduce: TypeAlias = str | Mapping[str, str] | None
@@ -396,7 +404,7 @@ class SweepOutputs:
 
     @property
     def slopes(self) -> dict[str, str]:
-        """Column -> the column of its derivatives, where these are asked for."""
+        """Column -> the column of its derivatives, where these are requested."""
         names = {column.name for column in self.columns}
         return {name: slope_of(name) for name in names if slope_of(name) in names}
 
@@ -423,7 +431,7 @@ def slope_of(name: str) -> str:
 
 
 def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
-    """The same with the derivatives of every reduced column by the values that vary.
+    """Sweep outputs with the derivatives of every reduced column by the values that vary.
 
     Raises InputError where nothing is reduced.
     """

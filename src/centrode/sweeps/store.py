@@ -61,9 +61,11 @@ class Blocks:
     def of(cls, shape: tuple[int, ...], most: int) -> Blocks:
         """Blocks as great as they may be: at most `most` mechanisms."""
         axis, inner = len(shape) - 1, 1
+        # as many whole dimensions as fit, from the last one on
         while axis > 0 and inner * shape[axis] <= most:
             inner *= shape[axis]
             axis -= 1
+        # pieces of nearly equal length: none is left over that is very short
         pieces = math.ceil(shape[axis] / max(1, most // inner))
         return cls(shape, axis, math.ceil(shape[axis] / pieces))
 
@@ -88,6 +90,7 @@ class Blocks:
         outer, piece = divmod(block, self.pieces)
         inner = math.prod(self.shape[self.axis + 1 :])
         first = (outer * self.shape[self.axis] + piece * self.step) * inner
+        # the last piece of an axis may be shorter
         end = (outer * self.shape[self.axis] + min((piece + 1) * self.step, self.shape[self.axis])) * inner
         return first, end
 
@@ -95,6 +98,7 @@ class Blocks:
         """Where a block stands in an array of the shape."""
         outer, piece = divmod(block, self.pieces)
         places: list[slice] = []
+        # the place of a block in the outer dimensions, the last one fastest
         for extent in reversed(self.shape[: self.axis]):
             outer, place = divmod(outer, extent)
             places.insert(0, slice(place, place + 1))
@@ -130,6 +134,7 @@ class Tally:
         self.mechanisms += other.mechanisms
         self.whole += other.whole
         self.none += other.none
+        # NaN is no residual: a block without any changes nothing
         self.worst_residual = float(np.fmax(self.worst_residual, other.worst_residual))
         for name, found in other.extremes.items():
             own = self.extremes.get(name)
@@ -138,7 +143,8 @@ class Tally:
             )
 
     def as_dict(self) -> dict[str, Any]:
-        """As a marker holds it; numbers survive to the last bit."""
+        """The totals as JSON that a marker holds; numbers survive to the last bit."""
+        # JSON has no NaN
         worst = None if math.isnan(self.worst_residual) else self.worst_residual
         return {
             "mechanisms": self.mechanisms,
@@ -188,6 +194,7 @@ def tally_of(asked: SweepOutputs, samples: int, results: Mapping[str, npt.NDArra
     extremes: Extremes = {}
     if asked.reduced:
         for column in asked.columns:
+            # derivatives have no extremes of interest, and the variables of whole mechanisms have theirs
             if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):
                 flat = results[column.name].reshape(len(ok), math.prod(column.shape))
                 extremes[column.name] = [_extremes(flat[:, k]) for k in range(flat.shape[1])]
@@ -295,6 +302,7 @@ class InMemory:
 
     def leave_the_rest_empty(self) -> None:
         """Leave no part of a block that was being put when an interruption came."""
+        # blocks are put in order, so all behind the last one put is not computed
         for column in self.frame.asked.columns:
             self.arrays[column.name][self.tally.mechanisms :] = column.empty
 
@@ -336,8 +344,7 @@ def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
 # chunks.
 #
 # A mark holds for exactly what was written: a chunk that was cut off, changed or taken away, a mark of
-# another block or
-# one that was edited give another checksum, and the block counts as damaged.
+# another block or one that was edited give another checksum, and the block counts as damaged.
 
 GREATEST = 8_000_000
 """Bytes of a small file of a store; a mark has some hundreds, the study holds the mechanism as text."""
@@ -381,6 +388,7 @@ class Marks:
     def write(self, block: int, tally: Tally) -> None:
         """Mark a block whose chunks are written."""
         told = tally.as_dict()
+        # the checksum is of what is read back, not of what was meant to be written
         checksum = self._checksum(block, told)
         if checksum is None:
             what = _("block {block} cannot be read back").format(block=block)
@@ -396,9 +404,11 @@ class Marks:
         """
         done: dict[int, Tally] = {}
         damaged: list[int] = []
+        # any file may lie there: names that are no block's are left alone
         for file in self.folder.glob("*/*.json"):
             block = self._block(file)
             told = read_small(file)
+            # no mark at all: the block is simply not done
             if block is None or told is None or not isinstance(told.get("sha256"), str):
                 continue
             tally = self._tally(block, told.get("tally"))
@@ -410,6 +420,7 @@ class Marks:
 
     def _block(self, file: Path) -> int | None:
         """The block whose mark has this name, if any has."""
+        # digits of other scripts, and numbers longer than any block's, are refused before they are read
         if not (file.stem.isascii() and file.stem.isdigit()) or len(file.stem) > len(str(len(self.blocks))):
             return None
         block = int(file.stem)
@@ -435,6 +446,7 @@ class Marks:
         for file, size in self.chunks(block):
             try:
                 status = file.stat()
+                # a size that is wrong says so without reading
                 if not stat.S_ISREG(status.st_mode) or status.st_size != size:
                     return None
                 with file.open("rb") as stream:
@@ -442,6 +454,7 @@ class Marks:
                     for piece in iter(lambda: stream.read(PIECE), b""):
                         found.update(piece)
             except (FileNotFoundError, NotADirectoryError):
+                # a chunk of empty numbers is not written by zarr: its absence is part of the checksum
                 found.update(b"none")
             except OSError:
                 return None
@@ -469,6 +482,7 @@ def read_bounded(file: Path, most: int) -> bytes | None:
         with file.open("rb") as stream:
             content = stream.read(most + 1)
     except OSError:
+        # one byte more than allowed, as the file may have grown
         return None
     return content if len(content) <= most else None
 
@@ -534,10 +548,12 @@ class Store:
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
         region = self.blocks.region(block)
         extent = tuple(along.stop - along.start for along in region)
+        # what stood there before is removed: zarr writes whole chunks, but a part of one would be read first
         self.marks.remove_chunks(block)
         for column in self.frame.asked.columns:
             values = results[column.name].reshape(extent + column.shape)
             self.arrays[column.name][(*region, *[slice(None)] * len(column.shape))] = values
+        # the mark last: without it the block counts as not done
         self.marks.write(block, tally)
         self.done.add(block)
         self.tally.add(tally)
@@ -566,7 +582,9 @@ def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -
                 _make(path, frame, blocks, study)
             else:
                 _refuse_other_studies(path, found, study)
+                # the store's own division counts: another version may have chosen otherwise
                 blocks = _blocks_of(found, path, frame)
+                # metadata are compared with what this sweep would write, before zarr reads any of it
                 _refuse_damaged_files(path, _empty_store(frame, blocks), found["files"])
                 _remove_drafts(path)
         yield Store(path, frame, blocks)
@@ -574,6 +592,7 @@ def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -
 
 def read_store(path: Path, frame: SweepFrame) -> xr.Dataset:
     """The result in a store; numbers are read when they are used, coordinates are those of the sweep."""
+    # coordinates come from the sweep itself
     coordinates = frame.empty.coords
     data = xr.open_zarr(str(path), chunks=None, drop_variables=list(map(str, coordinates)))
     # a folder has no order of its own
@@ -588,6 +607,7 @@ def _refuse_other_folders(path: Path) -> None:
     if not path.exists() or not any(path.iterdir()):
         return
     progress = path / PROGRESS
+    # an empty `progress` alone is what an interrupted beginning leaves
     begun = [entry.name for entry in path.iterdir()] == [PROGRESS] and not any(progress.iterdir())
     if not begun and not (progress / LOCK).is_file():
         raise InputError(str(path), _("the folder holds something else"), _("name another place"))
@@ -658,8 +678,10 @@ def _refuse_other_studies(path: Path, found: Mapping[str, Any], study: Mapping[s
 
 def _make(path: Path, frame: SweepFrame, blocks: Blocks, study: Mapping[str, Any]) -> None:
     """Make the arrays, without numbers, and keep what they are of; what is left of a making cut short is removed."""
+    # a making cut short left no study, so nothing there counts
     _clear(path, frame)
     files = _empty_store(frame, blocks)
+    # in a draft that is renamed as a whole
     with draft_folder(path) as draft:
         for name, content in files.items():
             (draft / name).parent.mkdir(parents=True, exist_ok=True)

@@ -89,13 +89,14 @@ def sweep(
     Raises
     ------
     InputError
-        Anything asked for that there is not, a result too great, a store of another sweep, machine code for
+        Anything requested that there is not, a result too great, a store of another sweep, machine code for
         what it cannot compute.
     """
     name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
     span = requested_grid(prepared, samples, start, stop)
+    # the description's own motion says what there is to name
     motion = _first(solve(prepared, span), outputs, reduce)
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)
@@ -150,8 +151,9 @@ def check_table(data: xr.Dataset) -> None:
 
 
 def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
-    """The description's own motion, with its reduction where that is asked for."""
+    """The description's own motion, with its reduction where that is requested."""
     motion = dataset_of(solved)
+    # reductions are computed only where they are named: masses need not be complete otherwise
     if "reduced_" not in f"{outputs} {reduce}":
         return motion
     check_reducible(solved)
@@ -167,6 +169,7 @@ def _check_size(frame: SweepFrame, most: int, repair: str) -> None:
 
 def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor) -> Blocks:
     each = max(1, sum(column.bytes for column in task.asked.columns))
+    # positions of a block by time, its bytes by memory: the lesser of both
     most = min(executor.blocks * designs.BLOCK_POSITIONS // task.places, designs.BLOCK_BYTES // each)
     return Blocks.of(frame.design.shape, max(1, most))
 
@@ -198,6 +201,7 @@ def _compute(
         if kept.has(block):
             continue
         first, stop = kept.blocks.mechanisms(block)
+        # parts that are solved together stay below the working set; a block is kept as a whole
         before = kept.tally.mechanisms
         results = kept.room(block)
         for low in range(first, stop, lanes):
@@ -210,7 +214,7 @@ def _compute(
         kept.put(block, results, tally_of(task.asked, len(task.span.parameter), results))
 
 
-# Sweeps in files: which mechanism, what varies, what is asked for.
+# Sweeps in files: which mechanism, what varies, what is requested.
 
 WAYS = ("vary", "grid", "sample")
 KEYS = ("mechanism", *WAYS, "outputs", "samples", "from", "to", "reduce", "gradient", "executor")

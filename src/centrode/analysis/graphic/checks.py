@@ -17,7 +17,7 @@ from centrode.model.mechanism import Mechanism
 # Velocities by integrating the equations in Cauchy form: the second of three routes, where it applies.
 
 STEPS = 100
-"""Rows of an integration; of them only the last is asked for."""
+"""Rows of an integration; of them only the last is requested."""
 
 # the equations in symbols are heavy, and needed by this column alone
 _integrated = functools.partial(importlib.import_module, "centrode.equations.integration")
@@ -34,6 +34,7 @@ def integrated_rates(mechanism: Mechanism, exact: xr.Dataset) -> Mapping[tuple[s
         course = _integrated().integrate(mechanism, "adaptive", steps=STEPS, stop=stop)
     except (ModuleNotFoundError, CentrodeError):
         return {}
+    # it stopped before the instant: its last row is of another one
     if int(course["status"][-1]) != Status.OK:
         return {}
     last = course.isel(sample=-1)
@@ -118,8 +119,10 @@ def _rows(
     for link in found.mechanism.link_names:
         exact = float(found.exact[turning].sel(link=link)[0])
         unit = "rad/s" if diagram.order == 1 else "rad/s^2"
+        # no -0.0 in a table
         turn = diagram.turns[link] + 0.0
         yield CheckRow(turning, link, unit, turn, integrated.get((turning, link)), exact)
+    # a step on paper [m] in millimetres, times what a millimetre stands for
     grain = 1e3 * (found.board.paper_step or 0.0) * diagram.scale
     for point in found.mechanism.moving_points:
         exact = float(np.hypot(*found.exact[moving].sel(point=point).to_numpy()[0]))

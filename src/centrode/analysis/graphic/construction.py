@@ -100,6 +100,7 @@ def _turn_of(stage: ConstructionStage, turning_of: Turning | Meshed | Rolled, li
     rate = 0.0 if turning_of.drive is None else stage.driven[turning_of.drive]
     if link == turning_of.link:
         return stage.turns[turning_of.relative_to] + rate
+    # the link is the one that the other is measured from: its turn is the other way round
     return stage.turns[turning_of.link] - rate
 
 
@@ -109,9 +110,11 @@ def _image(stage: ConstructionStage, link: str, point: str) -> list[str]:
     if base == point:
         return []
     arm = stage.drawing.arm(stage.drawing.point(base), stage.drawing.point(point), known=True)
+    # two points in one place have one rate; a direction of no length could not be read
     if arm == 0:
         stage.points[point] = stage.rate(base)
         return [f"{letter(stage)}_{point} = {letter(stage)}_{base}"]
+    # with two images there already the third is drawn by a similar triangle; the rate is the same
     others = [name for name in stage.drawing.numbers.local[link] if name in stage.points and name != point]
     ray = turning_ray(stage, arm, point, base, link)
     rate = stage.points[point] = stage.rate(base) + stage.about(link, arm)
@@ -131,6 +134,7 @@ def _through_two(stage: ConstructionStage, group: TwoPointLink) -> list[str]:
     place = stage.drawing.point
     arm = stage.drawing.arm(place(group.first), place(group.second), known=True)
     apart = stage.points[group.second] - stage.points[group.first]
+    # apart = i w arm (and what is inwards), so the vector product with the arm over its square gives w alone
     stage.turns[group.link] = cross(arm, apart) / abs(arm) ** 2
     stage.bases[group.link] = group.first
     ends = stage.points[group.first], stage.points[group.second]
@@ -141,6 +145,7 @@ def _through_two(stage: ConstructionStage, group: TwoPointLink) -> list[str]:
 def _aim(stage: ConstructionStage, group: Aim) -> tuple[list[str], Triangle | None]:
     """RPR: the place of the link under the target turns about the pivot, and the target slides over it."""
     numbers, drawing = stage.drawing.numbers, stage.drawing
+    # a wheel that touches a straight track aims as a guide does
     if group.contact is not None:
         track = numbers.gearing.track[group.contact.rolling]
         direction, guide = track.direction, group.contact.rolling  # type: ignore[union-attr]
@@ -148,16 +153,19 @@ def _aim(stage: ConstructionStage, group: Aim) -> tuple[list[str], Triangle | No
         direction, guide = numbers.direction[group.guide], group.guide
     arm = drawing.arm(drawing.point(group.pivot), drawing.point(group.target))
     under = f"{group.target}′"
+    # the place under the target is no point of the link: it has a dash, and an image of its own
     first = turning_ray(stage, arm, under, group.pivot, group.link)
     heading = drawing.heading(group.link, direction)
     second = carrying_ray(stage, group.link, group.target, heading, guide)
     rate, triangle = draw_crossing(stage, under, first, second)
+    # both equations end in one place: in the drawing it is where they cross
     stage.hidden[under] = rate
     stage.bases[group.link] = group.pivot
     stage.turns[group.link] = stage.read(first.length(rate)) / abs(arm)
     if group.block is not None and group.sliding is not None:
         stage.bases[group.block] = group.target
         stage.turns[group.block] = stage.turns[group.link]
+        # the block turns with the link that it slides on
         stage.points[group.sliding] = stage.carried(group.block, drawing.point(group.sliding))
     return [first.equation(letter(stage), under), second.equation(letter(stage), under)], triangle
 
@@ -173,13 +181,16 @@ def _meet(stage: ConstructionStage, group: Meet) -> tuple[list[str], Triangle | 
     ]
     rate, triangle = draw_crossing(stage, reference, *rays)
     (stage.points if group.points else stage.hidden)[reference] = rate
+    # the first point is where the dyad meets; what else the carriage has follows as images
     for point in group.points[1:]:
         if group.carriage is not None:
             _image(stage, group.carriage, point)
     for locus, ray in zip(group.loci, rays, strict=True):
+        # rods turn by the unknown parts, which are known only now
         if isinstance(locus, Rod):
             stage.bases[locus.link] = locus.centre
             stage.turns[locus.link] = stage.read(ray.length(rate)) / ray.arm
+    # a drive's stop gives the rate outright: there is nothing to draw
     if any(isinstance(locus, Stop) for locus in group.loci):
         return [f"{letter(stage)}_{reference} = {_drive_words(rays)}"], None
     return [ray.equation(letter(stage), reference) for ray in rays], triangle
@@ -193,6 +204,7 @@ def _drive_words(rays: Sequence[Ray]) -> str:
 
 def _ray_of_point(stage: ConstructionStage, ray: Ray, group: Meet, reference: str) -> Ray:
     """The equation of another place of the carriage, as one of the point that is looked for."""
+    # both equations have to end in one place of the carriage: that of the other is carried over
     place = stage.drawing.point(reference)
     if group.carriage is None or ray.at == place:
         return ray
@@ -219,9 +231,11 @@ def triangle_of(
         return None
     corners = (first.start, second.start, rate)
     sides = (abs(corners[1] - corners[0]), abs(rate - corners[0]), abs(rate - corners[1]))
+    # a triangle with a side of rounding has no angles
     if min(sides) <= SMALL * max(sides):
         return None
     names = (_side(first, second), first.text.split(" ")[0], second.text.split(" ")[0])
+    # angles opposite to the sides, in the order of the sides
     found = tuple(
         _angle(corners[a] - corners[k], corners[b] - corners[k])
         for k, a, b in ((2, 0, 1), (1, 0, 2), (0, 1, 2))

@@ -80,6 +80,7 @@ def stages(
     structure: Structure, drawing: VectorDrawing, driven: Driven, grains: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[ConstructionStage, ConstructionStage]:
     """Velocities and accelerations constructed; lengths of edges are read to the grains [m/s] and [m/s^2]."""
+    # the frame's points stand still: they are all at the pole
     velocity = ConstructionStage(drawing, driven[0], grain=grains[0])
     velocity.points |= dict.fromkeys(drawing.numbers.frame, 0j)
     construct(structure, velocity)
@@ -112,6 +113,7 @@ def positions_at(prepared: Ready, exact: xr.Dataset) -> Positions:
 def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], dict[str, float]]:
     """First and second derivatives by time of every drive's value."""
     path = prepared.kinematics.path
+    # one drive at a given speed has the rates of the grid; laws are differentiated by time
     if not path.by_time:
         drive = path.driven[0].drive.id
         return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
@@ -138,8 +140,10 @@ def instant_centres(velocity: ConstructionStage) -> dict[str, complex | None]:
     found: dict[str, complex | None] = {}
     for link, base in velocity.bases.items():
         rate, turn = velocity.rate(base), velocity.turns[link]
+        # a turn counts by the speed that it gives across the drawing
         if abs(turn) * reach > AT_REST * size:
             found[link] = velocity.drawing.point(base) + 1j * rate / turn
+        # it moves but does not turn: the centre is at infinity; what does neither has none
         elif abs(rate) > AT_REST * size:
             found[link] = None
     return found
@@ -209,7 +213,7 @@ class Diagrams:
 
 
 def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
-    """The velocity diagram at a value of the drive [rad or m], or a time [s] where that is what a motion is asked at.
+    """The velocity diagram at a value of the drive [rad or m], or a time [s] where the motion is given by time.
 
     `angle_step` [rad] rounds the directions that are read off the drawing. Raises as `diagrams` does. Without it the
     images agree with the motion's velocities to rounding over the sine between the lines that meet.
@@ -218,7 +222,7 @@ def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | str | 
 
 
 def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
-    """The acceleration diagram, with normal, tangential and Coriolis parts; as `velocity_diagram`."""
+    """Acceleration diagram with normal, tangential and Coriolis parts; arguments are those of `velocity_diagram`."""
     return diagrams(mechanism, at, angle_step).acceleration
 
 
@@ -266,8 +270,10 @@ def diagrams(
     if board.paper_step is None:
         return found
     # scales are chosen by the exact drawing, then lengths on paper are read
+    # a step on paper [m] in millimetres, times what a millimetre stands for
     coarse = replace(board, length_step=1e3 * board.paper_step * found.scale)
     grains = tuple(1e3 * board.paper_step * one.scale for one in (found.velocity, found.acceleration))
+    # with the reading step all is drawn again, at the scales already chosen
     again = _construct_diagrams(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
     return replace(
         again,
@@ -310,6 +316,7 @@ def _construct_diagrams(
     drawing = drawing_of(prepared, exact, board)
     velocity, acceleration = stages(prepared.structure, drawing, driven_rates(prepared, span), grains)
     places = {name: complex(*at) for name, at in drawing.at.points.items()}
+    # a wheel's rim may reach beyond all points
     extent = extent_of([*places.values(), *_rims(prepared.mechanism, drawing)])
     moving, speeding = _size(velocity), _size(acceleration)
     # velocities that are rounding beside what accelerations make in a moment are none
@@ -328,7 +335,7 @@ def _construct_diagrams(
 
 
 def _trajectory(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
-    """The motion as far as it is asked for by default; the instant alone where nothing says how far."""
+    """The motion as far as it is requested by default; the instant alone where nothing says how far."""
     try:
         return dataset_of(solve(prepared, requested_grid(prepared, COURSE, None, None)))
     except InputError:
@@ -338,6 +345,7 @@ def _trajectory(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
 def _size(stage: ConstructionStage) -> float:
     """The longer side of a diagram."""
     ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
+    # the pole, 0, belongs to the diagram although no edge may begin there
     return extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
 
 

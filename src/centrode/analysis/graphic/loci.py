@@ -136,6 +136,7 @@ def turning_ray(stage: ConstructionStage, arm: complex, point: str, centre: str,
     symbol, name = letter(stage), f"{point}{centre}"
     legs: tuple[RayLeg, ...] = ()
     if stage.before is not None:
+        # of velocities there is no normal part: w^2 r is of the second order
         legs = (RayLeg("normal", stage.inwards(link, arm), name, f"aⁿ_{name} (∥ {name})"),)
     kind: Kind = "relative" if stage.order == 1 else "tangential"
     text = f"{symbol if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
@@ -143,6 +144,7 @@ def turning_ray(stage: ConstructionStage, arm: complex, point: str, centre: str,
         stage.rate(centre),
         rate_symbol(stage, centre),
         legs,
+        # the unknown part is square to the arm whatever the order is
         1j * arm / abs(arm),
         kind,
         name,
@@ -173,11 +175,13 @@ def _along(
 ) -> Ray:
     under = f"{point}′"
     legs: tuple[RayLeg, ...] = ()
+    # Coriolis needs velocities, and a body that turns
     if stage.before is not None and on != FRAME and stage.before.turns[on] != 0.0:
         turned = stage.coriolis(on, at, velocity)
         legs = (RayLeg("coriolis", turned, f"{point}{under}", f"aᵏ_{point}{under}"),)
     origin = stage.carried(on, at)
     if on != FRAME:
+        # the image of the place under the point, drawn beside those of the points
         stage.hidden.setdefault(under, origin)
     text = f"{letter(stage)}ʳ_{point}{under if on != FRAME else ''} (∥ {guide})"
     return Ray(
@@ -198,6 +202,7 @@ def carrying_ray(stage: ConstructionStage, link: str, point: str, direction: com
     at, under = stage.drawing.point(point), f"{point}′"
     legs: tuple[RayLeg, ...] = ()
     if stage.before is not None and stage.before.turns[link] != 0.0:
+        # seen from the point the link's place moves backwards: so does Coriolis
         turned = -stage.coriolis(link, at, stage.before.points[point])
         legs = (RayLeg("coriolis", turned, f"{under}{point}", f"aᵏ_{under}{point}"),)
     text = f"{letter(stage)}ʳ_{under}{point} (∥ {guide})"
@@ -231,6 +236,7 @@ def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
 def _driven(ray: Ray, rate: float) -> Ray:
     """The equation of a point that is driven along the direction and free square to it."""
     driven = RayLeg("driven", rate * ray.direction, ray.name, ray.text)
+    # the part along the guide is known from the drive: the unknown one is square to it
     free = ray.text.replace("∥", "⊥")
     return replace(ray, legs=(*ray.legs, driven), direction=1j * ray.direction, text=free)
 
@@ -245,6 +251,7 @@ def cylinder(stage: ConstructionStage, locus: CylinderCircle) -> Ray:
         apart = stage.before.points[locus.point] - stage.before.points[locus.centre]
         spin = dot(1j * along, apart) / abs(arm)
         stretch = dot(along, apart)
+        # in this order the parts are drawn: normal, along, Coriolis
         legs.insert(0, RayLeg("normal", -(spin**2) * arm, name, f"aⁿ_{name} (∥ {name})"))
         legs.append(RayLeg("coriolis", 2j * spin * stretch * along, name, f"aᵏ_{name} (⊥ {name})"))
     text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
@@ -274,6 +281,7 @@ def _of_wheel(stage: ConstructionStage, locus: Touch | Rolloff) -> Ray:
     # rolling: the centre goes back along the track by the radius times the wheel's turn against it
     turn = stage.turns[contact.link] - stage.turns[contact.on]
     way = -turn * drawing.numbers.gearing.radius[contact.rolling]
+    # seen from the wheel the track is carried the other way
     return _driven(ray, -way if locus.carried else way)
 
 
@@ -282,6 +290,7 @@ def _about_track(stage: ConstructionStage, locus: Touch | Rolloff, on: str, trac
     drawing, wheel = stage.drawing, locus.point
     centre = drawing.inside(on, track.centre)
     arm = drawing.arm(centre, drawing.point(wheel))
+    # from the wheel's side the arm points backwards
     sense = -1.0 if locus.carried else 1.0
     origin = stage.points[wheel] if locus.carried else stage.carried(on, centre)
     name = f"{wheel}K"
@@ -304,6 +313,7 @@ def _about_track(stage: ConstructionStage, locus: Touch | Rolloff, on: str, trac
 def meshed_rate(stage: ConstructionStage, gear: GearRatio, link: str) -> float:
     """Turning of one link of a gear from that of the other two (Willis)."""
     weights = gear.weights(stage.drawing.numbers)
+    # sum of weights times turns is zero
     known = sum(weight * stage.turns[other] for other, weight in weights.items() if other != link)
     return float(-known / weights[link])
 
@@ -341,9 +351,11 @@ def rolled_rate(stage: ConstructionStage, rolling: NoSlip) -> float:
     track = numbers.gearing.track[rolling.rolling]
     velocity = 0j if stage.before is None else stage.before.points[rolling.centre]
     relative = stage.points[rolling.centre] - stage.carried(rolling.on, centre)
+    # the body carries the place itself along, and turns what passes: neither is rolled
     relative -= stage.coriolis(rolling.on, centre, velocity)
     if isinstance(track, Straight):
         heading = drawing.heading(rolling.on, track.direction)
+        # on the left of its track a wheel that goes ahead turns clockwise
         return float(-dot(heading, relative) / numbers.gearing.radius[rolling.rolling])
     arm = drawing.arm(drawing.inside(rolling.on, track.centre), centre)
     return float(numbers.gearing.spin(rolling.rolling) * dot(1j * arm, relative) / abs(arm) ** 2)
@@ -352,6 +364,7 @@ def rolled_rate(stage: ConstructionStage, rolling: NoSlip) -> float:
 def train_rates(stage: ConstructionStage, group: Train) -> dict[str, float]:
     """Turning of all links of a train."""
     rows = [_row(stage, equation) for equation in group.equations]
+    # rates obey the equations of the angles with the constants left out: the same solver does
     return solved_angles(group, rows, Positions({}, {}, {}, dict(stage.turns)))
 
 
@@ -364,6 +377,7 @@ def _row(stage: ConstructionStage, equation: AngleEquation) -> tuple[Mapping[str
         return {equation.link: 1.0, equation.on: -1.0}, rolled_rate(stage, equation)
     if isinstance(equation, Arm):
         spin = numbers.gearing.spin(equation.rolling.rolling)
+        # w_wheel - w_on = spin (w_arm - w_on), all to one side
         return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}, 0.0
     assert isinstance(equation, AngleGiven)
     rate = 0.0 if equation.drive is None else stage.driven[equation.drive]
@@ -373,10 +387,8 @@ def _row(stage: ConstructionStage, equation: AngleEquation) -> tuple[Mapping[str
 # Groups of higher class by the method of false position.
 #
 # A rod is taken out of the group, or a point off its guide, and a link is turned at will: what is left are
-# dyads. How
-# much the rod would stretch tells how wrong the trial is; rates depend on it linearly, so two trials give the
-# right
-# one.
+# dyads. How much the rod would stretch tells how wrong the trial is; rates depend on it linearly, so two
+# trials give the right one.
 
 MOST_TRIALS = 2
 """Links turned at will at once: with three, a person no longer draws."""
@@ -400,6 +412,7 @@ class Cut:
     def spares(self, equation: Equation) -> bool:
         """Whether an equation stays."""
         constraint = equation[0]
+        # all that ties the rod's own pose falls with it: as a body it is out of the group
         if isinstance(constraint, PointInLink) and self.rod:
             return constraint.link != self.rod
         if isinstance(constraint, DistanceDrive):
@@ -415,6 +428,7 @@ class Cut:
         apart = stage.points[self.ends[1]] - stage.points[self.ends[0]]
         rate = stage.driven[self.drive] if self.drive else 0.0
         if stage.before is not None:
+            # the normal part is known from the velocities and is no misfit
             spin = cross(along, stage.before.points[self.ends[1]] - stage.before.points[self.ends[0]]) / abs(
                 arm
             )
@@ -438,6 +452,7 @@ def solve_by_trials(
     opened = open_up(structure, group)
     size = _trial_size(stage)
     count = len(opened.turned)
+    # no turn, then one link after the other turned by the size: as many trials as unknowns and one
     values = [tuple(size * (k == j + 1) for j in range(count)) for k in range(count + 1)]
     misfits = [_misfits(_construct_trial(stage, opened, trial, construct), opened) for trial in values]
     found = tuple(_interpolate_trial(np.array(values), np.array(misfits)).tolist())
@@ -445,6 +460,7 @@ def solve_by_trials(
         opened.turned, tuple(values), tuple(misfits), found, tuple(cut.name for cut in opened.cuts)
     )
     stage.steps.append(ConstructionStep(step_of(group), (), trial=trial))
+    # the trials are thrown away: only the drawing with the right turns stays
     _adopt(stage, _construct_trial(stage, opened, found, construct))
     for cut in opened.cuts:
         _put_back(stage, cut)
@@ -462,7 +478,9 @@ def _trial_size(stage: ConstructionStage) -> float:
 
 def _interpolate_trial(values: Array, misfits: Array) -> Array:
     """The trial that fits: misfits are linear in it."""
+    # a trial differs from the first in one link alone, by the size: the greatest difference is that
     slopes = (misfits[1:] - misfits[0]).T / (values[1:] - values[0]).max(axis=1)
+    # rows of velocities and of guides have scales of their own: each by its own greatest slope
     sizes = np.abs(slopes).max(axis=1, keepdims=True)
     if not sizes.all() or np.linalg.cond(slopes / sizes) > 1 / SINGULAR:
         raise MotionError(
@@ -495,6 +513,7 @@ def _put_back(stage: ConstructionStage, cut: Cut) -> None:
     """The rod that was taken out turns with its two points."""
     if not cut.rod:
         return
+    # its points were drawn by others, so only its turn is missing
     arm = _arm(stage, cut.ends)
     ends = stage.points[cut.ends[0]], stage.points[cut.ends[1]]
     stage.turns[cut.rod] = cross(arm, ends[1] - ends[0]) / abs(arm) ** 2
@@ -513,6 +532,8 @@ def _off_guide(stage: ConstructionStage, guide: PointOnGuide) -> float:
     at = drawing.point(guide.point)
     velocity = 0j if stage.before is None else stage.before.points[guide.point]
     relative = (
+        # what the guide's body gives, and Coriolis, are motion along with it: only across the guide it is a
+        # misfit
         stage.points[guide.point] - stage.carried(guide.on, at) - stage.coriolis(guide.on, at, velocity)
     )
     return cross(heading, relative)
@@ -526,9 +547,11 @@ def _drive(link: str) -> str:
 def open_up(structure: Structure, group: Newton) -> Opened:
     """Cuts and links to turn at will with which a group falls into dyads, as few as will do."""
     cuts = list(_cuts(group))
+    # the fewest cuts first: each one more trial to draw
     for count in range(1, MOST_TRIALS + 1):
         for chosen in combinations(cuts, count):
             links = [link for link in group.links if all(cut.rod != link for cut in chosen)]
+            # as many links turned as ties cut, so that equations and unknowns stay equal
             for turned in combinations(links, count):
                 groups = _fallen(structure, group, chosen, turned)
                 if groups is not None:
@@ -547,6 +570,7 @@ def _cuts(group: Newton) -> Iterator[Cut]:
         hinges = [c.point for c in constraints if isinstance(c, PointInLink) and c.link == link]
         entity = Entity("link", link)
         held = sum(entity in c.bodies for c in constraints)
+        # the rod is hinged in two points and tied by nothing else: without it its place is not needed
         if len(hinges) == 2 and held == 2:
             yield Cut(link, (hinges[0], hinges[1]), rod=link)
     for c in constraints:
@@ -564,18 +588,21 @@ def _fallen(
     entities = [Entity("point", name) for name in group.points]
     entities += [Entity("link", name) for name in group.links if name not in rods]
     equations: list[Equation] = [e for e in group.equations if all(cut.spares(e) for cut in cuts)]
+    # a drive of angle takes the place of what was cut
     equations += [(AngleDrive(_drive(link), link, FRAME), 0) for link in turned]
     neighbours = {
         number: [(e, k) for e in entities if e in equation[0].bodies for k in range(e.unknowns)]
         for number, equation in enumerate(equations)
     }
     owner = match(neighbours)
+    # fewer pairs than unknowns: something is left that nothing places
     if len(owner) < sum(entity.unknowns for entity in entities):
         return None
     matched: dict[Entity, list[int]] = {entity: [] for entity in entities}
     for (entity, _k), number in owner.items():
         matched[entity].append(number)
     depends = {
+        # what a thing is placed by comes before it
         entity: [o for number in own for o in equations[number][0].bodies if o != entity and o in matched]
         for entity, own in matched.items()
     }

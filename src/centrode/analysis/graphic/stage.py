@@ -23,7 +23,7 @@ PARALLEL = 1e-12
 ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 """Scales that a person takes, times a power of ten."""
 COARSEST_ANGLE, COARSEST_LENGTH = math.pi / 6, 0.01
-"""Reading steps [rad] and [m on paper] above which nothing is told."""
+"""Reading steps [rad] and [m on paper] above which a drawing says nothing."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,7 @@ class DrawingBoard:
         if self.length_step is not None and not known:
             length = self.length_step * round(length / self.length_step)
         return (
+            # exactly, the vector itself: through its polar form it would be rounded
             vector if self.angle_step is None and length == abs(vector) else length * self.direction(vector)
         )
 
@@ -82,6 +83,7 @@ def meet(first: complex, along: complex, second: complex, other: complex) -> com
             _("two lines of the construction are parallel: the group stands at a dead point"),
             _("choose another instant, or a finer reading step"),
         )
+    # Cramer's rule, with unit vectors: the sine is the determinant
     return first + cross(second - first, other) / sine * along
 
 
@@ -100,6 +102,7 @@ def round_scale(extent: float, room: float) -> float:
     if not extent > 0.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(extent / room))
+    # a hair smaller is taken as well, so that an extent of a round scale itself is not sent to the next
     return next(float(f"{step * power:.3g}") for step in ROUND if step * power >= (1 - 1e-9) * extent / room)
 
 
@@ -242,7 +245,7 @@ class ConstructionStage:
         return 1j * self.turns[link] * arm + self.inwards(link, arm)
 
     def inwards(self, link: str, arm: complex) -> complex:
-        """The normal part of it: nothing of velocities, -omega^2 arm of accelerations."""
+        """Normal part of `about`: 0 of velocities, -omega^2 arm of accelerations."""
         return 0j if self.before is None else -(self.before.turns[link] ** 2) * arm
 
     def carried(self, link: str, at: complex) -> complex:
@@ -250,12 +253,14 @@ class ConstructionStage:
         if link == FRAME:
             return 0j
         base = self.bases[link]
+        # from the one known point of the link, as on paper
         return self.rate(base) + self.about(link, self.drawing.arm(self.drawing.point(base), at))
 
     def coriolis(self, link: str, at: complex, velocity: complex) -> complex:
         """Coriolis acceleration at a place of a link of what passes there with a velocity; nothing of velocities."""
         if self.before is None or link == FRAME:
             return 0j
+        # relative to the place of the link under what passes
         return 2j * self.before.turns[link] * (velocity - self.before.carried(link, at))
 
     def read(self, length: float) -> float:
@@ -263,7 +268,7 @@ class ConstructionStage:
         return self.grain * round(length / self.grain) if self.grain else length
 
     def copy(self) -> ConstructionStage:
-        """The same, to be gone on with apart."""
+        """A copy that can be continued independently: collections are copied, the drawing is shared."""
         return ConstructionStage(
             self.drawing,
             dict(self.driven),

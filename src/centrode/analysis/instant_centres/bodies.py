@@ -92,6 +92,7 @@ class BodyMotions(Named):
     def relative(self, pair: Pair) -> tuple[Places, Array]:
         """Velocity of the first body's own point against the second body, and the relative spin."""
         first, second = pair
+        # the velocity at which the second body passes the first one's point is not relative motion
         arm = self.place[..., first] - self.place[..., second]
         carried = self.velocity[..., second] + 1j * self.spin[..., second] * arm
         return self.velocity[..., first] - carried, self.spin[..., first] - self.spin[..., second]
@@ -101,6 +102,8 @@ class BodyMotions(Named):
         name = self.names[body]
         at = self.place[..., body]
         points = [] if name in self.sliders else list(self.mechanism.points_of(name).values())
+        # a body with one point, or a slider, has an arm of the mechanism's length: of its own size there is
+        # nothing
         arm = complex(*np.subtract(points[1], points[0])) if len(points) > 1 else self.scale
         return np.asarray(at + arm * np.exp(1j * self.turn[..., body]))
 
@@ -111,6 +114,7 @@ class BodyMotions(Named):
     def carried(self, body: int, local: Sequence[float]) -> complex:
         """Where a place in a body's axes is, at one sample."""
         name = self.names[body]
+        # place is that of the body's first named point, so the arm is measured from it
         own = (0.0, 0.0)
         if name not in self.sliders and name != FRAME:
             own = next(iter(self.mechanism.points_of(name).values()))
@@ -121,6 +125,7 @@ class BodyMotions(Named):
 def mechanism_of_motion(motion: xr.Dataset) -> Mechanism:
     """The mechanism of a motion; of one taken out of a batch, with the dimensions that it was given."""
     mechanism = parse_mechanism(str(motion.attrs["mechanism"]))
+    # a lane taken out of a batch keeps its numbers as coordinates without a dimension, named by their paths
     for path in map(str, motion.coords):
         if "." in path and motion[path].ndim == 0:
             mechanism = with_value(mechanism, path, float(motion[path]))
@@ -150,6 +155,7 @@ def bodies_of(motion: xr.Dataset) -> BodyMotions:
         point = sliders[name].point if name in sliders else next(iter(mechanism.links[name].coordinates))
         for order in ORDERS[:3]:
             found[order][..., number] = values[order][..., columns["point"].index(point)]
+        # a slider on the frame keeps the zeros: it does not turn
         for order in ORDERS[3:] if carrier != FRAME else ():
             found[order][..., number] = values[order][..., columns["link"].index(carrier)]
     absent = ~np.isfinite(found["velocity"] + found["spin"]).all(axis=-1)
@@ -181,6 +187,7 @@ def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
     for guide in mechanism.guides:
         if guide.link is None:
             name = f"slider {guide.id}"
+            # a link may have the name already
             while name in mechanism.links or name in found:
                 name += "'"
             found[name] = guide
@@ -189,6 +196,7 @@ def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
 
 def vectors(places: Places) -> Array:
     """Places as pairs of coordinates; NaN in both where one is not there."""
+    # a product with i turns infinity in one part into NaN in the other alone: both are said to be absent
     known = np.isfinite(places)
     return np.stack([np.where(known, places.real, np.nan), np.where(known, places.imag, np.nan)], axis=-1)
 
@@ -204,10 +212,8 @@ def refuse_batch(motion: xr.Dataset) -> None:
 # The bodies of a motion on the sphere: all turn about its centre, so angular velocities tell everything.
 #
 # Attitudes are matrices whose columns are a body's axes in those of the frame; they follow from the places of
-# two
-# of its points. The slider of a guide turns about the pole of its circle against what carries the guide, and
-# its axes
-# are those of that body, turned by the displacement.
+# two of its points. The slider of a guide turns about the pole of its circle against what carries the guide,
+# and its axes are those of that body, turned by the displacement.
 
 TURNING_ORDERS = ("axes", "spin", "spin_rate", "speed")
 BY_DRIVE = ("velocity_coefficient", "acceleration_coefficient")
@@ -250,6 +256,7 @@ class TurningBodies(Named):
             first, second = _best(self.mechanism, name, named)
             return self.points[first], self.points[second]
         place = self.points[self.sliders[name].point] if name in self.sliders else self._any(named)
+        # across the axis to which the place is nearest to square: there the product is longest and never zero
         least = np.argmin(np.abs(place), axis=-1)[..., None]
         across = np.cross(place, np.where(least == np.arange(3), 1.0, 0.0))
         return place, np.asarray(across / np.linalg.norm(across, axis=-1, keepdims=True))
@@ -290,10 +297,13 @@ def _of_one(motion: xr.Dataset) -> TurningBodies:
     )
     for number, guide in enumerate(sliders.values(), start=len(names) - len(sliders)):
         base = names.index(guide.on)
+        # displacements are arcs of a small circle of radius sin(arc): over it they are the slider's angle
+        # about the pole
         slides = [motion[v].sel(guide=guide.id).to_numpy() / math.sin(guide.arc) for v in _slides(orders)]
         pole = axes[:, base] @ np.array(unit_vector(pole_of(mechanism, guide)))
         axes[:, number] = _rotations_about(pole, slides[0]) @ axes[:, base]
         spin[:, number] = spin[:, base] + slides[1][:, None] * pole
+        # the pole is carried round by the body with the guide: its own derivative is what `cross` adds
         carried = slides[2][:, None] * pole + slides[1][:, None] * np.cross(spin[:, base], pole)
         spin_rate[:, number] = spin_rate[:, base] + carried
         speed[:, number] = speed[:, base] + slides[3][:, None] * pole
@@ -332,6 +342,7 @@ def _best(mechanism: Mechanism, name: str, named: list[str]) -> tuple[str, str]:
     def sine(two: tuple[str, str]) -> float:
         return float(np.linalg.norm(np.cross(own[two[0]], own[two[1]])))
 
+    # the greater the sine, the less an error of the places turns the axes
     return max(combinations(named, 2), key=sine)
 
 
@@ -353,6 +364,7 @@ def pole_of(mechanism: Mechanism, guide: Guide) -> tuple[float, float]:
 
 def _rotations_about(axis: Array, angle: Array) -> Array:
     """Rotations about unit vectors (samples, 3) by angles (samples)."""
+    # Rodrigues: with N the matrix of the cross product, R = 1 + sin N + (1 - cos) N^2
     x, y, z = np.moveaxis(axis, -1, 0)
     zero = np.zeros_like(x)
     around = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
@@ -363,9 +375,9 @@ def _rotations_about(axis: Array, angle: Array) -> Array:
 # The motion of one body as another one sees it: derivatives of its pose, and what follows for the pole.
 #
 # Complex numbers z = c + s, s a place of the body turned with it, in the axes of the other body. By the
-# relative
-# angle: pole P = c + i c', where z' = 0; A = c'' - i c' leads from it to the inflection pole; B = c''' + c'
-# (Bottema and Roth, Theoretical Kinematics, 1979, chapter 8, write them as instantaneous invariants).
+# relative angle: pole P = c + i c', where z' = 0; A = c'' - i c' leads from it to the inflection pole; B =
+# c''' + c' (Bottema and Roth, Theoretical Kinematics, 1979, chapter 8, write them as instantaneous
+# invariants).
 
 
 @dataclass(frozen=True)
@@ -389,7 +401,7 @@ class Seen:
 
     @property
     def pole_in_body(self) -> Places:
-        """The same place in the axes of the body looked at."""
+        """Place whose velocity is zero, in the axes of the body looked at."""
         return np.asarray(np.conj(self.turned) * 1j * self.c[1] / self.w[0])
 
     @property
@@ -402,6 +414,7 @@ class Seen:
         """Derivatives of `c` by the relative angle, first to third where there are so many."""
         w = self.w[0]
         first = self.c[1] / w
+        # the chain rule, solved for the highest derivative: c'' = w^2 second + w' first, and so on
         second = (self.c[2] - self.w[1] * first) / w**2
         if len(self.c) < 4:
             return first, second
@@ -423,6 +436,8 @@ def seen_by(bodies: BodyMotions, pair: Pair) -> Seen:
     )
     w, w1 = bodies.spin[..., second], bodies.spin_rate[..., second]
     back = np.conj(rotor)
+    # derivatives in axes that turn with w: each one brings a term -i w, which makes the Coriolis and the
+    # normal part
     c = (
         back * place,
         back * (velocity - 1j * w * place),

@@ -61,6 +61,7 @@ def joints_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryJoint, ...]:
     found: list[PrimaryJoint] = []
     for point in mechanism.points:
         found += [
+            # what is hinged at one point is hinged pair by pair: of n bodies n (n - 1) / 2 centres lie there
             PrimaryJoint("hinge", point, order_pair(pair))
             for pair in combinations(carriers(bodies, point), 2)
         ]
@@ -123,6 +124,8 @@ def place_of(joint: PrimaryJoint, bodies: BodyMotions) -> tuple[complex, bool]:
 def point_at(bodies: BodyMotions, point: str) -> complex:
     """Place of a named point at one sample."""
     mechanism = bodies.mechanism
+    # a point of the frame, or of a slider, has a place without any link: its owner is looked for only after
+    # these
     if point in mechanism.frame.points:
         return complex(*mechanism.frame.coordinates[point])
     for name, guide in bodies.sliders.items():
@@ -178,12 +181,12 @@ class Case(IntEnum):
 
     @property
     def word(self) -> str:
-        """What tables call it, in English."""
+        """What tables call the case, in English."""
         return _WORDS[self]
 
     @property
     def sentence(self) -> str:
-        """The same in the chosen language."""
+        """What tables call it, in the chosen language."""
         return _(_WORDS[self])
 
 
@@ -216,6 +219,8 @@ class Recogniser:
         slow = ROUNDED * bodies.rate
         still = np.abs(spin) * bodies.scale <= slow
         found = self._by_velocities(pair, moving, spin, slow)
+        # from weaker to stronger: what a joint shows overrides what velocities show, rest overrides both, and
+        # where nothing is there no case holds
         if order_pair(pair) in self.rolling:
             found[:] = Case.ROLLING
         if order_pair(pair) in self.hinged:
@@ -226,13 +231,15 @@ class Recogniser:
         return found
 
     def _by_velocities(self, pair: Pair, moving: Places, spin: Array, slow: Array) -> Kinds:
-        """Cases told by the velocities of two points of the first body against the second."""
+        """Cases by the velocities of two points of the first body against the second."""
         bodies, first = self.bodies, pair[0]
         arm = bodies.second_place(first) - bodies.place[..., first]
         other = moving + 1j * spin * arm
         with np.errstate(invalid="ignore"):
             product = np.conj(moving) * other
             parallel = np.abs(product.imag) <= ROUNDED * np.abs(product)
+        # perpendiculars to parallel velocities coincide: the line through the arrowheads cuts them in the
+        # centre
         found = np.full(moving.shape, Case.DIRECTIONS, dtype=np.int8)
         found[parallel & (product.real > 0.0)] = Case.SAME_SENSE
         found[parallel & (product.real <= 0.0)] = Case.OPPOSITE_SENSE
@@ -243,12 +250,13 @@ class Recogniser:
 # Instantaneous axes of bodies that turn about the centre of a sphere, and how they are located.
 #
 # Where the axis of a relative rotation meets the sphere, two opposite places stand still: they are the
-# instant centres
-# of the sphere. The one about which the body turns counter-clockwise, seen from outside, is given.
+# instant centres of the sphere. The one about which the body turns counter-clockwise, seen from outside, is
+# given.
 
 
 def axis_of(bodies: TurningBodies, pair: Pair) -> Array:
     """End of the axis of a pair (..., samples, 3), a unit vector; NaN where nothing turns."""
+    # the end about which the turn is counter-clockwise is the one the angular velocity points to
     spin = bodies.relative(pair)
     size = np.linalg.norm(spin, axis=-1)
     return np.asarray(spin / np.where(at_rest(bodies, pair), np.nan, size)[..., None])
@@ -258,6 +266,7 @@ def axis_speed(bodies: TurningBodies, pair: Pair, axis: Array) -> Array:
     """Relative angular velocity [rad/s] about the end of the axis that is given; zero where nothing turns."""
     speed = bodies.speed[..., pair[0], :] - bodies.speed[..., pair[1], :]
     found = np.sum(speed * axis, axis=-1)
+    # at rest there is no axis to project on: what is left is rounding, said as it is
     return np.asarray(np.where(at_rest(bodies, pair), np.linalg.norm(speed, axis=-1), found))
 
 
@@ -372,6 +381,7 @@ def _axes(bodies: TurningBodies, numbers: Sequence[Pair]) -> dict[str, Array]:
 def _locate_centres(bodies: BodyMotions, pair: Pair, cases: Array) -> tuple[Array, Array]:
     """Places of centres, and directions of those at infinity."""
     moving, spin = bodies.relative(pair)
+    # in a translation the centre is at infinity, at rest any place is one
     finite = (cases != Case.ABSENT) & (cases != Case.REST) & (cases != Case.TRANSLATION)
     with np.errstate(divide="ignore", invalid="ignore"):
         place = bodies.place[..., pair[0]] + 1j * moving / spin
@@ -384,6 +394,7 @@ def _locate_centres(bodies: BodyMotions, pair: Pair, cases: Array) -> tuple[Arra
 
 def upward(direction: Places) -> Places:
     """Of the two senses of a direction the one that points up, or to the right."""
+    # -0.0 points neither up nor down: the real part decides
     down = (direction.imag < 0.0) | ((direction.imag == 0.0) & (direction.real < 0.0))
     return np.asarray(np.where(down, -direction, direction))
 

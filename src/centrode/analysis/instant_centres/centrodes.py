@@ -30,9 +30,8 @@ from centrode.model.motion_parameter import parameter_values
 # Polodes on the sphere: what the end of the instantaneous axis describes in the axes of either body.
 #
 # Both bodies see the axis move alike: with W the relative angular velocity, its derivatives in the axes of
-# the one and of
-# the other differ by (w1 - w2) x W = 0. So the cones that the polodes belong to roll on each other without
-# slip.
+# the one and of the other differ by (w1 - w2) x W = 0. So the cones that the polodes belong to roll on each
+# other without slip.
 
 
 @dataclass(frozen=True)
@@ -58,10 +57,13 @@ def polodes_of(bodies: TurningBodies, pair: Pair) -> Polodes:
     axis, spin = axis_of(bodies, pair), bodies.relative(pair)
     growing = bodies.spin_rate[..., first, :] - bodies.spin_rate[..., second, :]
     growing = growing - np.cross(bodies.spin[..., second, :], spin)  # as both bodies see it
+    # where the bodies are at rest there is no axis and no rate of it: the size is NaN with the axis
     size = np.where(np.isfinite(axis[..., :1]), np.linalg.norm(spin, axis=-1, keepdims=True), np.nan)
+    # a unit vector turns by the part of the derivative that is square to it
     rate = (growing - axis * np.sum(axis * growing, axis=-1, keepdims=True)) / size
     fixed, moving = (_inside(bodies.axes[..., body, :, :], axis) for body in (second, first))
     rates = _inside(bodies.axes[..., second, :, :], rate), _inside(bodies.axes[..., first, :, :], rate)
+    # the axis jumps to its other end where the rotation turns back, so the place itself tells the sense
     return Polodes(fixed, moving, rates, fixed)
 
 
@@ -134,6 +136,7 @@ def _in_plane(motion: xr.Dataset, link: str, against: str) -> Polodes:
         curves = [vectors(np.where(none, np.nan, curve)) for curve in (seen.pole, seen.pole_in_body)]
         rate = seen.pole_velocity
         rates = vectors(rate), vectors(np.asarray(np.conj(seen.turned) * rate))
+    # in the plane the centre has no sense: the sign of the relative turn stands for it
     return Polodes(curves[0], curves[1], rates, np.sign(np.where(none, np.nan, seen.w[0]))[..., None])
 
 
@@ -148,6 +151,7 @@ def _pieces(found: Polodes, present: npt.NDArray[np.bool_]) -> npt.NDArray[np.in
     absent = ~(present & np.isfinite(found.fixed).all(axis=-1) & np.isfinite(found.moving).all(axis=-1))
     begins = np.ones(absent.shape, dtype=bool)
     with np.errstate(invalid="ignore"):
+        # nothing is joined through NaN: the comparison is false there
         onwards = np.sum(found.sense[..., 1:, :] * found.sense[..., :-1, :], axis=-1) > 0.0
     begins[..., 1:] = ~onwards | absent[..., 1:] | absent[..., :-1]
     numbers = np.cumsum(begins & ~absent, axis=-1) - 1
@@ -184,8 +188,11 @@ def _arc(curve: Array, rate: Array, pieces: npt.NDArray[np.int32]) -> Array:
         chord = curve[..., 1:, :] - curve[..., :-1, :]
         first, last = _limit_tangents(chord, rate[..., :-1, :], rate[..., 1:, :])
         steps = np.zeros_like(chord[..., 0])
+        # four Gauss nodes: the speed of a cubic is a root, so no rule is exact, but this one is of the eighth
+        # order
         for node, weight in zip(NODES, WEIGHTS, strict=True):
             t = 0.5 * (node + 1.0)
+            # derivative of the Hermite cubic through both ends
             slope = 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * first
             slope = slope + t * (3.0 * t - 2.0) * last
             steps += 0.5 * weight * np.linalg.norm(slope, axis=-1)

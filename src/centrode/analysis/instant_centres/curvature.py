@@ -91,11 +91,13 @@ def curvature(
         raise InputError("link", _("{name} does not move against itself").format(name=link))
     prepared = ready(mechanism)
     if places is None:
+        # the motion starts anew from its description: a dataset has two derivatives, and the third is needed
         assert isinstance(source, xr.Dataset)
         places = prepared.parameter.instants(source)
     span = grid_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
     solved = solve(prepared, span)
     positions = jet_positions(prepared, span)
+    # behind a limit the motion does not get there, but the mechanism has its position
     present = np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
     seen = _pose_derivatives(mechanism, positions, link, against, present)
     own = _local_points(mechanism, link) | dict(points or {})
@@ -147,8 +149,10 @@ def _pose_derivatives(
     back = reversed_rotor(base.rotor)
     origin, rotor = rotate_vector(subtract(pose.origin, base.origin), back), rotate_vector(pose.rotor, back)
     x, y, cosine, sine = (_jet(number) for number in (*origin, *rotor))
+    # the rotor is a unit vector: its spin c s' - s c' is the relative angular velocity, whatever the angle is
     spin = cosine.lower_order() * sine.slope() - sine.lower_order() * cosine.slope()
 
+    # numbers that do not depend on the parameter are plain and have to be spread over the samples
     def along(number: object) -> Array:
         values = np.broadcast_to(np.asarray(number, dtype=np.float64), (1, len(present)))[0]
         return np.where(present, values, np.nan)
@@ -166,6 +170,7 @@ def _pose(mechanism: Mechanism, at: Positions, name: str) -> PlanePose:
     if guide is None:
         return PlanePose(*at.poses[name])
     x, y = at.points[guide.point]
+    # a slider is hinged in its point and turns with the guide it slides on
     return PlanePose((x, y), PlanePose(*at.poses[guide.on]).rotor)
 
 
@@ -184,13 +189,18 @@ def _of_pole(seen: Seen, scale: float) -> dict[str, object]:
     first, second, third = seen.by_angle()
     turning = np.abs(seen.w[0]) * scale > ROUNDED * (np.abs(seen.w[0]) * scale + np.abs(seen.c[1]))
     pole = np.where(turning, seen.pole, np.nan)
+    # with r the arm from the pole P, derivatives by the angle are Z' = i r, Z'' = A - r, Z''' = B - i r
     to_inflection = np.where(turning, second - 1j * first, np.nan)
     rest = third + first
     diameter = np.abs(to_inflection)
     # a hinge that stays has a circle without size, and no tangent
     normal = np.where(diameter > ROUNDED * scale, to_inflection / diameter, np.nan)
     ahead = rest * np.conj(-1j * normal)  # in the pole's axes: x along the tangent, y along the normal
+    # Z' x Z''' |Z'|^2 = 3 (Z' x Z'') (Z' . Z''): with A = i D, B = p + i q it is (x^2 + y^2) ((p + 3 D) x + q
+    # y) = 3 D^2 x y
     cubic = np.stack([ahead.real + 3.0 * diameter, ahead.imag], axis=-1) / (3.0 * diameter**2)[:, None]
+    # Z' x Z''' = -Re(conj(r) B) = 0: the arm to Ball's point is square to B, and on the inflection circle an
+    # arm is as long as A's part in its direction
     square = 1j * rest / np.abs(rest)
     told = (np.abs(rest) > ROUNDED * np.maximum(diameter, scale)) & np.isfinite(normal)
     ball = np.where(told, pole + square * (square * np.conj(to_inflection)).real, np.nan)
@@ -221,7 +231,9 @@ def _of_points(seen: Seen, points: Local, scale: float) -> dict[str, object]:
     bend = (np.conj(first) * second).imag
     curved = bend / speed**3
     along = (np.conj(first) * second).real
+    # by the arc: the derivative by the parameter over the speed
     slope = ((np.conj(first) * third).imag / speed**3 - 3.0 * bend * along / speed**5) / speed
+    # next to an inflection the centre runs to infinity: it is left out where rounding would place it
     centre = place + 1j * first / speed / np.where(np.abs(curved) * scale > ROUNDED, curved, np.nan)
     outside = seen.origin[:, None] + seen.rotor[:, None] * centre
     return {

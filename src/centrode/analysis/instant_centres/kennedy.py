@@ -61,7 +61,7 @@ class KennedyStep:
         "kennedy" (two lines), "together" (its two neighbours lie in one place), "rest" (no relative motion),
         "field" (the velocity field, where Kennedy's theorem is not enough)
     name : of the hinge, guide, wheel or gear
-    by : numbers of the bodies whose lines meet, or that were gone by
+    by : numbers of the bodies whose lines meet, or by whose centres the step was made
     place : (x, y) [m], None at infinity and at rest; on the sphere (x, y, z) of one end of the axis
     direction : unit vector towards a centre at infinity, else None
     error : bound on rounding, as an angle between places seen from the mechanism's size
@@ -99,9 +99,10 @@ class Construction:
         )
 
     def needed(self, pairs: Sequence[Pair]) -> Construction:
-        """The same with the steps alone that lead to some pairs."""
+        """The construction with those steps alone that lead to the centres of some pairs."""
         wanted: set[Pair] = {order_pair(pair) for pair in pairs}
         kept: list[KennedyStep] = []
+        # backwards: a step leans on earlier ones only, so one pass meets all that are needed
         for step in reversed(self.steps):
             if step.pair in wanted:
                 kept.append(step)
@@ -113,8 +114,8 @@ class Construction:
 # Places and lines of the plane with its points at infinity, each with a bound on its rounding error.
 #
 # A place is a unit vector (x, y, w) in coordinates of the order of one, a line one with the places on it
-# square to
-# it. Errors are angles between unit vectors [rad]: the same for near places and for those at infinity.
+# square to it. Errors are angles between unit vectors [rad]: the same for near places and for those at
+# infinity.
 
 Triple: TypeAlias = tuple[float, float, float]
 EPS = sys.float_info.epsilon
@@ -129,7 +130,7 @@ class ProjectivePoint:
 
     @property
     def at_infinity(self) -> bool:
-        """Whether it cannot be told from a place at infinity."""
+        """Whether it cannot be distinguished from a place at infinity."""
         return abs(self.vector[2]) <= self.error
 
 
@@ -155,17 +156,19 @@ def length(a: Triple) -> float:
 
 
 def join_or_meet(first: ProjectivePoint, second: ProjectivePoint) -> ProjectivePoint | None:
-    """The line through two places, or the place where two lines meet; nothing if they cannot be told apart."""
+    """The line through two places, or the place where two lines meet; None if they coincide within their errors."""
     normal = cross(first.vector, second.vector)
     sine = length(normal)
+    # an error at least of one rounding, so that exact places do not seem to lie apart by their rounding
     unsure = first.error + second.error + EPS
     if sine <= unsure:
         return None
+    # the product is off by what both are off, and scaling it up to length one scales that too
     return ProjectivePoint((normal[0] / sine, normal[1] / sine, normal[2] / sine), unsure / sine)
 
 
 def differ(first: ProjectivePoint, second: ProjectivePoint) -> bool:
-    """Whether two places are told apart by more than their errors."""
+    """Whether two places lie further apart than their errors."""
     return join_or_meet(first, second) is not None
 
 
@@ -176,6 +179,8 @@ def best_crossing(
     best: tuple[ProjectivePoint, tuple[int, int]] | None = None
     for (one, first), (other, second) in combinations(lines, 2):
         place = join_or_meet(one, other)
+        # a step may use any two lines: the pair with the smallest error is taken, as a person takes the
+        # steepest crossing
         if place is not None and place.error < (worst if best is None else best[0].error):
             best = place, (first, second)
     return best
@@ -184,10 +189,9 @@ def best_crossing(
 # Where a construction of instant centres has its places: in the plane, or on the sphere.
 #
 # Both are places of the projective plane (see `projective`): a place of the plane with a weight, an axis
-# through the
-# centre of the sphere. Places of the sphere are seen along the direction of their middle and enlarged by the
-# size of
-# the mechanism, which keeps great circles lines, so that small linkages keep their accuracy.
+# through the centre of the sphere. Places of the sphere are seen along the direction of their middle and
+# enlarged by the size of the mechanism, which keeps great circles lines, so that small linkages keep their
+# accuracy.
 
 Where: TypeAlias = tuple[float, ...]
 SMALLEST = 16.0 * EPS
@@ -211,7 +215,7 @@ class Spots(Protocol):
     ) -> ProjectivePoint | None:
         """The third centre of a gear: of the "first" or the "second" wheel against the carrier, or where they "mesh".
 
-        The two others stand in this order; nothing where they do not tell it.
+        The two others stand in this order; None where they do not determine it.
         """
 
     def pole(self, pair: Pair) -> Triple:
@@ -235,6 +239,8 @@ class PlaneSpots:
         return max(self.bodies.scale, float(np.max(np.abs(self.bodies.place - self.middle))))
 
     def shown(self, joint: PrimaryJoint, error: float) -> tuple[ProjectivePoint, Where | None]:
+        # places are measured from the middle: far from the origin of the axes the error would be that of the
+        # distance
         place, at_infinity = place_of(joint, self.bodies)
         if at_infinity:
             return spot(place, 0.0, error), None
@@ -252,15 +258,20 @@ class PlaneSpots:
         self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
     ) -> ProjectivePoint | None:
         """With A, B of the wheels on the carrier, P - A = i (P - B)."""
+        # ratios of distances mean nothing with a centre at infinity
         if any(one.at_infinity for one in known):
             return None
         a, b = (complex(one.vector[0], one.vector[1]) / one.vector[2] for one in known)
         ratio = gear.ratio
+        # where they mesh both wheels have one velocity against the carrier: w1 (P - A) = w2 (P - B), and w2 =
+        # i w1
         x, w = {
             "first": (ratio * a + (1.0 - ratio) * b, 1.0),
             "second": (a - (1.0 - ratio) * b, ratio),
             "mesh": (a - ratio * b, 1.0 - ratio),
         }[wanted]
+        # from places with weights to coordinates and back, and by the weights of a and b: errors grow by the
+        # ratio
         error = _geared_error(gear, known)
         if abs(x) <= error and abs(w) <= EPS * abs(ratio):
             return None  # equal turns about one axis: at rest
@@ -269,6 +280,7 @@ class PlaneSpots:
     def pole(self, pair: Pair) -> Triple:
         moving, spin = self.bodies.relative(pair)
         rate = float(self.bodies.rate) or 1.0
+        # scaled by the greatest velocity, so that one threshold serves all pairs
         turning = float(spin) * self.size / rate
         arm = (complex(self.bodies.place[pair[0]]) - self.middle) / self.size
         x = turning * arm + 1j * complex(moving) / rate
@@ -284,13 +296,16 @@ class SphereSpots:
     @cached_property
     def chart(self) -> Array:
         """Matrix that gives the coordinates of a spot: two enlarged across the middle, one along it."""
+        # points of a position only in part reached are left out
         places = np.array([place for place in self.bodies.points.values() if np.isfinite(place).all()])
         middle = places.mean(axis=0) if len(places) else np.array([0.0, 0.0, 1.0])
         apart = float(np.linalg.norm(middle))
         along = middle / apart if apart > SMALLEST else np.array([0.0, 0.0, 1.0])
+        # the axis of least share is farthest from parallel
         across = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along)))])
         across /= np.linalg.norm(across)
         size = float(np.max(np.linalg.norm(places - middle, axis=1), initial=0.0)) if len(places) else 1.0
+        # a mechanism over half the sphere is seen as it is; a small one is enlarged to the size of one
         size = min(1.0, size) if size > SMALLEST else 1.0
         return np.stack([across / size, np.cross(along, across) / size, along])
 
@@ -320,6 +335,8 @@ class SphereSpots:
         self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
     ) -> ProjectivePoint | None:
         """With A, B where the wheels are hinged to the carrier, the wheels turn about A - i B against each other."""
+        # the equation is between vectors: a centre is a line through the middle of the sphere, whose sense
+        # only a hinge tells
         pivots = [_hinge(self.bodies, wheel, gear.carrier) for wheel in (gear.first, gear.second)]
         if wanted != "mesh" or None in pivots:
             return None
@@ -342,6 +359,7 @@ def _geared_error(gear: PrimaryGearing, known: Sequence[ProjectivePoint]) -> flo
 
 def _hinge(bodies: TurningBodies, wheel: int, carrier: int) -> str | None:
     """The point in which a wheel is hinged to its carrier."""
+    # hinged to each other, both name the point
     own, held = (bodies.mechanism.points_of(bodies.names[number]) for number in (wheel, carrier))
     return next((name for name in own if name in held), None)
 
@@ -419,6 +437,7 @@ class _Constructing:
     def __init__(self, spots: Spots, residual: float) -> None:
         self.spots = spots
         self.bodies = spots.bodies
+        # the residual of the position is an error of its places
         self.start = ROUNDINGS + residual
         self.gears = gearings_of(self.bodies.mechanism, self.bodies)
         self.known: dict[Pair, ProjectivePoint | None] = {}  # None: at rest against each other
@@ -432,7 +451,10 @@ class _Constructing:
         everything = [order_pair(pair) for pair in combinations(range(len(self.bodies.names)), 2)]
         unknown = [pair for pair in everything if pair not in self.known]
         while unknown:
+            # all of a round before any is noted: no step leans on one of its own round, as in the circle
+            # diagram
             found = [step for step in map(self._derive_centre, unknown) if step is not None]
+            # one centre of the velocity field at a time: it may be all that Kennedy's theorem lacked
             for pair, where, how, name, by in found or [self._centre_of_velocities(unknown)]:
                 if where is None:
                     self._rest(pair, by)
@@ -448,6 +470,7 @@ class _Constructing:
         before = self.known.get(joint.pair)
         if joint.pair not in self.known:
             self._note(joint.pair, where, joint.kind, joint.name, at=place)
+        # two hinges in two places
         elif before is not None and differ(before, where):
             self._rest(joint.pair, ())  # joined twice, the bodies cannot move against each other
 
@@ -459,6 +482,8 @@ class _Constructing:
             one, other, third = (self.known.get(pair) for pair in pairs)
             if one is None or other is None or third is None:
                 continue
+            # the centres are coplanar as vectors where they are on a line: the product of all three is then
+            # zero
             volume = abs(dot(cross(one.vector, other.vector), third.vector))
             if volume > one.error + other.error + third.error + EPS:
                 rigid.update(pairs)
@@ -481,6 +506,7 @@ class _Constructing:
 
     def _rest(self, pair: Pair, by: tuple[int, ...]) -> None:
         self.known[pair] = None
+        # a later finding overrides: the earlier step of the pair is taken out
         self.steps = [step for step in self.steps if step.pair != pair]
         self.steps.append(KennedyStep(pair, "rest", "", by, None, None, self.start))
 
@@ -494,13 +520,18 @@ class _Constructing:
         together: list[tuple[ProjectivePoint, int]] = []
         for third, one, other in self._thirds(pair):
             if one is None or other is None:
+                # a body at rest against one of the pair moves as that one does: its centre with the other is
+                # the pair's
                 moving = other if one is None else one
                 return pair, moving, "together" if moving is not None else "rest", "", (third,)
             line = join_or_meet(one, other)
             if line is None:
+                # both centres with the third in one place: all three are there, the line through them has no
+                # direction
                 together.append((min(one, other, key=lambda s: s.error), third))
             else:
                 lines.append((line, third))
+        # two places that both stand still against each other leave no relative motion
         if len(together) > 1 and differ(together[0][0], together[1][0]):
             return pair, None, "rest", "", tuple(third for _place, third in together[:2])
         if together:
@@ -525,6 +556,7 @@ class _Constructing:
             "mesh": order_pair((gear.first, gear.second)),
         }
         wanted = next((name for name, leg in legs.items() if leg == pair), None)
+        # the step leans on the centres of the third wheel or carrier with both of the pair
         third = next((n for n in (gear.first, gear.second, gear.carrier) if n not in pair), gear.carrier)
         others = [self.known.get(leg) for name, leg in legs.items() if name != wanted]
         known = [one for one in others if one is not None]

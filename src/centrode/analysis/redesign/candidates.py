@@ -70,6 +70,7 @@ def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None)
     lengths of all links.
     """
     mechanism = prepared.mechanism
+    # bounds alone name what varies as well
     paths = list(dict.fromkeys(vary)) if vary else [*dict.fromkeys(bounds or ())] or default_paths(mechanism)
     for path in bounds or {}:
         if path not in paths:
@@ -135,6 +136,7 @@ def _scale(prepared: Ready, path: str, before: float, unit: str) -> float:
 def _default_bounds(one: Varying) -> tuple[float, float]:
     if one.path.endswith((".length", ".ratio", ".radius")):
         ends = sorted((SHRINK * one.before, STRETCH * one.before))
+        # an arc stays below half a great circle
         return ends[0], min(ends[1], 0.999 * pi) if one.unit == "rad" else ends[1]
     reach = pi if one.unit == "rad" else AROUND * one.scale
     return one.before - reach, one.before + reach
@@ -181,6 +183,7 @@ def _check_varies(prepared: Ready, one: Varying) -> None:
             _("it is placed by the initial angles"),
             _("vary these, or give it coordinates"),
         )
+    # tried with the present value: what is no dimension is refused there, and the result is not needed
     dimensions_of(mechanism, {one.path: one.before})
 
 
@@ -227,12 +230,14 @@ class Candidates:
         columns = dict(zip((one.path for one in self.varying), self.values(changes).T, strict=True))
         angles = {p.split(".")[1]: x for p, x in columns.items() if self._turns(p)}
         varied = {path: x for path, x in columns.items() if not self._turns(path)}
+        # twice: what is placed depends on the numbers that vary, and the dimensions on what is placed
         numbers = dimensions_of(mechanism, varied, ARRAYS)
         if places_anew(mechanism):
             size = len(changes)
             placed = placed_numbers(mechanism, numbers, angles)
             whole = {path: np.broadcast_to(x, size).astype(np.float64) for path, x in placed.items()}
             numbers = dimensions_of(mechanism, {**varied, **whole}, ARRAYS)
+        # mechanisms down, samples across: columns meet the row of nodes
         upright = numbers.map_numbers(lambda x: x if isinstance(x, float) else np.asarray(x)[:, None])
         kinematics = replace(self.prepared.kinematics, numbers=upright)
         signs = signs_at_start(self.prepared, kinematics, angles, len(changes))
@@ -247,6 +252,7 @@ class Candidates:
         for one, value in zip(self.varying, self.values(change[None, :])[0], strict=True):
             found = with_value(found, one.path, float(value))
         if places_anew(found):
+            # where angles place, they also decide the assembly; elsewhere the sides have to be written down
             return replace_placed(found)
         return _assembled_as(self.prepared, found, self.batch(change[None, :]))
 
@@ -258,12 +264,14 @@ def placed_numbers(
     fixed = {n: at for n, at in mechanism.frame.points.items() if not isinstance(at, Placed)}
     points: dict[str, Vector] = {name: numbers.frame[name] for name in fixed}
     poses: dict[str, tuple[Vector, Vector]] = {FRAME: ((0.0, 0.0), (1.0, 0.0))}
+    # links wait until one of their points is known; a round that poses none leaves the rest unplaced
     waiting = list(mechanism.links)
     while waiting:
         posed = [name for name in waiting if _pose(mechanism, numbers, angles, name, points, poses)]
         if not posed:
             break
         waiting = [name for name in waiting if name not in posed]
+    # paths are those of plain coordinates, so that dimensions_of takes them as given
     found: dict[str, Number] = {}
     for name, at in mechanism.frame.points.items():
         if isinstance(at, Placed):
@@ -294,6 +302,7 @@ def _pose(
     origin = subtract(points[known], rotate_vector(local[known], rotor))
     poses[name] = origin, rotor
     for point, coordinates in local.items():
+        # the first link that reaches a point places it
         points.setdefault(point, add(origin, rotate_vector(coordinates, rotor)))
     return True
 
@@ -308,8 +317,10 @@ def signs_at_start(
     at = kinematics.frame(ARRAYS, np.full((1, 1), kinematics.path.initial))
     with np.errstate(all="ignore"):
         for index, group in enumerate(kinematics.structure.groups):
+            # in the plan's order: later groups stand on positions of earlier ones
             if group.signed:
                 own = np.full((size, 1), prepared.assembled.signs[index])
+                # a side that the description states stays; initial angles decide only where they place
                 decided = not placed or stated_side(kinematics, group) is not None
                 hints = {} if decided else _hints(mechanism, group, angles)
                 signs[index] = _nearer(kinematics, group, index, at, hints) if hints else own
@@ -342,6 +353,7 @@ def _nearer(
         total: Number = 0.0
         for link, hint in hints.items():
             cosine, sine = trial.poses[link].rotor
+            # cosine of the angle to the hint, negative: small where they agree, without unwrapping
             total = total - (cosine * np.cos(hint) + sine * np.sin(hint))
         off.append(total)
     return np.asarray(np.where(off[0] <= off[1], 1.0, -1.0))
@@ -360,6 +372,7 @@ def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechan
     space = batch.kinematics.numbers.space
     sides: dict[str, Any] = dict(mechanism.assembly.sides)
     for index, group in enumerate(prepared.structure.groups):
+        # a side stated under either name of the group stays
         if group.signed and not any(name in sides for name in side_names(group)):
             sides[side_names(group)[0]] = side_words(space, group)[
                 0 if prepared.assembled.signs[index] > 0 else 1
@@ -491,6 +504,7 @@ def _behind_crank(lengths: _Lengths, crank: str, group: Meet, least_angle: float
     short, rod = lengths.of(crank), lengths.of(rods[0].link)
     if short is None or rod is None:
         return None
+    # the rod's part square to the guide is its length times the cosine of the transmission angle
     reach, offset = rod.high * cos(least_angle), _offset(lengths.candidates, crank, rails[0])
     if short.low + offset <= reach * (1.0 + MARGIN):
         return None
@@ -500,6 +514,7 @@ def _behind_crank(lengths: _Lengths, crank: str, group: Meet, least_angle: float
 def _offset(candidates: Candidates, crank: str, rail: Rail) -> float:
     """Distance of the crank's pivot from the guide, if no number that may change moves either; otherwise 0."""
     low, high = candidates.box()
+    # a number may move the pivot there and back: a share besides the ends shows it
     one_by_one = [np.diag(share * end) for end in (low, high) for share in (1.0, TRIED)]
     changes = np.vstack([np.zeros((1, len(low))), *one_by_one])
     numbers = candidates.batch(changes).kinematics.numbers
@@ -510,6 +525,7 @@ def _offset(candidates: Candidates, crank: str, rail: Rail) -> float:
     )
     first = float(offsets[0, 0])
     scale = float(candidates.prepared.kinematics.numbers.scale)
+    # the offset is a bound only if nothing moves it
     return first if float(np.max(np.abs(offsets - first))) <= MARGIN * scale else 0.0
 
 
@@ -531,6 +547,9 @@ def _behind_slider(
     if short is None or None in ranges:
         return None
     one, other = (one for one in ranges if one is not None)
+    # at angles from mu to pi - mu the squared distance of the ends is r1^2 + r2^2 -+ 2 r1 r2 cos mu at most:
+    # the longest straight way in that ring touches the inner circle, 4 sqrt(r1 r2 cos mu), and half of a
+    # stroke is the crank
     reach = 2.0 * sqrt(one.high * other.high * cos(least_angle))
     if short.low <= reach * (1.0 + MARGIN):
         return None

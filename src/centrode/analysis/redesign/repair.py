@@ -38,8 +38,7 @@ from centrode.structure.groups import Aim, Group, Meet, Newton
 # How well the dyads of many mechanisms close over one turn: squared sines of their transmission angles.
 #
 # The squared sine is a group's radicand over its own greatest value. It falls through zero where the group
-# begins to
-# be open, so it tells as well by how much a mechanism fails to turn.
+# begins to be open, so it tells as well by how much a mechanism fails to turn.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -51,6 +50,7 @@ ABSENT = -1.0
 def squared_sines(batch: Batch, nodes: int) -> Array:
     """Squared sines (lanes, groups, nodes) of transmission angles over one turn; NaN behind an open group."""
     kinematics = batch.kinematics
+    # between the round values at which events like to lie
     along = kinematics.path.initial + (np.arange(nodes) + 0.5) * (tau / nodes)
     at = kinematics.frame(ARRAYS, along[None, :])
     hooks = _Keeping(batch.signs)
@@ -60,10 +60,12 @@ def squared_sines(batch: Batch, nodes: int) -> Array:
             choices = SideChoices(hooks, index)
             size = _greatest(kinematics, group, at, choices)
             solve_group(group, ARRAYS, kinematics.numbers, at, choices)
+            # the root's argument was kept on the way: nothing is computed twice
             if size is not None:
                 ratio = hooks.kept[index] / size
                 found.append(np.broadcast_to(ratio, (batch.size, nodes)))
     if not found:
+        # without a dyad nothing can lock
         return np.ones((batch.size, 1, nodes))
     return np.stack(found, axis=1)
 
@@ -110,6 +112,7 @@ def _sine(circle: Any) -> Number:
 
 def least(sines: Array) -> Array:
     """The least squared sine of every mechanism (lanes,)."""
+    # behind an open group nothing is known: the least is that group's own, negative one
     return np.asarray(least_by_sector(np.where(np.isnan(sines), np.inf, sines), 1).min(axis=1))
 
 
@@ -125,9 +128,11 @@ def least_by_sector(sines: Array, sectors: int) -> Array:
     lowest = known.reshape(lanes, groups, sectors, width).argmin(axis=3) + first
     before, here, behind = (np.take_along_axis(known, (lowest + step) % nodes, axis=2) for step in (-1, 0, 1))
     with np.errstate(all="ignore"):
+        # the parabola through three nodes, its lowest point within half a cell of the lowest node
         slope, bend = 0.5 * (behind - before), behind - 2.0 * here + before
         shift = np.clip(-slope / bend, -0.5, 0.5)
         below = np.where(bend > 0.0, shift * (slope + 0.5 * shift * bend), 0.0)
+    # beside an absent value the parabola would measure a jump
     smooth = np.isfinite(below) & (before != ABSENT) & (behind != ABSENT)
     return np.asarray((here + np.where(smooth, below, 0.0)).reshape(lanes, groups * sectors))
 
@@ -198,11 +203,13 @@ class RepairSearch:
     def run(self, spread: int) -> list[Array]:
         """Scaled changes that are good enough on the fine nodes, the smallest first."""
         self.spread = spread
+        # an estimate for progress alone: gradients are differences, two candidates for each number
         self.total = spread + STARTS * (CONTRACTIONS + ITERATIONS * (2 * len(self._low) + 1))
         changes = self._spread(spread)
         margins = self.margins(changes)
         good = margins >= self.target
         self.turning = int(good.sum())
+        # the good ones by size; where none is good those that lack least
         starts = self._apart(changes[good], np.linalg.norm(changes[good], axis=1))
         if not starts:
             starts = self._apart(changes, -margins)
@@ -222,16 +229,21 @@ class RepairSearch:
         """No change, then an even spread over the box and over smaller boxes."""
         size = len(self._low)
         root = 2.0
+        # root of x^(n+1) = x + 1 by iteration, the generalised golden ratio: its powers spread evenly in n
+        # dimensions
         for _step in range(50):
             root = (1.0 + root) ** (1.0 / (size + 1))
+        # each dimension by its own power of the root
         steps = root ** -np.arange(1.0, size + 1)
         share = (0.5 + np.outer(np.arange(1, count), steps)) % 1.0
         shell = np.resize(SHELLS, count - 1)[:, None]
+        # no change is zero and lies in the box: scaling shrinks the box about it
         inside = (self._low + share * (self._high - self._low)) * shell
         return np.vstack([np.zeros((1, size)), inside])
 
     def _apart(self, changes: Array, order: Array) -> list[Array]:
         """The first few changes by an order that do not lie close together."""
+        # a bound that leaves no room measures nothing
         width = np.where(self._high > self._low, self._high - self._low, 1.0)
         kept: list[Array] = []
         for k in np.argsort(order, kind="stable"):
@@ -245,6 +257,7 @@ class RepairSearch:
         """The least change near a start that is good enough on the fine nodes; None if there is none."""
         options = []
         drawn = self._shorten(start)
+        # from both starts: the search ends in the nearest local minimum
         for first in (start,) if drawn is None else (drawn, start):
             found = self._minimise(first)
             if found is not None:
@@ -256,6 +269,7 @@ class RepairSearch:
         """The least part of a change that is good enough, if the whole of it is."""
         if self.margins(start[None, :], FINE)[0] < self.target:
             return None
+        # from no change outwards: the first share that is good is the smallest
         shares = np.linspace(0.0, 1.0, CONTRACTIONS)[:, None]
         good = self.margins(shares * start, FINE) >= self.target
         return np.asarray(start * shares[int(np.nonzero(good)[0][0])])
@@ -274,6 +288,7 @@ class RepairSearch:
         change = np.clip(np.asarray(result.x, dtype=np.float64), self._low, self._high)
         if not np.isfinite(change).all():
             return None
+        # the optimiser stops within its tolerance, on either side of the target
         for _correction in range(CORRECTIONS):
             lack = self.target - float(self.margins(change[None, :], FINE)[0])
             if lack <= 0.0:
@@ -284,11 +299,14 @@ class RepairSearch:
     def raise_sines(self, change: Array, lack: float) -> Array:
         """A change moved as little as lifts its least squared sines by what they lack (and a little more)."""
         values, slopes = self._sectors(change[None, :])[0], self._slopes(change) * self.target
+        # several sectors near the lowest are lifted at once: of one alone another would fall below
         lowest = values <= float(values.min()) + ACTIVE * self.target
+        # the smallest change with that rise to the first order; half more, since the rise is no straight line
         moved = change + np.linalg.pinv(slopes[lowest], rcond=1e-6) @ np.full(int(lowest.sum()), 1.5 * lack)
         return np.asarray(np.clip(moved, self._low, self._high))
 
     def _conditions(self, change: Array) -> Array:
+        # relative to the target, so that all conditions are of the order of one
         return np.asarray(self._sectors(change[None, :])[0] / self.target - (1.0 + SLACK))
 
     def _sectors(self, changes: Array) -> Array:
@@ -298,19 +316,20 @@ class RepairSearch:
 
     def _slopes(self, change: Array) -> Array:
         size = len(change)
+        # central differences: the error is of the second order in the step
         moved = np.vstack([change + STEP * np.eye(size), change - STEP * np.eye(size)])
         found = self._sectors(moved)
         return np.asarray((found[:size] - found[size:]).T / (2.0 * STEP * self.target))
 
 
 DEFAULT_ANGLE = pi / 180
-"""Least transmission angle asked for where none is given: 0 would be a mechanism at the brink of locking."""
+"""Least transmission angle that is requested where none is given: 0 would be a mechanism at the brink of locking."""
 CANDIDATES = 3072
 """Candidates of the first spread."""
 TIGHTENINGS = 4
 """How often a change is corrected by what its exact least angle lacks."""
 ENOUGH = 1e-9
-"""By how much [rad] the verified least transmission angle may fall short of the one asked for."""
+"""By how much [rad] the verified least transmission angle may fall short of the one requested."""
 
 
 @dataclass(frozen=True)
@@ -332,15 +351,15 @@ class Change:
 
 @dataclass(frozen=True)
 class Repair:
-    """What was found.
+    """Result of a repair: the mechanism found, its changes, and what was tried.
 
     Attributes
     ----------
     mechanism : the one given
     repaired : the one found; the one given if that turns already; None if none was found
-    found : whether a mechanism was found that turns fully with the transmission angle asked for
+    found : whether a mechanism was found that turns fully with the transmission angle requested
     size : root of the sum of the squares of the changes' sizes
-    least_transmission_angle, reached : asked for, and that of the mechanism found (exact) [rad]
+    least_transmission_angle, reached : as requested, and that of the mechanism found (exact) [rad]
     tried : candidates evaluated
     spread, turning : candidates of the first spread over the bounds, and how many of these turn
     impossible : the inequality that excludes any; None where nothing says so
@@ -409,6 +428,7 @@ def repair(
     if turns_well(before, least_angle):
         return replace(asked, found=True, repaired=mechanism, reached=_least_angle(before), after=before)
     candidates = Candidates(prepared, varying)
+    # a proof that nothing helps is cheaper than a search that finds nothing, and says why
     reason = impossible(candidates, least_angle)
     if reason is not None:
         return replace(asked, impossible=reason)
@@ -479,10 +499,12 @@ def _check_repairable(prepared: Ready) -> None:
 def _search_repair(candidates: Candidates, asked: Repair, progress: Progress | None) -> Repair:
     """The smallest change that the geometry confirms."""
     least_angle = asked.least_transmission_angle
+    # aimed above by as much as the verification lets pass below
     search = RepairSearch(candidates, sin(least_angle + ENOUGH) ** 2, progress)
     options = search.run(CANDIDATES)
     effort = replace(asked, spread=search.spread, turning=search.turning)
     for change in options:
+        # by size: the first that the geometry confirms is the smallest
         confirmed = _confirm_change(search, change, least_angle)
         if confirmed is not None:
             change, mechanism, after = confirmed
@@ -511,6 +533,7 @@ def _confirm_change(
             return None
         if turns_well(after, least_angle):
             return change, mechanism, after
+        # not turning by the exact test but by the nodes: the lack is between nodes, and unknown
         lack = search.target - sin(_least_angle(after)) ** 2 if after.turns_fully else 0.1 * search.target
         change = search.raise_sines(change, max(lack, 0.0) + 1e-9 * search.target)
     return None

@@ -121,14 +121,18 @@ def square(one: PivotSymbol, other: PivotSymbol) -> Condition:
 
 def _vanishes(one: PivotSymbol, other: PivotSymbol, *, square: bool) -> Condition:
     """The sine or cosine of the difference = 0; a quarter turn between the two changes one into the other."""
+    # the angle of one link in both bearings cancels: what is left are the links between the two
     plus = tuple(angle for angle in one.symbols if angle not in other.symbols)
     minus = tuple(angle for angle in other.symbols if angle not in one.symbols)
+    # all angles cancel where both lines are on one body: the short form says nothing
     if not plus and not minus:
         return HIGHER
     constant = one.constant - other.constant
     if not plus:
+        # the sign of the whole does not matter for what is zero: a sum begins with a plus
         plus, minus, constant = minus, plus, -constant
     constant = remainder(constant, pi)  # half a turn changes the sign alone
+    # sin(x + pi/2) = cos x: a quarter turn is not written down but changes the function
     if abs(abs(constant) - 0.5 * pi) <= NOTHING:
         constant, square = 0.0, not square
     return AngleCondition(
@@ -251,6 +255,7 @@ def bearing_of_locus(
         return bearing_of(mechanism, carriage, numbers.direction[locus.guide])
     if isinstance(locus, Stop):
         x, y = numbers.direction[locus.guide]
+        # a stop is the line across the guide at the displacement that a drive gives
         return bearing_of(mechanism, locus.on, (-y, x))
     return None
 
@@ -283,6 +288,7 @@ def _of_two_rods(place: _Place, group: Meet) -> tuple[Cause, Condition]:
 def _circle_contact(place: _Place, group: Meet) -> tuple[bool, float]:
     """Whether two circles touch from outside, and how far apart their centres are."""
     at = place.tour.positions_at(place.value, ARRAYS)
+    # both positions are one there: the sign zero takes the root out, which would be rounding
     choices = SideChoices(FixedSigns(ARRAYS, {place.index: 0.0}), place.index)
     space = place.numbers.space
     with np.errstate(all="ignore"):
@@ -290,12 +296,15 @@ def _circle_contact(place: _Place, group: Meet) -> tuple[bool, float]:
         apart = _as_float(space.distance(ARRAYS, one.centre, other.centre))
     radii = [_radius(circle) for circle in (one, other)]
     total, difference = sum(radii), abs(radii[0] - radii[1])
+    # on the sphere arcs that together exceed pi touch beyond the far side
     total = min(total, 2.0 * np.pi - total) if place.on_sphere else total
+    # rounding leaves either nearly true: whichever is nearer
     return abs(apart - total) <= abs(apart - difference), apart
 
 
 def _radius(circle: Any) -> float:
     """Radius [m], on the sphere the arc [rad], of a circle."""
+    # the half angle from both parts is exact for small arcs and for large ones
     if hasattr(circle, "half"):
         sine, cosine = (_as_float(x) for x in circle.half)
         return 2.0 * float(np.arctan2(abs(sine), abs(cosine)))
@@ -317,6 +326,7 @@ def _of_rod_and_line(place: _Place, group: Meet) -> tuple[Cause, Condition]:
 def _of_two_lines(place: _Place, group: Meet) -> tuple[Cause, Condition]:
     """Two lines are parallel: where they meet goes to infinity."""
     bodies = tuple(map(body_of, group.loci))
+    # there are no parallels on the sphere: the two circles touch instead
     if place.on_sphere:
         return Cause(CauseKind.CIRCLES_TOUCH, bodies), HIGHER
     bearings = _bearings(place, group)
@@ -334,6 +344,7 @@ def _cause_of_aim(place: _Place, group: Aim) -> tuple[Cause, Condition]:
         return Cause(CauseKind.ARC_SQUARE, bodies, points), condition
     through, direction = aim_curve(group, place.numbers)
     to_pivot = subtract(place.numbers.local[group.link][group.pivot], through)
+    # the displacement at which the target stands square before the pivot
     condition_of_slide = SlideCondition(group.guide, place.length(float(plane_dot(direction, to_pivot))))
     offset = place.length(abs(float(direction[0] * to_pivot[1] - direction[1] * to_pivot[0])))
     if not offset:
@@ -420,6 +431,7 @@ def _between_guides(
         rotate_vector(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
         for line, body in zip(lines, bodies, strict=True)
     )
+    # rotors of two lines: their quotient has the cosine as the scalar and the sine as the vector product
     return plane_dot(one, other), plane_cross(one, other)
 
 
@@ -429,6 +441,8 @@ def _between_poles(kinematics: Kinematics, rails: list[Rail], point: str, at: Po
     one, other = (
         tangent(pin, space.place(JETS, at.poses[rail.on], numbers.through[rail.guide])) for rail in rails
     )
+    # the tangents lie in the plane square to the pin: their product points along it, with the sine as its
+    # length
     return dot(one, other), dot(pin, cross(one, other))
 
 
@@ -508,14 +522,17 @@ def least_of(
 ) -> tuple[float, float]:
     """The least acute angle; zero at the group's own limits and change points."""
     tour = course.tour
+    # an aiming link may be stopped by its pin at the pivot, where no arm and so no angle is left
     if not isinstance(tour.prepared.structure.groups[index], Aim):
         for event in tour.events("limit") + tour.events("change point"):
             if event.group == index and (event.kind == "change point" or event.at in (tour.low, tour.high)):
                 return 0.0, event.at
     acute = [(min(value, pi - value), at) for at, value in extremes]
+    # a stretch with ends has its least angle there, unless it turns back in between
     if not acute or not tour.comes_round:
         acute += transmission_at_ends(course, k)
     if not acute:
+        # neither turned back nor had ends: it keeps its value all over, whichever node says it
         sines = np.abs(np.sin(course.values[k]))
         node = int(np.nanargmin(sines))
         acute.append((float(np.arcsin(sines[node])), float(course.nodes[node])))

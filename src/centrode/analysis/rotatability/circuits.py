@@ -58,9 +58,11 @@ class Combinations:
 
     def __init__(self, tour: DriveSweep, signed: list[int]) -> None:
         self.tour, self.signed = tour, signed
+        # the last sign changes fastest, so the number of a lane has one bit for each group: 0 of +1, 1 of -1
         self.signs = np.array(list(product((1.0, -1.0), repeat=len(signed)))).reshape(
             2 ** len(signed), len(signed)
         )
+        # an angle is the same a turn later, so one turn holds all; a displacement is followed to both sides
         first = tour.initial if tour.angular else tour.initial - tour.extent
         length = tau if tour.angular else 2.0 * tour.extent
         self.nodes = _with_own(np.asarray(first + (np.arange(NODES) + OFF_GRID) * (length / NODES)), tour)
@@ -79,6 +81,7 @@ class Combinations:
         """Where every combination closes at the nodes, and all events."""
         tour = self.tour
         lanes = len(self.signs)
+        # copies: the scan sets signs where it passes change points
         signs = {group: self.signs[:, k].copy() for k, group in enumerate(self.signed)}
         start = tour.continuation.branches
         branches = Branches(start.initial, start.forward, start.unit, lanes, signs, False, start.angles)
@@ -86,9 +89,11 @@ class Combinations:
             tour.continuation.kinematics, branches, tour.continuation.start, tour.continuation.nominal
         )
         count = len(self.nodes)
+        # the first node again closes the last cell of the turn, so that events in it are found
         ends = [self.nodes[0] + self.length] if tour.angular else []
         at = EventScan(continuation, np.concatenate([self.nodes, ends])).run()
         closed = np.ones((lanes, count), dtype=bool)
+        # a position is there where every coordinate is a number
         for x in _numbers(at):
             closed &= np.isfinite(np.broadcast_to(x, (lanes, count + len(ends)))[:, :count])
         return closed, branches.events
@@ -112,6 +117,7 @@ class Combinations:
 
 def _with_own(nodes: Array, tour: DriveSweep) -> Array:
     """The nodes, and the middle of the stretch between the limits where no node lies in it."""
+    # the limits lie about the initial value, the nodes from it on: they may hold nodes a turn later
     low, high = tour.low, tour.high
     turns = (0.0, tau) if tour.angular else (0.0,)
     if not np.isfinite(high - low) or any(
@@ -137,8 +143,11 @@ def _number_runs(closed: Mask, cut: Mask, round_: bool) -> npt.NDArray[np.intp]:
         if not closed[k]:
             continue
         if k == 0 or not closed[k - 1] or cut[k - 1]:
+            # two limits may lie in one cell between closed nodes: the stretch is cut although every node
+            # closes
             run += 1
         numbers[k] = run
+    # over the end of the turn the last run and the first are one
     if round_ and run > 0 and closed[0] and closed[-1] and not cut[-1]:
         numbers[numbers == run] = 0
     return numbers
@@ -229,6 +238,7 @@ class _Search:
             return None
         joined = False
         for event in self._nearest():
+            # a group without two sides has no other branch to pass into
             if event.group not in self.signed:
                 continue
             partner = self._partner(event)
@@ -237,6 +247,7 @@ class _Search:
                     continue
                 one, other = self._run(event.lane, node), self._run(partner, node)
                 if one is not None and other is not None:
+                    # looked at before the join: afterwards both have one root
                     joined |= event.kind == "change point" and self._root(one) != self._root(other)
                     self._join(one, other)
         return self._circuits(own, joined)
@@ -246,6 +257,7 @@ class _Search:
         cells = self.combinations.cells(event)
         way = 1.0 if node == cells[0] else -1.0
         others = self.combinations.limits.get((event.lane, cells[0]), ())
+        # by the shortest way round: an event in the last cell may be given a turn off
         return any(way * remainder(event.at - at, self.combinations.length) > 0.0 for at in others)
 
     def _nearest(self) -> list[Event]:
@@ -254,6 +266,7 @@ class _Search:
 
     def _partner(self, event: Event) -> int:
         """The combination that differs in the sign of one group."""
+        # product() has the last group in the lowest bit
         place = len(self.signed) - 1 - self.signed.index(event.group)
         return event.lane ^ (1 << place)
 
@@ -269,12 +282,14 @@ class _Search:
     def _join(self, one: tuple[int, int], other: tuple[int, int]) -> None:
         one, other = self._root(one), self._root(other)
         if one != other:
+            # the smaller one stays the root, so circuits keep the order of their first branch
             self.parent[max(one, other)] = min(one, other)
 
     def _circuits(self, own: tuple[int, int], joined: bool) -> Circuits:
         found: dict[tuple[int, int], list[Branch]] = {}
         for k, runs in enumerate(self.combinations.runs):
             for run in range(int(runs.max(initial=-1)) + 1):
+                # every run is given its root here: runs that nothing joined are circuits of their own
                 found.setdefault(self._root((k, run)), []).append(self._branch(k, run))
         order = list(found)
         return Circuits(tuple(tuple(found[root]) for root in order), order.index(self._root(own)), joined)
@@ -283,6 +298,7 @@ class _Search:
         """The node of the mechanism's own branch that is nearest to the initial position."""
         way = np.abs(self.combinations.nodes - self.tour.initial)
         if self.tour.angular:
+            # the shorter way round
             way = np.minimum(way, tau - way)
         inside = self.combinations.closed[lane] & self._reachable_nodes()
         return int(np.argmin(np.where(inside, way, np.inf)))
@@ -322,6 +338,7 @@ class _Search:
 
     def _edges(self, inside: npt.NDArray[np.intp]) -> tuple[int, int]:
         """First and last node of a run that may go on over the end of the nodes."""
+        # first and last node belong to it, and a gap lies between: the run goes over the end of the turn
         gaps = np.nonzero(np.diff(inside) > 1)[0]
         if len(gaps) and inside[0] == 0 and inside[-1] == len(self.combinations.nodes) - 1:
             return int(inside[gaps[-1] + 1]), int(inside[gaps[0]])
@@ -334,6 +351,7 @@ class _Search:
         first, last = float(self.combinations.nodes[0]), float(self.combinations.nodes[-1])
         ends = [e for e in limits if self.combinations.cells(e)[0] == cell]
         if self.tour.angular:
+            # events are given in any turn: they are brought into the turn of the nodes
             turns = [tau * np.floor((e.at - first) / tau) for e in ends]
             found = sorted(e.at - float(turn) for e, turn in zip(ends, turns, strict=True))
         else:
@@ -445,13 +463,17 @@ def _loops(mechanism: Mechanism) -> Iterator[tuple[tuple[str, ...], tuple[str, .
             shared[one].setdefault(other, []).append(name)
     rank = {body: k for k, body in enumerate(points)}
     for first in points:
+        # every loop once: from its first body in the description, in one of its two senses
         behind = [body for body in shared[first] if rank[body] > rank[first]]
         for second, last in combinations(sorted(behind, key=rank.__getitem__), 2):
+            # hinged to each other and to the first they are a triangle, which is rigid
             if last in shared[second]:
                 continue
             for third in shared[second]:
                 if rank[third] > rank[first] and third in shared[last] and third not in shared[first]:
                     loop = (first, second, third, last)
+                    # two bodies with two hinges are one body, and a pin that three share makes no loop of
+                    # four
                     pins = [shared[loop[k]][loop[(k + 1) % 4]] for k in range(4)]
                     if all(len(pin) == 1 for pin in pins) and len({pin[0] for pin in pins}) == 4:
                         yield loop, tuple(pin[0] for pin in pins)
@@ -474,6 +496,7 @@ def _hinged_four_bar(
 def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
     """Arcs of an equivalent spherical four-bar no two of which together exceed half a great circle."""
     found = list(arcs)
+    # each exchange lowers the sum of the arcs, from a + b > pi to 2 pi - a - b < pi: it comes to an end
     while True:
         first, second = sorted(range(4), key=lambda k: -found[k])[:2]
         if found[first] + found[second] <= pi:
@@ -483,6 +506,7 @@ def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
 
 def _is_smaller_sum(short: float, long: float) -> bool | None:
     """Whether a sum is the smaller one; None where both are equal but for rounding."""
+    # the sum of two lengths is rounded in each of them, relative to their size
     if abs(short - long) <= ROUNDING * (abs(short) + abs(long)):
         return None
     return short < long
@@ -500,6 +524,7 @@ def _kind(mechanism: Mechanism, bodies: tuple[str, ...], shortest: int, verdict:
     if shortest == 2:
         return LoopType.DOUBLE_ROCKER
     driven = {drive.link for drive in mechanism.drives if drive.relative_to == FRAME}
+    # the links hinged to the frame are the second and the fourth, 1 and 3
     other = bodies[4 - shortest]
     return (
         LoopType.ROCKER_CRANK if other in driven and bodies[shortest] not in driven else LoopType.CRANK_ROCKER
@@ -545,8 +570,10 @@ def _sliding_four_bar(
     carrier, crank, coupler = loop
     pivot, pin = pins
     local = numbers.frame if carrier == FRAME else numbers.local[carrier]
+    # |d x (pivot - through)|, d a unit vector: the pivot's distance from the line of the guide
     offset = abs(float(cross(numbers.direction[guide.id], subtract(local[pivot], numbers.through[guide.id]))))
     one, other = _distance(numbers, crank, pivot, pin), _distance(numbers, coupler, pin, guide.point)
+    # the rule is that of four links whose two longest are infinite and differ by the offset
     short, long = min(one, other) + offset, max(one, other)
     verdict = _is_smaller_sum(short, long)
     shortest = crank if one <= other else coupler

@@ -101,7 +101,7 @@ class DeadPoint:
 
 @dataclass(frozen=True)
 class LinkTurning:
-    """What is found for one drive, the others held at their initial values.
+    """How the members turn for one drive, the others held at their initial values.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ class Rotatability:
 
     @property
     def one(self) -> LinkTurning:
-        """What is found for the first drive."""
+        """Results of the first drive, the only one as a rule."""
         return self.drives[0]
 
 
@@ -195,6 +195,7 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
 
 def _link_turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
     members, dyads = watched_members(tour), watched_dyads(tour)
+    # members and dyads in one course: each evaluation of the motion serves them all
     course = monitored_function(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
     swings = strokes_of(course, [kind for _one, kind in members])
     circuits, missing = circuits_of(tour)
@@ -204,6 +205,7 @@ def _link_turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
         tour.held,
         tour.initial,
         tour.turns_fully if tour.angular else None,
+        # turns are counted also where places are missing on the way, which is no period
         tour.turns if tour.comes_round else None,
         _limits(prepared, tour),
         _change_points(prepared, tour),
@@ -223,6 +225,7 @@ def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
         for event in events
         if event.at == value
     ]
+    # the formulas close for a negative length as well, so this limit is no event
     if tour.drive.kind == "distance" and tour.low == 0.0 and not any(limit.value == 0.0 for limit in found):
         name = tour.drive.id
         group, cause = (
@@ -261,5 +264,6 @@ def _dead_points(swings: list[LinkStroke]) -> list[DeadPoint]:
         DeadPoint(swing.name, extreme.value, extreme.at, extreme.in_line)
         for swing in swings
         for extreme in swing.extremes
+        # at the drive's limit the member only stops with it: its rate has no zero
         if not extreme.at_limit
     ]

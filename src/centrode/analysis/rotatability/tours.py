@@ -1,4 +1,4 @@
-"""One drive moved as far as it goes while the others stand still: what questions about turning are asked of."""
+"""One drive moved as far as it goes while the others stand still: the basis of all questions about turning."""
 
 from __future__ import annotations
 
@@ -103,6 +103,7 @@ class DriveSweep:
         """The stretch that is looked at: whole turns in the drive's sense until it is back, or between the limits."""
         if self.angular and self.is_unlimited:
             way = tau * (self.turns or int(TURNS))
+            # the range of a drive that runs backwards lies below its initial value
             backwards = self.continuation.kinematics.path.forward < 0.0
             return (self.initial - way, self.initial) if backwards else (self.initial, self.initial + way)
         return max(self.low, self.initial - self.extent), min(self.high, self.initial + self.extent)
@@ -117,7 +118,9 @@ class DriveSweep:
         first, last = self.span
         if self.angular and self.is_unlimited:
             count = NODES_PER_TURN * round((last - first) / tau)
+            # off the initial position by a share of a step: events like to lie at round values
             return np.asarray(first + (np.arange(count + 1) + OFF_GRID) * ((last - first) / count))
+        # half a node off the ends: at limits derivatives are infinite
         share = 0.5 - 0.5 * np.cos(pi * (np.arange(NODES_PER_TURN) + 0.5) / NODES_PER_TURN)
         return np.asarray(first + (last - first) * share)
 
@@ -135,6 +138,7 @@ class DriveSweep:
         margin = ULPS * float(np.spacing(abs(value) + self.continuation.branches.unit))
         zero = frozenset(e.group for e in self.continuation.branches.events if abs(e.at - value) <= margin)
         hooks = _ClampedSigns(self.continuation, m, along, None)
+        # its position is that of two roots in one: a root of rounding would leave half the digits
         hooks.zero = zero
         with np.errstate(all="ignore"):
             return self.continuation.kinematics.positions(m, along, hooks)
@@ -151,6 +155,7 @@ class DriveSweep:
         first, last = self.span
         found = [e for e in self.continuation.branches.events if e.kind == kind]
         margin = 1e-9 * self.continuation.branches.unit
+        # of a tour that comes round the event at its end is the one at its beginning
         ends = last - margin if self.comes_round else last + margin
         return sorted((e for e in found if first - margin <= e.at <= ends), key=lambda e: (e.at, e.group))
 
@@ -170,6 +175,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
     Limits are those of a motion to the last bit: they are the events of the same search.
     """
     only = len(prepared.mechanism.drives) == 1
+    # with one drive there is nothing to hold: the motion's own start gives the motion's own bits
     if only:
         continuation = start_of(prepared, prepared.kinematics)
     else:
@@ -180,6 +186,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
     extent = tau * TURNS if chosen.kind == "angle" else SEARCH * path.unit
     ends = np.array([path.initial - extent, path.initial + extent])
     EventScan(continuation, mesh_of(path, ends)).run()
+    # with others held at given values the mechanism need not close at the start at all
     if not only:
         check_closed(continuation)
     low, high = continuation.branches.reach(0)
@@ -192,8 +199,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
 # back.
 #
 # A number is watched as an angle's cosine and sine (of any common length), or plainly. Where its rate changes
-# its
-# sign between nodes, the root of the rate is found with the second derivative of the motion itself.
+# its sign between nodes, the root of the rate is found with the second derivative of the motion itself.
 
 Pair: TypeAlias = tuple[Number, Number]
 Watching: TypeAlias = Callable[[Positions], "Pair | Number"]
@@ -216,6 +222,8 @@ class Watched:
         found = self.of(at)
         if isinstance(found, tuple):
             cosine, sine = (_derivatives(x, count) for x in found)
+            # r^2 times the angle's rate, so its sign; the product of both first derivatives cancels in the
+            # second
             return cosine[0] * sine[1] - sine[0] * cosine[1], cosine[0] * sine[2] - sine[0] * cosine[2]
         value = _derivatives(found, count)
         return value[1], value[2]
@@ -232,6 +240,7 @@ class Watched:
 def _derivatives(number: Number, count: int) -> list[Array]:
     """Value and derivatives of a jet (or of a constant) as plain arrays (n,)."""
     found = [number.derivative(k) for k in range(number.order + 1)] if isinstance(number, Jet) else [number]
+    # constants have fewer derivatives: the rest is zero
     found += [0.0] * (3 - len(found))
     return [np.broadcast_to(np.asarray(x, dtype=np.float64), (1, count))[0] for x in found]
 
@@ -256,6 +265,7 @@ class MonitoredFunction:
 def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> MonitoredFunction:
     """Watch numbers along a tour."""
     nodes = tour.nodes()
+    # one derivative for the signs of the rates; the second is needed only at the few cells with a root
     at = tour.at(nodes, 1)
     values = np.array([_unwrap(one, one.value(at, len(nodes))) for one in watched])
     rates = np.array([one.rate(at, len(nodes))[0] for one in watched])
@@ -265,6 +275,7 @@ def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> Monitore
         1.0 if one.unit == "rad" else float(tour.continuation.kinematics.numbers.scale) for one in watched
     ]
     moving = np.ptp(values, axis=1) > STILL * np.array(scale)
+    # of what stands still the rate is rounding, and changes its sign everywhere
     which, cells = sign_changes(np.where(moving[:, None], rates, np.nan))
     places = _roots(tour, watched, which, nodes[cells], nodes[cells + 1])
     reached = _values_at(tour, watched, which, places)
@@ -284,6 +295,7 @@ def _near(one: Watched, values: Array, nodes: Array) -> Array:
     """Angles in the turn of their nodes."""
     if one.unit != "rad":
         return values
+    # an angle is known up to turns: nodes run on, so the turn of the node beside is the right one
     return values + 2.0 * np.pi * np.round((nodes - values) / (2.0 * np.pi))
 
 
@@ -291,6 +303,7 @@ def _in_order(tour: DriveSweep, places: Array, values: Array) -> tuple[Array, Ar
     """In the drive's order; of a tour that comes round, within its first turns."""
     if tour.comes_round:
         first, last = tour.span
+        # the nodes lie a share of a step off, so the last cell reaches over the end of the stretch
         places = np.where(places >= last, places - (last - first), places)
     order = np.argsort(places)
     return places[order], values[order]
@@ -360,14 +373,18 @@ def dwells_of(course: MonitoredFunction, k: int, shift: float, stroke: float) ->
     least = LEAST_DWELL * (1.0 if tour.angular else tour.continuation.branches.unit)
     count = len(nodes)
     if tour.comes_round:
+        # twice round, so that a dwell over the end of the turn is whole; the last node is the first of the
+        # next turn
         nodes = np.concatenate([nodes[:-1], nodes[:-1] + (tour.span[1] - tour.span[0])])
         values = np.concatenate([values[:-1], values[:-1]])
         count -= 1
+    # the longest first: shorter ones that overlap with it are passed over
     windows = sorted(_windows(values, band), key=lambda w: nodes[w[0]] - nodes[w[1]])
     kept: list[tuple[int, int]] = []
     for first, last in windows:
         if nodes[last] - nodes[first] < least or first >= count:
             continue
+        # a stretch and its copies in the turns before and behind are one
         taken = [(a + turn, b + turn) for a, b in kept for turn in (-count, 0, count)]
         if all(last < a or first > b for a, b in taken):
             kept.append((first, last))
@@ -392,6 +409,8 @@ def _windows(values: Array, band: float) -> list[tuple[int, int]]:
     high: deque[int] = deque()
     low: deque[int] = deque()
     for last, value in enumerate(numbers):
+        # a candidate for the greatest value is dead once a later one is as great: it stays longer in the
+        # window
         before = first
         while high and not numbers[high[-1]] > value:
             high.pop()
@@ -406,6 +425,7 @@ def _windows(values: Array, band: float) -> list[tuple[int, int]]:
                     queue.popleft()
             if first == last:
                 break
+        # the window that ended cannot be widened on either side: it is one of the longest
         if first > before:
             found.append((before, last - 1))
     return [*found, (first, len(numbers) - 1)]
@@ -449,14 +469,17 @@ def _hinged_pairs(mechanism: Mechanism) -> list[tuple[tuple[str, str], str, str,
     joints = _joints(mechanism)
     at_point: dict[str, list[str]] = {}
     for link, points in joints.items():
+        # a hinge is a point that two links name: the frame has no length to fall in line with
         for point in points:
             at_point.setdefault(point, []).append(link)
     found = []
     for pin, links in at_point.items():
         for one, other in combinations(links, 2):
             ends = product((p for p in joints[one] if p != pin), (p for p in joints[other] if p != pin))
+            # with both ends shared the two would be one body
             found += [((one, other), a, pin, b) for a, b in ends if a != b]
     order = {name: k for k, name in enumerate(mechanism.links)}
+    # in the order of the description, whatever the order of the points
     return sorted(found, key=lambda one: (order[one[0][0]], order[one[0][1]]))
 
 
@@ -478,6 +501,8 @@ def _flat(mechanism: Mechanism, a: Array, pin: Array, b: Array) -> npt.NDArray[n
     one, other = a - pin, b - pin
     sizes = np.linalg.norm(one, axis=0) * np.linalg.norm(other, axis=0)
     if mechanism.space == "sphere":
+        # on the sphere the arcs' lines are their planes: three places lie in one where the triple product is
+        # zero
         off = np.abs(np.sum(pin * np.cross(one, other, axis=0), axis=0))
     else:
         off = np.abs(one[0] * other[1] - one[1] * other[0])
@@ -547,6 +572,7 @@ def watched_members(tour: DriveSweep) -> list[tuple[Watched, Literal["link", "gu
     def slide(guide: str, point: str) -> Watched:
         return Watched(guide, numbers.space.unit, lambda at: slide_of(JETS, numbers, at, guide, point))
 
+    # an angle that a drive gives from the frame is no result: it is the question
     links = [angle(link) for link in numbers.ends if link not in driven]
     guides = [slide(g.id, g.point) for g in kinematics.structure.mechanism.guides if g.id not in sliding]
     return [*((one, "link") for one in links), *((one, "guide") for one in guides)]
@@ -574,6 +600,7 @@ def _stroke_of(
     finite = np.isfinite(values)
     moved = float(np.ptp(values[finite])) if finite.any() else 0.0
     scale = 1.0 if one.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
+    # only a tour that ends where it began has whole turns
     turns = round((values[-1] - values[0]) / tau) if tour.comes_round and one.unit == "rad" else None
     if tour.comes_round and one.unit != "rad":
         turns = 0
@@ -585,6 +612,7 @@ def _stroke_of(
     ]
     ends = [] if tour.comes_round else _ends(course, k, shift)
     extremes = sorted([*extremes, *(end for end in ends if end is not None)], key=lambda extreme: extreme.at)
+    # through whole turns there is no least value; an end at infinity leaves to and fro, but no stroke
     if turns or None in ends or not extremes:
         kind: Literal["turns", "swings"] = "swings" if None in ends else "turns"
         return LinkStroke(
@@ -614,6 +642,8 @@ def _shift(course: MonitoredFunction, k: int, member: str) -> float:
     tour = course.tour
     given = tour.prepared.assembled.angles[course.watched[k].name]
     node = int(np.argmin(np.abs(course.nodes - tour.initial)))
+    # angles run on from the first node: at the node beside the initial position they are to be those that are
+    # given
     return tau * float(np.round((given - course.values[k][node]) / tau))
 
 
@@ -624,11 +654,13 @@ def _ends(course: MonitoredFunction, k: int, shift: float) -> list[StrokeExtreme
     for limit, node in ((tour.low, 0), (tour.high, -1)):
         if not np.isfinite(limit):
             continue
+        # at the limit itself the radicand is rounding and may be negative: it is taken as zero
         value = float(one.value(tour.positions_at(limit, ARRAYS), 1)[0])
         near = float(course.values[k][node])
         if _goes_to_infinity(tour, limit) or not (np.isfinite(value) and np.isfinite(near)):
             found.append(None)
             continue
+        # the angle at the limit in the turn of the node beside it
         value += tau * round((near - value) / tau) if one.unit == "rad" else 0.0
         found.append(StrokeExtreme(value + shift, limit, (), True))
     return found
@@ -639,10 +671,12 @@ def _goes_to_infinity(tour: DriveSweep, limit: float) -> bool:
     groups = tour.prepared.structure.groups
     events = tour.continuation.branches.events
     at_limit = [groups[event.group] for event in events if event.kind == "limit" and event.at == limit]
+    # a dyad of two lines has no sign: its limit is a divisor that vanishes
     return any(isinstance(group, Meet) and not group.signed for group in at_limit)
 
 
 def _time_ratio(tour: DriveSweep, extremes: Sequence[StrokeExtreme]) -> float | None:
+    # with other than two extremes in one turn there are no two ways to compare
     if tour.turns != 1 or len(extremes) != 2:
         return None
     way = abs(extremes[1].at - extremes[0].at)

@@ -33,12 +33,9 @@ from centrode.model.reading import FrozenMap
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
 #
 # The greatest value of a measure over the angles has kinks where it passes from one angle to another. So it
-# becomes
-# a variable t that every angle's value stays below (its epigraph), and the values at the angles are smooth.
-# Between
-# the angles looked at the worst ones are found, added, and the search goes on (exchange, after Remez), until
-# nothing
-# between them is worse.
+# becomes a variable t that every angle's value stays below (its epigraph), and the values at the angles are
+# smooth. Between the angles looked at the worst ones are found, added, and the search goes on (exchange,
+# after Remez), until nothing between them is worse.
 
 Array = NDArray[np.float64]
 
@@ -47,7 +44,7 @@ EXCHANGES = 6
 ROUNDS = 40
 TOLERANCE = 1e-12
 KEPT = 1e-9
-"""Of a bound: it is asked for tighter by this, so that rounding does not break it."""
+"""A bound is tightened by this part, so that rounding does not break it."""
 ACTIVE = 1e-6
 """A constraint binds where less than this part of its bound is left."""
 
@@ -62,6 +59,7 @@ class SearchResult:
 
     def better_than(self, other: SearchResult) -> bool:
         """Admissible ones before others; among these the better value, among others the lesser excess."""
+        # whether bounds are kept comes before any value
         if (self.excess <= KEPT) != (other.excess <= KEPT):
             return self.excess <= KEPT
         return self.value < other.value if self.excess <= KEPT else self.excess < other.excess
@@ -71,15 +69,19 @@ def search(
     problem: ChoiceProblem, first: Array, starts: int = STARTS, warm: Sequence[Array] = ()
 ) -> list[SearchResult]:
     """Ends of searches from `first` (n,), `warm` ones and further places spread over the box, the best in front."""
+    # Halton's points fill the box evenly for any number of them; the first is a corner
     spread = qmc.Halton(len(first), scramble=False).random(starts) if starts else np.empty((0, len(first)))
     found: list[SearchResult] = []
     for start in [first, *warm, *spread[1:]]:
+        # first into the bounds: a run that makes the value best needs a place from which that can be done
         inner = _run_search(problem, np.asarray(start, float), elastic=True)
         ends = [inner]
+        # nearly admissible is enough: the second run keeps the bounds by itself
         if _worst(problem, inner) <= ACTIVE:
             ends.append(_run_search(problem, inner, elastic=False))
         found += [_judge(problem, end) for end in ends]
     ranked = _rank(found)
+    # only the best end is worth the search with more angles
     return _rank([_exchange_angles(problem, ranked[0]), *ranked])
 
 
@@ -94,19 +96,23 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
     count = len(share)
     columns, names = [], []
     top = values[problem.best].max()
+    # the values that stand at the top share the slope of their maximum
     for row in np.flatnonzero(values[problem.best] >= top - ACTIVE * max(abs(top), 1.0)):
         columns.append(np.concatenate([slopes[problem.best][row], [-1.0]]))
         names.append("")
     for name, (measure, bound) in problem.limits.items():
+        # what is left of a bound, in its scale
         room = measure.sign * bound / problem.scale(name) - values[name]
         for row in np.flatnonzero(room <= ACTIVE):
             columns.append(np.concatenate([slopes[name][row], [0.0]]))
             names.append(name)
+    # a parameter at an end of its range is held by that end
     for index in range(count):
         for side, near in ((-1.0, share[index] <= ACTIVE), (1.0, share[index] >= 1 - ACTIVE)):
             if near:
                 columns.append(side * np.eye(count + 1)[index])
                 names.append("box")
+    # the slope of the variable t is 1: weights of the constraints have to take it up
     goal = np.zeros(count + 1)
     goal[-1] = -1.0
     weights, miss = nnls(np.stack(columns, axis=1), goal)
@@ -114,7 +120,9 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
     for name, weight in zip(names, weights, strict=True):
         if name in held:
             held[name] += float(weight)
+    # a value that hardly depends on the parameters has a small slope: then the miss itself counts
     own = max(float(np.linalg.norm(slopes[problem.best], axis=1).max()), np.finfo(float).tiny)
+    # multipliers as parts: by which part the value changes with a part of the bound
     return float(miss) / max(own, 1.0), {
         name: float(weight / max(abs(top), ACTIVE)) for name, weight in held.items()
     }
@@ -126,6 +134,7 @@ def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
     values, _slopes = problem.measured(start)
     limits = _targets(problem)
     if elastic:
+        # the worst excess at the start, as the variable that is made least
         top = max(float((values[name] - limit).max()) for name, limit in limits.items())
     else:
         top = float(values[problem.best].max())
@@ -145,10 +154,12 @@ def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
         np.append(start, top),
         jac=lambda z: np.append(np.zeros(count), 1.0),
         method="SLSQP",
+        # a little below zero: bounds that are kept with room to spare need no more of it
         bounds=[(0.0, 1.0)] * count + [(-0.02 if elastic else None, None)],
         constraints={"type": "ineq", "fun": room, "jac": room_slope},
         options={"ftol": TOLERANCE, "maxiter": ROUNDS},
     )
+    # the programme's own tolerance may leave the box
     end = np.clip(result.x[:count], 0.0, 1.0)
     return np.asarray(end if np.isfinite(end).all() else start)
 
@@ -189,6 +200,7 @@ def _exchange_angles(problem: ChoiceProblem, found: SearchResult) -> SearchResul
     admissible = found.excess <= 1e-3
     for _round in range(EXCHANGES):
         places = [at for _value, at in problem.extremes(share).values()]
+        # a sixteen-hundredth of the range: neighbours of the worst angle, as it moves with the parameters
         step = abs(problem.family.mesh.ends[1] - problem.family.mesh.ends[0]) / 1600
         first, last = problem.family.mesh.ends
         near = [at + shift * step for at in places for shift in (-1, 0, 1)]
@@ -196,6 +208,7 @@ def _exchange_angles(problem: ChoiceProblem, found: SearchResult) -> SearchResul
         share = _run_search(problem, share, elastic=not admissible)
         now = _judge(problem, share)
         settled = abs(now.value - best.value) <= 1e-12 and now.excess <= KEPT
+        # the first round always counts: with more angles values are worse, and truer
         best = now if now.better_than(best) or np.isinf(best.excess) else best
         if settled:
             break
@@ -402,6 +415,7 @@ def trade_off(
     The ends are the design that is best in `against` alone and the one that is best in `best` without a bound of
     `against`; each point starts from its neighbour too. Without an admissible design the front is empty.
     """
+    # neither measure of the front is bounded otherwise
     others = {name: bound for name, bound in bounds.items() if name not in (best, against)}
     ends = [
         _choose_among_equals(family, start, (against, best), others),
@@ -430,6 +444,7 @@ def _choose_among_equals(
         return made
     sign = MEASURES[first].sign
     value = made.chosen.measures[first].value
+    # a bound a hair beyond the best value, so that the second search has room
     held = {**bounds, first: value + sign * 1e-7 * abs(value)}
     again = choose(family, start, second, held, FEW, [np.array(list(made.chosen.parameters.values()))])
     return again if again.admissible else made
@@ -630,6 +645,7 @@ def measures_of(cam: Cam, angles: int) -> dict[str, float]:
         path = path_of(cam)
     except InputError:
         return dict.fromkeys(names, math.nan)
+    # the beginning is a place of its own: values are given there
     phi = np.unique(np.append(np.linspace(0.0 if mirrored else low, high, angles), 0.0))
     radius = cam.roller.radius if cam.roller is not None else 0.0
     rho, gamma, curvature = (
@@ -649,6 +665,7 @@ def excess_of(values: Mapping[str, float], bounds: Mapping[str, float]) -> float
         measure.sign * (values[name] - bound) / (abs(bound) or 1.0)
         for name, (measure, bound) in limits.items()
     ]
+    # where a measure is not known nothing is kept
     return max(math.inf if math.isnan(one) else one for one in missed)
 
 
@@ -690,7 +707,7 @@ class CamChoice:
     proof : Proof
         Its bounds and its neighbours along the path itself.
     front : TradeOff or None
-        What the bound of another measure costs; None where none is asked for.
+        What the bound of another measure costs; None where none is requested.
     """
 
     cam: Cam

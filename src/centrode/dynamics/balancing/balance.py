@@ -1,4 +1,4 @@
-"""Counterweights for a mechanism: what was asked for, what was found, and the mechanism before and after."""
+"""Counterweights for a mechanism: what was requested, what was found, and the mechanism before and after."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ class Balance:
     to : "full", "least" or "fraction"
     counterweights : tuple of Counterweight
     discs : tuple of CounterweightDisc
-        Inertia that balances the shaking moment; none where it was not asked for.
+        Inertia that balances the shaking moment; none where it was not requested.
     before, after : Dataset
         Of `shaking`, of both mechanisms; their attributes hold the greatest values over the cycle.
     fraction : float or None
-        Of what moves to and fro, where that was asked for.
+        Of what moves to and fro, where that was requested.
     weights : three numbers or None
         Of force, moment and drive in the least greatest effects.
     left : float or None
@@ -176,12 +176,15 @@ def balance(
     weighed = tuple(
         counterweight(mechanism, spot, s) for spot, s in zip(chosen.spots, chosen.products, strict=True)
     )
+    # after the choice: a full balance says what is needed, and may need more mass than is allowed
     check_masses(chosen.spots, weighed)
     balanced = with_counterweights(mechanism, turning.masses, weighed)
     discs: tuple[CounterweightDisc, ...] = ()
     if moment:
+        # discs balance what the counterweights' own inertia adds as well
         discs = discs_for(ShakingTurning.of(balanced, complex(*centre), speed), balanced)
         balanced = with_discs(balanced, discs)
+    # over one whole cycle, so that greatest values before and after are of the same motion
     ends = (turning.first, turning.first + turning.period) if speed == "mean" else (None, None)
     before, after = (
         shaking(one, samples, *ends, about=centre, speed=speed, orders=orders)

@@ -92,12 +92,15 @@ class Making:
         if self.radius is not None:
             mass, slope, inertia = product / self.radius, self.radius, 0.0
             if self.thickness is not None:
+                # m r^2 / 2 with r^2 = m / sheet
                 inertia = 0.5 * mass**2 / self.sheet
+                # the inertia about the hinge is s R + s^2 / (2 sheet R^2), of the product s: its derivative
                 slope += mass / (self.sheet * self.radius)
             return Made(mass, self.radius, inertia, 1.0 / self.radius, slope)
         # a disc touching its hinge: product = sheet radius^3
         radius = (product / self.sheet) ** (1 / 3)
         smooth = (max(product, floor) / self.sheet) ** (1 / 3)
+        # from here on: mass sheet r^2, inertia about the hinge 3/2 m r^2; by the product 2 / (3 r) and 2 r
         mass = self.sheet * radius**2
         return Made(mass, radius, 0.5 * mass * radius**2, 2 / (3 * smooth) if smooth else 0.0, 2.0 * smooth)
 
@@ -168,9 +171,11 @@ class Counterweight:
 
 def counterweight(mechanism: Mechanism, spot: CounterweightPlace, product: complex) -> Counterweight:
     """The counterweight of a product of mass and radius, as a vector in the link's axes [kg m]."""
+    # rounding beside an axis would turn the counterweight by a visible hair in a drawing
     product = _straight(complex(product))
     made = spot.making.counterweight_for(abs(product))
     x, y = mechanism.links[spot.link].coordinates[spot.base]
+    # without a product any direction will do
     at = complex(x, y) + made.radius * (product / abs(product) if product else 1.0)
     return Counterweight(
         spot.link,
@@ -194,22 +199,29 @@ def _straight(product: complex) -> complex:
 def columns_of(state: State, spot: CounterweightPlace, pace: ShaftMotion, about: complex) -> Effects:
     """Effects of the PARAMETERS of a counterweight, each of size 1: rows (PARAMETERS, n)."""
     base, turn, angle = _motion(state, spot)
+    # second derivatives by time: of the base, of the rotor, of the angle
     carried, whirled = pace.second(base), pace.second(turn)
     angular = pace.second(angle)
     arm, first, second, rate = base[0] - about, base[1], base[2], pace.rate**2
     force, moment = [carried], [cross(arm, carried)]
+    # J q'' + J' q'^2 / 2 with J = |b'|^2 of a unit mass at the base b
     driving = [np.abs(first) ** 2 * pace.second_rate + (np.conj(first) * second).real * rate]
+    # a unit product of mass and radius along the link, then across it: products are linear in the rotor
     for unit in (1.0, 1j):
         rotor = unit * turn
         force.append(unit * whirled)
+        # the moment of the whirled mass about the place, and that of the carried base about the mass
         moment.append(cross(arm, unit * whirled) + cross(rotor[0], carried))
+        # twice the scalar product of the base's and the rotor's rates: J is |b' + r'|^2
         driving.append(
             2.0 * (np.conj(first) * rotor[1]).real * pace.second_rate
             + (np.conj(second) * rotor[1] + np.conj(first) * rotor[2]).real * rate
         )
+    # inertia alone pushes nothing
     force.append(np.zeros_like(carried))
     moment.append(angular)
     driving.append(angle[1] ** 2 * pace.second_rate + angle[1] * angle[2] * rate)
+    # on the frame acts what the bodies do not get: the reaction
     return Effects(-np.array(force), -np.array(moment), np.array(driving))
 
 
@@ -261,6 +273,7 @@ def _heavier(link: Link, own: Mass | None, added: Counterweight) -> Link:
         centre = complex(x + at.along, y + at.across) if own.weighs else extra
     whole = mass + added.mass
     middle = (mass * centre + added.mass * extra) / whole
+    # both bodies' inertia about the common centre (Steiner)
     inertia += added.inertia + mass * abs(centre - middle) ** 2 + added.mass * abs(extra - middle) ** 2
     changes = {"mass": whole, "centre": (middle.real, middle.imag), "inertia": inertia}
     return link.model_copy(update={**changes, "shape": None, "radius": None})
@@ -280,9 +293,8 @@ def add_inertia(link: Link, own: Mass | None, inertia: float) -> Link:
 # Which links hinges alone join to the frame, and where counterweights on them are measured from.
 #
 # By the theorem of contours a linkage can be balanced fully by counterweights only if every link is reached
-# from the
-# frame by a way through hinges alone (F. R. Tepper, G. G. Lowen, Journal of Engineering for Industry 94,
-# 1972, 789-796).
+# from the frame by a way through hinges alone (F. R. Tepper, G. G. Lowen, Journal of Engineering for Industry
+# 94, 1972, 789-796).
 
 
 def hinged_from(mechanism: Mechanism) -> Mapping[str, str]:
@@ -312,7 +324,7 @@ def on_frame(mechanism: Mechanism) -> list[str]:
     return [name for name, base in hinged_from(mechanism).items() if base in mechanism.frame.points]
 
 
-# The counterweights that are asked for: on which links, measured from where, how made.
+# The counterweights that are requested: on which links, measured from where, how made.
 
 Lengths: TypeAlias = float | str | Mapping[str, float | str] | None
 Masses: TypeAlias = float | str | Mapping[str, float | str] | None
@@ -356,7 +368,7 @@ def number(value: object, where: str, kind: str) -> float:
 
 
 def positive(value: object, where: str, kind: str) -> float:
-    """The same, greater than zero."""
+    """A number in SI greater than zero, of a number or a text with a unit; InputError about `where`."""
     found = number(value, where, kind)
     if not found > 0.0:
         raise InputError(where, _("it must be positive, got {value}").format(value=value_text(value)))

@@ -1,4 +1,4 @@
-"""The products of mass and radius that were asked for: force zero, least greatest effects, a fraction."""
+"""The products of mass and radius that were requested: force zero, least greatest effects, a fraction."""
 
 from __future__ import annotations
 
@@ -43,12 +43,9 @@ from centrode.model.mechanism import Link, Mechanism
 # Full balance of the shaking force: the common centre of mass is brought to rest.
 #
 # The sum of mass times place of all links is to be constant. Places of bases and rotors of links with
-# counterweights
-# are functions of the drive; where the sum lies in their span (with constants) the counterweights follow from
-# linear
-# equations: the method of linearly independent vectors (R. S. Berkof, G. G. Lowen, Journal of Engineering for
-# Industry
-# 91, 1969, 21-26) by numbers in place of the closure of loops.
+# counterweights are functions of the drive; where the sum lies in their span (with constants) the
+# counterweights follow from linear equations: the method of linearly independent vectors (R. S. Berkof, G. G.
+# Lowen, Journal of Engineering for Industry 91, 1969, 21-26) by numbers in place of the closure of loops.
 
 INSTANTS = 90
 """Values of the drive in a turn at which the sum is looked at."""
@@ -88,6 +85,7 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     values = turning.values(INSTANTS * turning.turns)
     state, tracks = turning.at(values)
     mass = np.array([one.mass for one in turning.masses])
+    # constants do not shake: only what differs from the mean counts
     own = _remove_mean(mass @ tracks.places[0])
     pairs = [mass_moments(state, spot) for spot in spots]
     bases = np.array([_remove_mean(base) for base, _rotor in pairs]).reshape(len(spots), len(values))
@@ -95,11 +93,13 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     products = np.zeros(len(spots), dtype=np.complex128)
     rank = len(spots)
     for _round in range(MOST_ROUNDS):
+        # the mass that goes with a product acts on what carries its base: it is known from the round before
         masses = np.array(
             [spot.making.counterweight_for(abs(s)).mass for spot, s in zip(spots, products, strict=True)]
         )
         before = products
         if len(spots):
+            # spots whose rotors depend on each other to rounding share the work: the least products are taken
             products, _rest, rank, _sizes = np.linalg.lstsq(rotors.T, -(own + masses @ bases), rcond=SAME)
         if np.max(np.abs(products - before), initial=0.0) <= SETTLED * float(mass.sum()) * state.scale:
             break
@@ -119,15 +119,18 @@ def _remove_mean(places: Complex) -> Complex:
 def enough_spots(
     turning: ShakingTurning, candidates: Sequence[CounterweightPlace]
 ) -> list[CounterweightPlace]:
-    """As few of the candidates, the first ones before the others, as balance the mechanism; all if none do."""
+    """Candidates that suffice for balance, as few as possible and early ones first; all where no choice suffices."""
     hung = [spot for spot in candidates if spot.fixed]
     chosen = list(hung)
+    # first those hinged to the frame, as their mass alone does nothing; then others until the balance is
+    # complete
     for spot in [one for one in candidates if not one.fixed]:
         if full_balance(turning, chosen).complete:
             break
         chosen.append(spot)
     if not full_balance(turning, chosen).complete:
         return list(candidates)
+    # from the last one back: what has become superfluous goes
     for spot in reversed(list(chosen)):
         fewer = [one for one in chosen if one is not spot]
         if full_balance(turning, fewer).complete:
@@ -139,9 +142,8 @@ def enough_spots(
 # counterweights.
 #
 # A link's mass with its centre on the line of two joints is replaced by two masses there with the same
-# centre; as complex
-# numbers also one beside the line: m z_S = m (1 - c) z_P + m c z_Q with c = (S - P)/(Q - P) in the link's
-# axes.
+# centre; as complex numbers also one beside the line: m z_S = m (1 - c) z_P + m c z_Q with c = (S - P)/(Q -
+# P) in the link's axes.
 
 
 @dataclass(frozen=True)
@@ -218,6 +220,7 @@ def share_of(mechanism: Mechanism, masses: Sequence[Mass], link: str, first: str
         if mass.link == link:
             centre = mass.planar_centre
             at = places[centre.base] + complex(centre.along, centre.across)
+            # of the base along the joints' line and across it: one complex number says both
             c = (at - places[first]) / (places[second] - places[first])
             return Share(link, first, second, mass.mass * (1.0 - c), mass.mass * c)
     return Share(link, first, second, 0j, 0j)
@@ -247,6 +250,7 @@ def fraction_of_slider_crank(
     crank, coupler = shares_of(mechanism, masses, loop)
     rotating = crank.at_second + coupler.at_first
     reciprocating = coupler.at_second + loop.slider
+    # opposite to the crank's pin
     return -(rotating + fraction * reciprocating) * arm(mechanism, loop.crank, loop.O, loop.A)
 
 
@@ -254,13 +258,10 @@ def fraction_of_slider_crank(
 # others.
 #
 # Once the force is balanced, the moment of momentum does not depend on the place it is taken about. Where it
-# is a sum
-# of constants times the angular velocities of the links, discs geared one to one against the links on the
-# frame cancel
-# their shares. Of an in-line four-bar the coupler has no share if it is a physical pendulum, k^2 = r r' with
-# r, r' the
-# distances of its centre of mass from its joints (R. S. Berkof, Mechanism and Machine Theory 8, 1973,
-# 397-410).
+# is a sum of constants times the angular velocities of the links, discs geared one to one against the links
+# on the frame cancel their shares. Of an in-line four-bar the coupler has no share if it is a physical
+# pendulum, k^2 = r r' with r, r' the distances of its centre of mass from its joints (R. S. Berkof, Mechanism
+# and Machine Theory 8, 1973, 397-410).
 
 
 @dataclass(frozen=True)
@@ -292,6 +293,7 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
     hinged = hinged_from(mechanism)
     names = [name for name in mechanism.links if _turns(orders(state.angle(name), len(values))[1])]
     rates = np.array([orders(state.angle(name), len(values))[1] for name in names])
+    # momentum as a sum of constants times rates: the constants are the inertias that are too much
     found, _rest, _rank, _sizes = np.linalg.lstsq(rates.T, momentum, rcond=SAME)
     left = float(np.max(np.abs(momentum - found @ rates), initial=0.0))
     if left > SAME * size:
@@ -305,8 +307,10 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
     discs = []
     for name, inertia in zip(names, found, strict=True):
         if abs(inertia) * float(np.max(np.abs(rates))) <= SAME * size:
+            # what is rounding beside the whole is no disc
             continue
         base = hinged.get(name)
+        # too much inertia on the frame: a disc turns against the link; too little: the link gets more
         if inertia > 0.0 and base in mechanism.frame.points:
             discs.append(CounterweightDisc(name, base, float(inertia)))
         elif inertia < 0.0:
@@ -319,6 +323,7 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
 def _momentum(tracks: MassTracks, masses: Sequence[Mass]) -> tuple[Array, float]:
     """Moment of momentum at unit speed of the drive (n), and the greatest sum of the sizes of its parts."""
     mass, inertia = (np.array([getattr(one, name) for one in masses]) for name in ("mass", "inertia"))
+    # about any place, as the force is balanced; near the middle numbers are small
     middle = tracks.places[0].mean()
     parts = [mass[:, None] * cross(tracks.places[0] - middle, tracks.places[1])]
     parts.append(inertia[:, None] * tracks.angles[1])
@@ -353,6 +358,7 @@ def with_discs(mechanism: Mechanism, discs: Sequence[CounterweightDisc]) -> Mech
             links[disc.link] = add_inertia(links[disc.link], own.get(disc.link), disc.inertia)
             continue
         name = disc_name(mechanism, disc.link)
+        # geared one to one against the link, about the same point of the frame
         links[name] = Link(points={disc.base: (0.0, 0.0)}, inertia=disc.inertia)
         gears.append(Gear(links=(disc.link, name), ratio=-1.0))
     return replace_parts(mechanism, links=links, gears=tuple(gears))
@@ -412,7 +418,7 @@ class BalanceProblem:
         return self.columns_at(self.values)
 
     def columns_at(self, values: Array) -> list[Effects]:
-        """The same at other values of the drive."""
+        """Effects of the parameters of each counterweight at values (n) of the drive."""
         state, pace = self.turning.instants.state(values), self.turning.instants.pace(values)
         return [columns_of(state, spot, pace, self.turning.about) for spot in self.spots]
 
@@ -441,6 +447,7 @@ class BalanceProblem:
             return PULL
         rows = np.concatenate([column.force[1:3] for column in self.columns]).T
         parts = np.concatenate([rows.real, rows.imag])
+        # rows that depend on each other: several sets of products do the same, and the smallest is wanted
         return (
             0.0 if np.linalg.matrix_rank(parts, tol=SAME * np.linalg.norm(parts)) == parts.shape[1] else PULL
         )
@@ -460,6 +467,7 @@ class BalanceProblem:
         """What counts, linear about some unknowns; `lengths`: for which spots the length is an unknown of its own."""
         whole = self.effects(x, self.own, self.columns)
         products = self.products(x)
+        # all unknowns: components of the products, then their lengths
         place = np.concatenate([x, np.abs(products) / self.unit])
         slopes = [self._slopes(*each) for each in zip(self.spots, products, lengths, strict=True)]
         found = []
@@ -467,11 +475,13 @@ class BalanceProblem:
             parts = [s @ getattr(column, name) for s, column in zip(slopes, self.columns, strict=True)]
             rows = np.concatenate([*(part[:2] for part in parts), *(part[2:] for part in parts)]).T
             rows = rows * (self.unit / size)
+            # what makes the linear function agree with the effects at x
             constant = np.asarray(getattr(whole, name) / size - rows @ place)
             found.append(MinimaxTerm(weight, constant, rows))
         if not self.pull:
             return found
         pairs = len(self.spots)
+        # the greatest product itself as a term of very little weight
         small = np.zeros((pairs, 3 * pairs), dtype=np.complex128)
         small[np.arange(pairs), 2 * np.arange(pairs)] = 1.0
         small[np.arange(pairs), 2 * np.arange(pairs) + 1] = 1j
@@ -480,6 +490,7 @@ class BalanceProblem:
     def _slopes(self, spot: CounterweightPlace, product: complex, length: bool) -> Array:
         """Derivatives of the parameters by the product's components and its length (3, PARAMETERS)."""
         made = spot.making.counterweight_for(abs(product), LEAST * self.unit)
+        # the direction in which the length of the product grows
         towards = product / abs(product) if product else 0j
         by_length = np.array([made.mass_slope, 0.0, 0.0, made.inertia_slope])
         slopes = np.zeros((3, PARAMETERS))
@@ -500,7 +511,7 @@ class BalanceProblem:
         )
 
     def with_tops(self, x: Array) -> BalanceProblem | None:
-        """The same with the tops between its instants; None where none stands out."""
+        """The problem with tops between its instants as further instants; None where none stands out."""
         added: list[Array] = []
         whole = self.effects(x, self.own, self.columns)
         for name, _weight in self.aim.parts:
@@ -521,12 +532,10 @@ class BalanceProblem:
 # weighted.
 #
 # With bases in the frame the force depends linearly on the products of mass and radius, and the least
-# greatest force is
-# found with a proof (`minimax`). Masses and inertias go with the length of the products, which may be an
-# unknown of its
-# own, not below them: a convex problem that bounds the answer. Where its lengths are those of its products it
-# is the
-# answer. Else, and with discs, linear problems are solved one after the other within a region of trust.
+# greatest force is found with a proof (`minimax`). Masses and inertias go with the length of the products,
+# which may be an unknown of its own, not below them: a convex problem that bounds the answer. Where its
+# lengths are those of its products it is the answer. Else, and with discs, linear problems are solved one
+# after the other within a region of trust.
 
 MINIMAX_INSTANTS = 180
 WIDE = 20.0
@@ -562,6 +571,7 @@ def lightest(
         turning, tuple(spots), aim, tuple(sizes), turning.values(MINIMAX_INSTANTS * turning.turns)
     )
     most = [spot.making.greatest for spot in spots]
+    # in units of the problem, and never without a bound, as linear programmes need a bounded box
     limits = np.array([WIDE if one is None else min(WIDE, one / problem.unit) for one in most])
     x, bound = _solve_problem(problem, limits, None)
     for _exchange in range(EXCHANGES):
@@ -580,7 +590,10 @@ def _solve_problem(problem: BalanceProblem, limits: Array, near: Array | None) -
     if problem.convex:
         found = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
         x = found.x[: len(zero)]
+        # without what the small pull may have added
         bound = max(found.bound - problem.pull * WIDE, 0.0)
+        # lengths that are free to be greater than their products' would not make it better: then the convex
+        # answer is the answer
         if problem.value(x) <= found.value + TIGHT * max(found.value, 1e-3):
             return x, bound
         # more inertia than the products have would be better: what was proved is not reached
@@ -589,7 +602,10 @@ def _solve_problem(problem: BalanceProblem, limits: Array, near: Array | None) -
     full = full_balance(problem.turning, problem.spots).products / problem.unit
     resting = np.stack([full.real, full.imag], axis=1).reshape(-1)
     longest = np.repeat(np.maximum(np.hypot(resting[::2], resting[1::2]) / limits, 1.0), 2)
+    # a full balance that is too heavy is shortened until it is allowed
     resting = resting / longest
+    # the search is local: from no counterweights, from the full balance, from half of it, and from the other
+    # side
     beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
     looked = [_descend(problem, x, limits, ROUGHLY, WIDE) for x in beginnings]
     return _descend(problem, min(looked, key=problem.value), limits, CONVERGED, 10.0 * NEARBY), None
@@ -612,10 +628,12 @@ def _descend(problem: BalanceProblem, x: Array, limits: Array, converged: float,
     """
     value = problem.value(x)
     for _step in range(STEPS):
+        # the length of a product that is nearly zero bends too much to be linear
         lengths = (np.hypot(x[::2], x[1::2]) < CRUMB).tolist()
         found = _linear(problem, x, limits, trust, max(CLOSED, 0.1 * converged), lengths)
         there = found.x[: len(x)]
         reached = problem.value(there)
+        # what the linear problem promised against what came of it decides on the region of trust
         promised, gained = value - found.value, value - reached
         step = float(np.max(np.abs(there - x)))
         if gained > 0.0:
@@ -623,6 +641,7 @@ def _descend(problem: BalanceProblem, x: Array, limits: Array, converged: float,
         if promised <= converged * value:
             break
         if gained < 0.25 * promised:
+            # a quarter of the step taken, if that was shorter than the region
             trust = 0.25 * min(trust, step or trust)
         elif gained > 0.75 * promised:
             trust = min(2.0 * trust, WIDE)
@@ -635,6 +654,7 @@ def _without_crumbs(problem: BalanceProblem, x: Array) -> Array:
     """Without the counterweights that are nothing but what is left of the search."""
     small = np.repeat(np.hypot(x[::2], x[1::2]) < CRUMB, 2)
     fewer = np.where(small, 0.0, x)
+    # only if the value does not grow by it
     return fewer if problem.value(fewer) <= problem.value(x) * (1.0 + CLOSED) else x
 
 
@@ -674,8 +694,10 @@ def least_effects(
     """The least weighted sum of greatest effects."""
     aim = _aim(weights)
     greatest = greatest_of(turning)
+    # weights count relative to the effects without counterweights
     sizes = [greatest[f"greatest_{EFFECTS[name]}"] for name, _weight in aim.parts]
     whole = {"force": turning.sizes[0], "moment": turning.sizes[1], "driving": turning.sizes[1]}
+    # an effect that is rounding from the start has no share to be weighed by
     small = [size <= ROUNDING * whole[name] for (name, _weight), size in zip(aim.parts, sizes, strict=True)]
     if any(small):
         raise InputError("weights", _("what they count is zero without counterweights"))

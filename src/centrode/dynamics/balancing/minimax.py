@@ -69,33 +69,43 @@ def least(terms: Sequence[MinimaxTerm], low: Array, high: Array, closed: float =
     weights = [term.weight for term in terms]
     planes = _Planes(len(terms), len(low))
     for number, term in enumerate(terms):
+        # to begin with, some two dozen tangents evenly over the cycle, in every direction that a vector may
+        # have
         for instant in range(0, len(term.constant), max(1, len(term.constant) // 24)):
             for direction in DIRECTIONS if np.iscomplexobj(term.rows) else (1.0, -1.0):
                 planes.touch(number, term, instant, direction)
     for pair in range(len(low) // 3):
         for direction in DIRECTIONS:
+            # a pair's length is first bounded by an octagon; further planes are added where it matters
             planes.widen(pair, direction)
+    # zero, moved into the box, is a solution that is always allowed
     best = _inside(np.clip(np.zeros(len(low)), low, high), high)
     value, bound = value_of(terms, best), -np.inf
     for round_ in range(MOST_ROUNDS):
         x, heights = planes.lowest(weights, low, high)
+        # each programme over some of the tangents bounds the answer from below; the best bound counts
         bound = max(bound, float(np.dot(weights, heights)))
         tried = [x]
+        # now and then, as a polish costs as much as several programmes
         if round_ % POLISHED == POLISHED - 1:
             tried.append(_polish(terms, best, low, high))
         for x in tried:
             for number, term in enumerate(terms):
                 _touch_tops(planes, number, term, x)
             pairs, lengths = _split_unknowns(x)
+            # pairs beyond their length violate the cone: they are cut off by the plane along them
             for k in np.flatnonzero(np.abs(pairs) > lengths * (1.0 - 1e-6)).tolist():
                 if pairs[k]:
                     planes.widen(k, complex(pairs[k] / abs(pairs[k])))
+            # what a programme gives is made allowed first: its value then bounds the answer from above
             inside = _inside(x, high)
             here = value_of(terms, inside)
             if here < value:
                 best, value = inside, here
+        # values are sized to the order of 1, so below 1e-3 the gap counts as such
         if value - bound <= closed * max(value, 1e-3):
             break
+    # the programme's own tolerance may put the bound a little above the value
     return MinimaxSolution(best, value, min(bound, value))
 
 
@@ -110,6 +120,7 @@ def _inside(x: Array, high: Array) -> Array:
     pairs, lengths = _split_unknowns(x)
     most = high[2 * len(pairs) :]
     own = np.abs(pairs)
+    # zero pairs are divided by 1 and stay zero
     share = np.where(own > most, most / np.where(own > 0.0, own, 1.0), 1.0)
     shorter = pairs * share
     flat = np.stack([shorter.real, shorter.imag], axis=1).reshape(-1)
@@ -128,6 +139,7 @@ class _Planes:
     def touch(self, number: int, term: MinimaxTerm, instant: int, direction: complex) -> None:
         """The component along a unit direction stays below the height of its term."""
         row = np.zeros(self.unknowns + self.terms)
+        # Re(conj(d) (c + r x)) <= height for a unit d: the component is never greater than the size
         row[: self.unknowns] = (np.conj(direction) * term.rows[instant]).real
         row[self.unknowns + number] = -1.0
         self.left.append(row)
@@ -136,6 +148,7 @@ class _Planes:
     def widen(self, pair: int, direction: complex) -> None:
         """The component of a pair along a unit direction stays below its length."""
         row = np.zeros(self.unknowns + self.terms)
+        # Re(conj(d) pair) <= length
         row[2 * pair], row[2 * pair + 1] = direction.real, direction.imag
         row[2 * (self.unknowns // 3) + pair] = -1.0
         self.left.append(row)
@@ -161,11 +174,13 @@ def _touch_tops(planes: _Planes, number: int, term: MinimaxTerm, x: Array) -> No
     vectors = term.constant + term.rows @ x
     for instant in _tops(np.abs(vectors)):
         size = abs(vectors[instant])
+        # the tangent at x: the direction of the vector there; any will do for zero
         planes.touch(number, term, instant, complex(vectors[instant] / size) if size else 1.0)
 
 
 def _tops(sizes: Array) -> list[int]:
     """Instants of the greatest local maxima."""
+    # instants go round: the last is the neighbour of the first
     peaks = np.flatnonzero((sizes >= np.roll(sizes, 1)) & (sizes >= np.roll(sizes, -1)))
     order = np.argsort(sizes[peaks])[::-1][:MOST_TOPS]
     return [int(instant) for instant in peaks[order]]
@@ -174,6 +189,8 @@ def _tops(sizes: Array) -> list[int]:
 def _polish(terms: Sequence[MinimaxTerm], x: Array, low: Array, high: Array) -> Array:
     """Unknowns nearer to the answer by sequential quadratic programming: tangents alone close in slowly on a curve."""
     for _round in range(POLISHES):
+        # instants that may be the greatest near the answer: only these become constraints, with their
+        # curvature
         corners = [(k, i) for k, term in enumerate(terms) for i in _near(term.at(x))]
         better = _by_quadratics(terms, corners, x, low, high)
         if value_of(terms, better) >= value_of(terms, x):
@@ -204,6 +221,7 @@ def _by_quadratics(
         return np.concatenate([heights, lengths - np.abs(pairs)])
 
     def slopes(y: Array) -> Array:
+        # the derivative of |v| is the component of v' along v
         units = _units(constant + rows @ y[:unknowns])
         found = np.zeros((len(corners) + count, len(y)))
         found[: len(corners), :unknowns] = -(np.conj(units)[:, None] * rows).real
@@ -225,6 +243,7 @@ def _by_quadratics(
         method="SLSQP",
         options={"ftol": 1e-15, "maxiter": 100},
     )
+    # its bounds are kept to a tolerance only
     better = np.clip(found.x[:unknowns], low, high)
     return _inside(better, high) if np.isfinite(better).all() else x
 

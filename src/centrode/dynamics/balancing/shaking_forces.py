@@ -37,8 +37,7 @@ from centrode.numerics.search import tops
 # Inertial effects of bodies on the frame and on the drive, as sums over bodies in plane motion.
 #
 # Vectors of the plane are complex numbers x + i y. With momentum P and moment of momentum K of all bodies the
-# force on
-# the frame is -dP/dt and the moment on it -dK/dt: the joints only hand on what the inertia asks for.
+# force on the frame is -dP/dt and the moment on it -dK/dt: the joints only hand on what the inertia asks for.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Complex: TypeAlias = npt.NDArray[np.complex128]
@@ -112,6 +111,7 @@ def effects_of(tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, ab
     acceleration = pace.second(tracks.places)
     turning = pace.second(angles)
     reduced = mass @ np.abs(first) ** 2 + inertia @ angles[1] ** 2
+    # half the derivative of the reduced inertia
     slope = mass @ (np.conj(first) * second).real + inertia @ (angles[1] * angles[2])
     return Effects(
         -(mass @ acceleration),
@@ -208,6 +208,7 @@ def steady_shaft_motion(found: SteadySolution, values: Array) -> ShaftMotion:
     """The real speed and acceleration of a drive in steady motion."""
     cycle = found.cycle
     turned = cycle.sense * (values - cycle.first)
+    # the cycle repeats: any value of the drive has its place in it
     turned = turned - cycle.period * np.floor(turned / cycle.period)
     return ShaftMotion(cycle.sense * found.speed.at(turned), cycle.sense * found.speed.acceleration(turned))
 
@@ -224,6 +225,7 @@ def constant_rate(prepared: Ready) -> float:
     rate = float(path.parameter.constant_speed or 0.0)
     if mechanism.machine is not None:
         rate = copysign(mechanism.machine.mean_speed, path.forward)
+    # a machine's mean speed counts before the drive's own, in the drive's sense
     if rate == 0.0:
         what = _("its speed is zero, so there is no inertia force")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
@@ -249,7 +251,9 @@ def turns_of_cycle(
     if drive.kind != "angle":
         what = _("there is no whole turn: the drive moves to and fro")
         raise InputError(f"[[drives]] {drive.id}", what, _("drive the angle of a link that turns fully"))
+    # most mechanisms repeat after a turn: few turns are looked at first
     for most in (FEW_TURNS, MOST_TURNS):
+        # at probes in every turn, which lie nowhere special
         turned = (PROBES + tau * np.arange(most + 1)[:, None]).reshape(-1)
         values = path.initial + path.forward * turned
         found = _signature(instants, masses, carriers, values)
@@ -257,9 +261,11 @@ def turns_of_cycle(
         if missing.any():
             raise does_not_turn(float(values[missing][0]))
         by_turn = found.reshape(len(found), most + 1, -1)
+        # each turn against the first one, at the same probes
         apart = np.max(np.abs(by_turn[:, 1:] - by_turn[:, :1]), axis=(0, 2))
         same = apart <= SAME * float(np.max(np.abs(found)))
         if same.any():
+            # the first turn after which everything agrees
             return 1 + int(np.argmax(same))
     what = _("the masses are not back in their places after {turns} turns of the drive").format(turns=most)
     raise InputError("[[gears]]", what, _("change the ratios of the gears"))
@@ -409,10 +415,8 @@ def top(curve: Curve, nodes: Array) -> Top:
 # Harmonics of what inertia does to the frame: Fourier coefficients over a whole cycle of the drive.
 #
 # At constant speed by the trapezoidal rule on a whole period, which converges faster than any power of the
-# number of
-# nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014, 385-458);
-# where loads
-# make the acceleration jump by Gauss's rule between the jumps.
+# number of nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014,
+# 385-458); where loads make the acceleration jump by Gauss's rule between the jumps.
 
 MOST_DOUBLINGS = 5
 SETTLED = 1e-13
@@ -446,6 +450,7 @@ class Harmonics:
     @property
     def force_greatest(self) -> Array:
         """Longer half axis of the ellipse that the force of each order describes (orders) [N]."""
+        # an ellipse is two vectors that turn against each other: where they meet, their sizes add up
         forward, backward = self.force_cosine - 1j * self.force_sine, self.force_cosine + 1j * self.force_sine
         return np.asarray(0.5 * (np.abs(forward) + np.abs(backward)))
 
@@ -466,10 +471,12 @@ def harmonics_of(turning: ShakingTurning, most: int) -> Harmonics:
             values, weights = _gauss(turning, panels)
         found = _coefficients(turning, orders, values, weights)
         if before is not None:
+            # force by force, moment by moment: each coefficient over what its own sum may come up to
             error = float(np.max(np.max(np.abs(found - before), axis=(0, 2)) / sizes))
         if error <= SETTLED:
             break
         before, count = found, 2 * count
+        # twice the panels where the acceleration jumps: Gauss's rule converges between jumps only
         panels = None if panels is None else _halve_panels(panels)
     cosine, sine = found
     return Harmonics(
@@ -487,6 +494,7 @@ def _coefficients(turning: ShakingTurning, orders: Array, values: Array, weights
     """Cosine and sine coefficients (2, 3, orders) of force x, force y and moment."""
     effects = turning.effects(values)
     rows = np.stack([effects.force.real, effects.force.imag, effects.moment])
+    # the mean has weight 1, the others 2: the coefficients of a real Fourier series
     waves = np.exp(1j * orders[:, None] * values) * np.where(orders == 0.0, 1.0, 2.0)[:, None]
     found = (rows * weights) @ waves.T
     return np.stack([found.real, found.imag])
@@ -595,7 +603,7 @@ def _sampled_range(
     at: npt.ArrayLike | None,
     speed: Speed,
 ) -> tuple[Ready, SampleGrid]:
-    """The samples, passed at the speed that is asked for."""
+    """The samples, passed at the speed that is requested."""
     if speed == "steady":
         if start is not None or stop is not None:
             what = _("steady motion is shown over its cycle")

@@ -320,10 +320,8 @@ def _moments(
 # Triads of the third class: a base link on three links with one outer joint each, by an Assur point.
 #
 # The tangential part of each outer reaction follows from moments of its link about the inner hinge. What is
-# left acts on
-# the base along three known lines. About the point where two of them meet, an Assur point, moments give the
-# third;
-# then the polygon closes along two directions.
+# left acts on the base along three known lines. About the point where two of them meet, an Assur point,
+# moments give the third; then the polygon closes along two directions.
 
 
 @dataclass(frozen=True)

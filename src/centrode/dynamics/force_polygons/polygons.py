@@ -193,9 +193,8 @@ def room_of(paper: str) -> Size:
 # Zhukovsky's lever: the velocity diagram, turned by a right angle, as a rigid lever with all forces on it.
 #
 # Its velocities are constructed as on a drawing board for a unit rate of one drive. Forces act at the images
-# of their
-# places; a moment on a link acts on the lever times (side of the image / side of the link). The lever is in
-# equilibrium about the pole with the balancing moment.
+# of their places; a moment on a link acts on the lever times (side of the image / side of the link). The
+# lever is in equilibrium about the pole with the balancing moment.
 
 
 @dataclass(frozen=True)

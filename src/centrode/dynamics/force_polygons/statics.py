@@ -585,8 +585,8 @@ class Dyad:
 # Which bodies are in equilibrium by themselves, group by group, the last of the plan first.
 #
 # A perfect matching of the unknowns of the joints with the equations of equilibrium, then the strong
-# components of
-# "its equations hold unknowns of" (Dulmage and Mendelsohn): these are Assur's groups and the input links.
+# components of "its equations hold unknowns of" (Dulmage and Mendelsohn): these are Assur's groups and the
+# input links.
 
 Equation: TypeAlias = tuple[str, int]
 

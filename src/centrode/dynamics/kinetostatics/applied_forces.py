@@ -41,7 +41,7 @@ class InertiaForce:
 
     @property
     def pulls(self) -> tuple[Wrench, ...]:
-        """The same as forces on the link."""
+        """Inertia force and inertia moment as wrenches on the link."""
         return on_link(self.link, self.force, self.at), couple(self.link, self.moment)
 
 
@@ -77,6 +77,7 @@ def outer_of(state: State, burden: MassesAndLoads, acceleration: Array, known: A
     """
     pulls, by_load = _loads(state, burden.loads, known)
     inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, by_load.shape[1:]))
+    # by virtual work: loads less J q'' + J' q'^2 / 2
     moment = by_load.sum(axis=0) - inertia * acceleration - 0.5 * slope * state.rate**2
     return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment, by_load)
 
@@ -94,6 +95,7 @@ def _loads(state: State, loads: Sequence[AppliedLoad], known: Any) -> tuple[list
 
 
 def _inertia_forces(state: State, masses: Sequence[Mass], acceleration: Array) -> tuple[InertiaForce, ...]:
+    # without acceleration the products with it are left out
     inertial = _Inertial(state, acceleration if acceleration.any() else None)
     return tuple(inertial.of(mass) for mass in masses)
 
@@ -147,7 +149,7 @@ class _Inertial:
         return straight if self.acceleration is None else straight + jet.value * self.acceleration
 
 
-# How the drive moves while reactions are asked for.
+# How the drive moves while reactions are requested.
 
 
 @dataclass(frozen=True)
@@ -166,7 +168,7 @@ class InputMotion:
 
 
 def input_motion_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
-    """As `reduce` takes it: the mean speed of a machine, where the drive has a constant speed; else the drive's own."""
+    """Motion of the input as in `reduce`: a machine's mean speed if the drive's is constant, else the drive's."""
     span, prepared = solved.span, solved.ready
     path = prepared.kinematics.path
     if path.by_time:
@@ -188,6 +190,7 @@ def steady_grid(
         cycle.value(turned),
         cycle.sense * speed.at(turned),
         cycle.sense * speed.acceleration(turned),
+        # the speed of the steady motion is the sample grid's own
     )
     return found.prepared, span, _along(span, "steady")
 

@@ -116,12 +116,14 @@ def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
     found: dict[Axis, Unknown] = {}
     whole = set(kept)
     for constraint, row in kept:
+        # a host bears both components of a pin, so both its rows have to be there
         if (
             isinstance(constraint, PointInLink)
             and constraint.point in points
             and (constraint, 1 - row) in whole
         ):
             found.setdefault((constraint.point, row), (constraint, row))
+    # the first link in the order of the constraints: a host is a choice, and has to be the same every time
     return found
 
 
@@ -143,7 +145,8 @@ class Pressing:
 
     @property
     def pulls(self) -> tuple[Wrench, ...]:
-        """The same as forces on both."""
+        """The force as wrenches on the pin and on what bears it."""
+        # the frame has no equations, so any place will do; through the centre the force turns nothing
         at = NOWHERE if self.bearer == FRAME else self.at
         return on_point(self.point, tuple(-x for x in self.force), self.at), on_link(
             self.bearer, self.force, at
@@ -213,6 +216,8 @@ class InPlane:
         for entity, values in row.items():
             if entity.kind == "link":
                 x, y, moment = values
+                # moments of a row are by the turn about the origin of the link's axes, so there the force
+                # acts
                 found.append(Wrench(entity, (x, y), at.poses[entity.name].origin, moment))
                 continue
             place = at.points[entity.name]
@@ -254,6 +259,7 @@ class OnSphere:
 
     def positions(self, state: State, numbers: Dimensions) -> Positions:
         mechanism = state.mechanism
+        # on the unit sphere: lengths come in with the radius where forces do
         points = {
             name: tuple(x / self.radius for x in place_of(state.point(name))) for name in mechanism.points
         }
@@ -272,10 +278,12 @@ class OnSphere:
         if point is None:
             return tuple(couple(entity.name, tuple(moment)) for entity, moment in row.items())
         place = at.points[point.name]
+        # a multiplier that is a moment has its row by arcs: over the radius it is a force
         unit = 1.0 / self.radius if self.by_moment(constraint) else 1.0
         first, second = basis(ARRAYS, place)
         force = times(unit, linear_combination((row[point][0], first), (row[point][1], second)))
         there = times(self.radius, place)
+        # what ties a point to a body pushes both, with opposite forces at one place
         others = [on_link(entity.name, times(-1.0, force), there) for entity in row if entity is not point]
         return on_point(point.name, force, there), *others
 
@@ -284,6 +292,8 @@ class OnSphere:
 
     def on_link(self, pull: Wrench, foot: MomentCentre, scale: float) -> tuple[Number, Number, Number]:
         (up, one, other), force = foot, pull.force
+        # moments over the radius are forces; about the link's own first point differences of places keep
+        # their digits
         place = times(1.0 / self.radius, pull.at)
         turning, twist = cross(place, force), cross(subtract(place, up), force)
         if isinstance(pull.moment, tuple):
@@ -347,6 +357,7 @@ class Teeth:
         found = {}
         for gear in mechanism.gears:
             first, second = (_common(mechanism, wheel, gear.carrier) for wheel in gear.links)
+            # wheels that turn alike have no pitch point: it lies at infinity
             if len(first) == len(second) == 1 and first != second and gear.ratio != 1.0:
                 found[gear.id] = (first[0], second[0])
         return cls(found, mechanism.sphere_radius if mechanism.space == "sphere" else None)
@@ -360,9 +371,11 @@ class Teeth:
         first, second = (at.points[name] for name in self.axes[constraint.gear])
         if self.radius is not None:
             return _on_sphere(constraint, ratio, first, second, self.radius)
+        # where both wheels have one velocity in the carrier: (p - a) w = (p - b) i w
         pitch = tuple((a - ratio * b) / (1.0 - ratio) for a, b in zip(first, second, strict=True))
         place = pitch[0], pitch[1]
         x, y = plane_subtract(place, second)
+        # square to the line of centres, of moment 1 about the second wheel's axis
         square = plane_dot((x, y), (x, y))
         force = -y / square, x / square
         return (
@@ -378,12 +391,13 @@ class Teeth:
 def _on_sphere(
     gear: GearRatio, ratio: float, first: Vector, second: Vector, radius: float
 ) -> tuple[Wrench, ...]:
-    """The same of bevel gears, whose pitch cones touch along the axis of their relative turning.
+    """Tooth force of bevel gears, whose pitch cones touch along the axis of their relative turning.
 
     Wheels that turn against each other mesh between their axes. Of others nothing tells on which side of the centre,
     and so which way the force points: then its moment about the centre alone is put on the wheels.
     """
     a, b = (first[0], first[1], first[2]), (second[0], second[1], second[2])
+    # the axis of relative turning: w (a - i b) for angular velocities w and i w about a and b
     pitch = unit(ARRAYS, space.subtract(a, space.times(ratio, b)))
     along = space.cross(b, pitch)
     square = space.dot(along, along)
@@ -419,6 +433,7 @@ def wrenches_of(
     Rows act on points; where a guide has a slider of its own, and under a rolling wheel, the force is put on the
     slider or the wheel itself: the pin's share of it would be a mere name.
     """
+    # the force between teeth is put where it acts; the row alone would be two moments
     if isinstance(constraint, GearRatio) and constraint.gear in teeth.axes:
         return [teeth.pulls(constraint, at, numbers)]
     link = _host_link(constraint, mechanism)
@@ -458,6 +473,7 @@ class Inverse:
         asked = np.moveaxis(right, 0, -1)[..., None]
         with np.errstate(invalid="ignore"):
             found = self.inverse @ asked
+            # one step of refinement takes back what the inverse's own rounding left
             found = found + self.inverse @ (asked - self.matrix @ found)
         return np.moveaxis(found[..., 0], -1, 0)
 
@@ -486,6 +502,7 @@ def inverse_of(matrix: Array) -> Inverse:
     matrices and those with NaN are no error.
     """
     size, width = matrix.shape[-2:]
+    # more columns than equations: those of repeating constraints, used only where the others are singular
     inverse, condition = _square(matrix[..., :size])
     if width == size:
         return Inverse(matrix, inverse, condition)
@@ -511,10 +528,12 @@ def _square(matrix: Array) -> tuple[Array, Array]:
     if not regular.all():
         inverse = np.where(regular[..., None, None], inverse, np.nan)
     with np.errstate(invalid="ignore", over="ignore"):
+        # the norm of the greatest row sum: no singular values are needed for a bound
         condition = _norm(matrix) * _norm(inverse)
     return inverse, np.where(regular, condition, np.where(known, np.inf, np.nan))
 
 
+# an identity in the place of what has no inverse keeps the rest of the stack going
 def _where(regular: Mask, matrix: Array) -> Array:
     return matrix if regular.all() else np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
 
@@ -527,6 +546,7 @@ def _pseudo(matrix: Array) -> tuple[Array, Array]:
     """Pseudo-inverses (k, m, n) and condition numbers of matrices (k, n, m) that are known."""
     left, values, right = np.linalg.svd(matrix, full_matrices=False)
     with np.errstate(divide="ignore", invalid="ignore"):
+        # of singular values that are zero the quotient is infinite, and so is the condition number
         condition = values[:, 0] / values[:, -1]
         inverse = np.swapaxes(right, 1, 2) @ (np.swapaxes(left, 1, 2) / values[..., None])
     return inverse, condition
@@ -632,6 +652,8 @@ class Kinetostatics:
         matrix = np.zeros((size, len(unknowns), *self.shape))
         for column, unknown in enumerate(unknowns):
             self._add(matrix[:, column], self.pulls[unknown])
+            # forces and moments over the greatest length are of one size, so that the condition number means
+            # something
             if self.equilibrium.by_moment(unknown[0]):
                 matrix[:, column] *= self.scale
         return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))))
@@ -662,6 +684,7 @@ class Kinetostatics:
         """What the host of each pin bears: the rest of what acts on the pin."""
         sums: dict[Axis, Number] = dict.fromkeys(self.scheme.hosts, np.zeros(self.shape))
         acting = [(pull, value) for unknown, value in multipliers.items() for pull in self.pulls[unknown]]
+        # only pins are summed: what acts on links is in their own equations
         for pull, value in [*acting, *((pull, 1.0) for pull in outer)]:
             if pull.body.kind == "point":
                 for axis in range(2):
@@ -669,6 +692,7 @@ class Kinetostatics:
                     along = _along(pull.force, self._host_axis(place)) if place in sums else 0.0
                     if not _is_zero(along):
                         sums[place] = sums[place] + along * value
+        # what is missing to the pin's equilibrium is what its host bears
         return {unknown: -sums[place] for place, unknown in self.scheme.hosts.items()}
 
     def _host_axis(self, place: Axis) -> Vector:
@@ -687,9 +711,11 @@ class Kinetostatics:
         name, scheme = pull.body.name, self.scheme
         if pull.body.kind == "link":
             return self._on_link(name, pull) if name in scheme.links else []
+        # what acts on a pin with a host is put on the host's equations, at the pin's place
         if (name, 0) in scheme.hosts:
             return self._on_link(scheme.hosts[name, 0][0].link, pull)  # type: ignore[attr-defined]
         if (name, 0) not in scheme.loose:
+            # pins of the frame have no equations
             return []
         row, axes = 3 * len(scheme.links) + scheme.loose.index((name, 0)), self._pin_axes(name)
         return [(row + k, _along(pull.force, axis)) for k, axis in enumerate(axes)]

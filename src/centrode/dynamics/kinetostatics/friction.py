@@ -51,7 +51,7 @@ class HingeBearing:
 
     @property
     def label(self) -> str:
-        """Its name in results, that of the side."""
+        """Name of the joint in results, "point/link" as that of the side."""
         return f"{self.point}/{self.link}"
 
     @property
@@ -85,7 +85,7 @@ class Sliding:
 
     @property
     def label(self) -> str:
-        """Its name in results."""
+        """Name of the joint in results, "guide C"."""
         return f"guide {self.guide}"
 
     @property
@@ -197,6 +197,7 @@ def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[H
                 where, what.format(point=point, link=pin), _("name another link, or another pin")
             )
         links = [load.link]
+    # the fit is a factor of the moment, so it goes into the coefficient
     coefficient = load.coefficient * FITS[load.fit]
     return [HingeBearing(point, link, pin, coefficient, load.radius, where) for link in links]
 
@@ -218,12 +219,10 @@ def _carrier(mechanism: Mechanism, point: str) -> str | None:
 # How great friction is where it depends on reactions that depend on it: f = c |R(f)|, at many positions.
 #
 # The reactions are straight in the sizes f of friction, R(f) = R_0 + G f. The solution that counts is the one
-# that
-# grows out of no friction at all while every coefficient grows from 0 to its value: f = s c |R(f)|, s from 0
-# to 1.
-# Where all of c G is small there is no other; elsewhere it is followed. A branch that ends before s = 1,
-# because it
-# goes to infinity or turns back, has no solution that motion without friction leads to: self-locking.
+# that grows out of no friction at all while every coefficient grows from 0 to its value: f = s c |R(f)|, s
+# from 0 to 1. Where all of c G is small there is no other; elsewhere it is followed. A branch that ends
+# before s = 1, because it goes to infinity or turns back, has no solution that motion without friction leads
+# to: self-locking.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -277,7 +276,7 @@ class FrictionLaw:
     rules: npt.NDArray[np.int8]
 
     def at(self, mask: Mask) -> FrictionLaw:
-        """The same at some of the positions."""
+        """The law at some of the positions (n)."""
         return FrictionLaw(self.factor[mask], self.base[mask], self.gain[mask], self.rules)
 
     def measures(self, sizes: Array) -> tuple[Array, Array]:
@@ -285,10 +284,13 @@ class FrictionLaw:
         parts = self.base + np.einsum("njak,nk->nja", self.gain, sizes)
         first, second = parts[..., 0], parts[..., 1]
         length = np.hypot(first, second)
+        # zero vectors are divided by 1: their direction does not count
         safe = np.where(length > 0.0, length, 1.0)
         larger = np.abs(first) >= np.abs(second)
         weights = np.empty_like(parts)
         by = (self.rules == FrictionRule.LENGTH, self.rules == FrictionRule.GREATER)
+        # derivatives of the measure by its two numbers: direction cosines, or the sign of the greater one, or
+        # 1
         weights[..., 0] = np.select(by, (first / safe, np.sign(first) * larger), 1.0)
         weights[..., 1] = np.select(by, (second / safe, np.sign(second) * ~larger), 0.0)
         found = np.select(by, (length, np.maximum(np.abs(first), np.abs(second))), first)
@@ -297,6 +299,7 @@ class FrictionLaw:
     @property
     def feedback(self) -> Array:
         """Spectral radius (n) of the greatest shares of sizes that sizes can add: below 1 there is one solution."""
+        # by how much a size can change another's measure at most, whatever the directions
         shares = np.abs(self.factor)[..., None] * np.linalg.norm(self.gain, axis=2)
         return np.asarray(np.abs(np.linalg.eigvals(shares)).max(axis=-1, initial=0.0))
 
@@ -304,6 +307,7 @@ class FrictionLaw:
         """What is missing, f - s c m(f) (n, m), its derivatives (n, m, m), and what rounding leaves of it (n, m)."""
         found, slopes = self.measures(sizes)
         factor = share[:, None] * self.factor
+        # sizes of the terms before they cancel: rounding is a share of these
         parts = np.abs(self.base).max(axis=2) + np.einsum(
             "njk,nk->nj", np.abs(self.gain).max(axis=2), np.abs(sizes)
         )
@@ -339,6 +343,7 @@ def solve_friction(law: FrictionLaw) -> Followed:
     count, width = law.factor.shape
     feedback, ones = law.feedback, np.ones(count)
     sizes, good, _slope, tries = _newton_corrections(law, np.zeros((count, width)), ones, TRIES)
+    # with feedback of 1 or more there may be other solutions, and Newton's method may have found one of them
     good &= feedback < 1.0
     outcome = np.where(good, Outcome.FOUND, Outcome.LOST).astype(np.int8)
     share = np.where(good, 1.0, 0.0)
@@ -347,6 +352,7 @@ def solve_friction(law: FrictionLaw) -> Followed:
         sizes[rest], outcome[rest], share[rest], more = _along(law.at(rest), feedback[rest])
         tries = max(tries, more)
     missing = np.abs(law.residual(sizes, ones)[0])
+    # where there is no friction at all the share is 0 and not 0/0
     size = np.maximum(np.abs(sizes).max(axis=1, initial=0.0), np.finfo(np.float64).tiny)
     return Followed(sizes, outcome, share, missing.max(axis=1, initial=0.0) / size, tries)
 
@@ -363,6 +369,7 @@ def _newton_corrections(
         part = law.at(open_)
         with np.errstate(all="ignore"):
             residual, slopes, noise = part.residual(sizes[open_], share[open_])
+            # the determinant at the last place tells whether the branch has been left
             determinant[open_] = np.linalg.det(slopes)
             sizes[open_] -= _solve_matrices(slopes, residual)
             done = (np.abs(residual) <= noise).all(axis=1)
@@ -384,6 +391,7 @@ def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]
     """Follow the branch from no friction on, each position with steps of its own."""
     count, width = law.factor.shape
     sizes, share, tries = np.zeros((count, width)), np.zeros(count), 0
+    # sizes feed on themselves from s = 1 / feedback on: a quarter of that is a safe step
     longest = np.clip(STRIDE / np.maximum(feedback, STRIDE), SHORTEST, 1.0)
     step = longest.copy()
     for _step in range(MOST_STEPS):
@@ -393,6 +401,7 @@ def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]
         part, here, aim = law.at(going), sizes[going], np.minimum(share[going] + step[going], 1.0)
         slopes = part.residual(here, share[going])[1]
         ahead = part.factor * part.measures(here)[0]
+        # along the branch (I - s c m') df/ds = c m: a tangent step, which Newton's method then corrects
         guess = here + (aim - share[going])[:, None] * _solve_matrices(slopes, ahead)
         found, good, determinant, made = _newton_corrections(part, guess, aim, TRIES_ON_BRANCH)
         # the determinant is 1 without friction and changes its sign where the branch ends
@@ -400,6 +409,7 @@ def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]
         tries = max(tries, made)
         sizes[going] = np.where(good[:, None], found, here)
         share[going] = np.where(good, aim, share[going])
+        # twice as long after success, half as long after failure
         step[going] = np.where(good, np.minimum(2.0 * step[going], longest[going]), 0.5 * step[going])
     locked = (share < 1.0) & (step < LEAST_STEP)
     outcome = np.select((share >= 1.0, locked), (Outcome.FOUND, Outcome.LOCKED), Outcome.LOST)
@@ -438,7 +448,7 @@ class Rubbed:
     slopes : (n, contacts)
         Derivative of what rubs by the path's parameter; 0 where it turns round.
     turns : (n, contacts)
-        Where a contact stands for an instant: what is told holds just after it.
+        Where a contact stands for an instant: what is returned holds just after it.
     standing : labels of contacts that do not move
     """
 
@@ -479,6 +489,7 @@ def friction_of_contacts(
     solution = _where_known(_law(free, sizes, senses[:, owner]), useful)
     amounts, arms = np.zeros(senses.shape), np.zeros(senses.shape)
     for k, size in enumerate(sizes):
+        # the moment that a slider's height brings is kept apart from the force along the guide
         (arms if size.rule is FrictionRule.FIRST else amounts)[:, owner[k]] += solution.sizes[:, k]
     still = tuple(c.label for c, sense in zip(contacts, senses.T, strict=True) if not np.any(sense))
     return Rubbed(tuple(contacts), tuple(sizes), solution, amounts, arms, slopes, turns, still)
@@ -498,8 +509,10 @@ def _motion(
     reach = np.maximum(1.0, np.abs(state.parameter))
     condition = system.inverse.condition[0]
     with np.errstate(all="ignore"):
+        # a slope this small is rounding: of the place, and of positions near a singular one
         noise = REST * (np.abs(bend) * reach + unit) + EPSILON * condition * unit
         rest = ~(np.abs(slope) > noise)
+        # the second derivative is less exact: its rounding goes with the square of the condition number
         bends = np.abs(bend) > noise + EPSILON * condition**2 * unit
         speed = np.where(rest, 0.0, slope) * state.rate
         # where the drive itself stands, it is about to move as it is accelerated
@@ -524,8 +537,10 @@ def _sizes(contact: Contact, state: State) -> list[Size]:
 def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw:
     samples, count = len(senses), len(sizes)
     gain = np.empty((samples, count, 2, count))
+    # reactions are linear in the sizes: those of each unit size, without any load, are the gains
     for k, size in enumerate(sizes):
         gain[..., k] = _size_measures(free.system.forces(size.pulls), sizes, samples)
+    # friction acts against the motion
     factors = -senses * np.array([size.factor for size in sizes])
     rules = np.array([size.rule for size in sizes], dtype=np.int8)
     return FrictionLaw(factors, _size_measures(free, sizes, samples), gain, rules)
@@ -567,6 +582,7 @@ def _where_known(law: FrictionLaw, useful: Mask) -> Followed:
     share, residual = np.full(count, np.nan), np.zeros(count)
     sizes[known], outcome[known] = found.sizes, found.outcome
     share[known], residual[known] = found.share, found.residual
+    # where there is no solution nothing is said of its residual
     residual[outcome != Outcome.FOUND] = 0.0
     return Followed(sizes, outcome, share, residual, found.tries)
 
@@ -614,6 +630,7 @@ class Powers:
         return cls(
             drives,
             by_load[:, ~rubbing],
+            # what is left of the sum of loads and inertia is the inertia
             total[0] - by_load.sum(axis=1),
             -rubbed.moment - by_load[:, rubbing].sum(axis=1),
             rate,
@@ -626,7 +643,7 @@ class Powers:
         return _efficiency(parts, self.lost * self.rate)
 
     def mean_efficiency(self, parameter: Array) -> float:
-        """The same of works over all samples; each drive, each load and inertia counts with what it gives in all."""
+        """Efficiency by works over all samples; each drive, load and inertia counts with what it gives in all."""
         parts = np.column_stack([self.drives, self.loads, self.inertia])
         works, lost = (works_over(parameter, self.rate, values) for values in (parts, self.lost[:, None]))
         return float(_efficiency(works[None], lost)[0])
@@ -636,6 +653,7 @@ class Powers:
         """HELD (n) where loads and inertia would drive the mechanism without friction, and do not with it."""
         outer = (self.loads.sum(axis=1) + self.inertia) * self.rate
         driving = self.drives.sum(axis=1) * self.rate
+        # what may be the difference of great powers is rounding
         noise = NOISE * (np.abs(self.loads).sum(axis=1) + np.abs(self.inertia)) * np.abs(self.rate)
         with np.errstate(invalid="ignore"):
             held = (outer > noise) & (driving >= 0.0)
@@ -645,8 +663,9 @@ class Powers:
 def works_over(parameter: Array, rate: Array, moments: Array) -> Array:
     """Works (m) of moments (n, m) along a parameter, by the trapezoidal rule, in the sense in which `rate` goes.
 
-    The samples may be told backwards.
+    The samples may be in reverse order.
     """
+    # samples may run backwards: the way is counted as positive, in the sense of the rate
     way = np.abs(np.diff(parameter))[:, None]
     values = moments * np.sign(rate)[:, None]
     return np.asarray((0.5 * way * (values[1:] + values[:-1])).sum(axis=0))

@@ -39,7 +39,7 @@ class JointSide:
 
     @property
     def label(self) -> str:
-        """Its name in results."""
+        """Name of the side in results, "point/body"."""
         return f"{self.point}/{self.body}"
 
 
@@ -55,6 +55,7 @@ def sides_of(mechanism: Mechanism) -> tuple[JointSide, ...]:
     for point in dict.fromkeys([*named, *mechanism.moving_points, *mechanism.frame.points]):
         links = [name for name, link in mechanism.links.items() if point in link.coordinates]
         fixed = point in mechanism.frame.points
+        # a pin is worth a row where at least two bodies meet in it
         if len(links) > 1 or (links and fixed) or (point in held and (links or fixed)):
             found += [JointSide(point, link) for link in links]
             found += [JointSide(point, FRAME)] if fixed else []
@@ -161,6 +162,7 @@ def _value(forces: ForceSystem, constraint: Constraint | None) -> Number:
 
 def _force_of(pulls: Iterable[Wrench]) -> list[Number]:
     """The first of the forces that a constraint exerts: on the point, slider or wheel; carriers come after."""
+    # a row's body without force is skipped: links that only get a moment
     return next(list(pull.force) for pull in pulls if not isinstance(pull.force[0], float) or any(pull.force))
 
 
@@ -205,6 +207,7 @@ def _of_wheels(
         vectors.append([press * x + y for x, y in zip(out, grip, strict=True)])
         # a wheel inside a circle, or a ring around a pin, is pressed towards the circle's centre
         normal.append(press if isinstance(track, Straight) or not track.inside else -press)
+        # forwards along a line, counter-clockwise about a circle: square to the outward normal
         way = (out[1], -out[0]) if isinstance(track, Straight) else (-out[1], out[0])
         along.append(grip[0] * way[0] + grip[1] * way[1])
     samples = forces.system.shape[-1]
@@ -244,9 +247,12 @@ def undetermined_parts(
     if not good.any():
         return found
     condition = system.inverse.condition[0][good]
+    # rounding of the matrix, and what the equations fail to repeat each other by, magnified by the condition
+    # number
     noise = SAFETY * (system.inverse.loss[0][good] + condition * residual)
     for unknown in system.scheme.repeating:
         parts = _moments_as_forces(reactions_of(_self_stress(system, unknown), sides), system.scale)
+        # moments as forces, so that the greatest of all reactions is a measure for each
         greatest = np.max([_greatest(values[good]) for values in parts.values()], axis=0)
         for name, values in parts.items():
             bound = (noise * greatest).reshape(-1, *[1] * (values.ndim - 1))
@@ -257,6 +263,7 @@ def undetermined_parts(
 
 def _self_stress(system: Kinetostatics, unknown: Unknown) -> ForceSystem:
     """All constraint forces that a unit of one repeating equation brings about."""
+    # a unit of the repeating equation, and what the others have to do to balance it
     multipliers = system.forces(system.pulls[unknown]).multipliers
     return ForceSystem(system, {**multipliers, unknown: multipliers[unknown] + 1.0}, ())
 

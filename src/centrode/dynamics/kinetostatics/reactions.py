@@ -122,6 +122,7 @@ def find(
     system = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth)
     outer = outer_of(state, burden, pace.acceleration, state.exists)
     forces, sides = system.forces(outer.pulls), sides_of(prepared.mechanism)
+    # without friction first: what acts decides neither on statuses nor on what is undetermined
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))
     undetermined = undetermined_parts(system, sides, status, residual)
@@ -132,7 +133,7 @@ def find(
 def _with_friction(
     found: ReactionSolution, solved: Solved, burden: MassesAndLoads, state: State, contacts: Sequence[Contact]
 ) -> ReactionSolution:
-    """The same with friction, which is as great as the reactions that it changes make it."""
+    """A solution with friction, which is as great as the reactions that it changes make it."""
     refuse_undetermined(contacts, found.undetermined, found.sides, solved.ready.mechanism)
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
     sizes = friction_of_contacts(state, found.forces, contacts, found.pace.acceleration, useful)
@@ -147,6 +148,7 @@ def _with_friction(
     status[sizes.solution.outcome == Outcome.LOCKED] = Status.SELF_LOCKING
     status[sizes.solution.outcome == Outcome.LOST] = Status.UNCONVERGED
     by_time = solved.ready.kinematics.path.by_time
+    # with several drives the parameter is time, and moments along it are powers
     drives = parts["balancing"] * rates_of(solved, found.pace) if by_time else parts["balancing"]
     powers = Powers.of(drives, burden.loads, without.shares, without.moment, sizes, found.pace.moving.rate)
     parts |= friction_parts(sizes, powers, state.mechanism)
@@ -219,6 +221,7 @@ def checks_of(found: ReactionSolution, rates: Array) -> dict[str, float]:
 def _worst(found: ReactionSolution, missing: Array, size: Array) -> float:
     good = found.status == Status.OK
     with np.errstate(all="ignore"):
+        # nothing missing where nothing acts counts as zero, not as 0/0
         share = np.where(missing == 0.0, 0.0, missing / size)
     return float(np.max(share[good], initial=0.0))
 
@@ -235,6 +238,7 @@ def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
     for pull in forces.acting:
         if pull.body in sums:
             parts = system.on_link(pull.body.name, pull) if pull.body.kind == "link" else pull.force
+            # `strict=False`: a pin has two components in the plane, a link three
             sums[pull.body] = tuple(x + y for x, y in zip(sums[pull.body], parts, strict=False))
         size = _greater(_greater(size, pull.force, 1.0), components(pull.moment), system.scale)
     missing: Number = 0.0
@@ -270,6 +274,7 @@ def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
     given = found.parts["balancing"] * rates
     taken = found.outer.moment[0] * found.pace.moving.rate
     good = found.status == Status.OK
+    # over the greatest power of the motion: at single samples all powers may vanish together
     greatest = np.max((np.abs(given).sum(axis=-1) + np.abs(taken))[good], initial=0.0)
     return np.abs(given.sum(axis=-1) + taken), np.full(len(good), greatest)
 
@@ -368,6 +373,7 @@ def reactions_dataset(
     undetermined = _mask_undetermined(parts, found)
     if "centre_force" in parts:
         parts["joint_moment"] = joint_moments(found, parts["joint_force"])
+    # after the checks, which look at numbers
     for values in parts.values():
         values[absent] = np.nan
     units = solved.ready.parameter.units
@@ -542,7 +548,7 @@ def reactions_at(
     contacts: tuple[Contact, ...] = (),
     whole: bool = True,
 ) -> xr.Dataset:
-    """The same for a motion solved before, of one mechanism, with friction in the contacts.
+    """Reactions at the samples of a solved motion of one mechanism, with friction in the contacts; see `reactions`.
 
     `whole` where its samples are a range, over which works have a sense.
     """

@@ -149,6 +149,7 @@ class ReducedFunctions:
     def at(self, values: Array) -> Array:
         """All rows (rows, n); NaN where the motion or its derivatives do not exist."""
         found = np.empty((self.count, len(values)))
+        # backwards first: the state of the forward sense is used for all that does not depend on it
         for first, sense in ((BACKWARDS, -1.0), (FORWARDS, 1.0)):
             state, known = self.state(values, sense)
             for k, sort in enumerate(SORTS):
@@ -163,6 +164,7 @@ class ReducedFunctions:
             found[row + SPEED] = effort.coordinate.slope(state).value
             found[row + ALONG] = effort.along(state)
             found[row + GATE] = 1.0 if effort.gate is None else effort.gate.slope(state).value
+        # of both senses the positions are the same, so one mask serves
         found[:, ~known] = np.nan
         return found
 
@@ -196,6 +198,7 @@ class ReducedFunctions:
     def scales(self, peaks: Array) -> Array:
         """What counts as the greatest value of each row, where one may be nothing but rounding beside others."""
         found = peaks.copy()
+        # J' may be rounding beside J, whose derivative it is
         found[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
         moments = slice(FORWARDS, FORMULAS)
         found[moments] = np.maximum(peaks[moments], FLOOR * np.max(peaks[moments]))
@@ -229,10 +232,8 @@ def _moment(one: Sorted, state: State, known: Known) -> Array:
 # A mechanism by its drive's value, fast and with a known error: series on panels, stretch by stretch.
 #
 # Panels are those of `quadrature`: Legendre series through Gauss nodes, halved until their last terms have
-# died
-# away; they end at the jumps of loads. Of a drive that turns all the way round the stretches of one period
-# serve all
-# others.
+# died away; they end at the jumps of loads. Of a drive that turns all the way round the stretches of one
+# period serve all others.
 
 TOLERANCE = 1e-13
 """What a panel's series may leave out of an integral over a stretch, over the greatest value."""
@@ -309,6 +310,7 @@ class PanelTracks:
         return found
 
     def place(self, value: float, upwards: bool) -> tuple[int, int]:
+        # a value on an edge belongs to the stretch that the motion enters
         """Number of the stretch on which a value lies, and of periods before; an edge belongs to what lies ahead."""
         share = (value - self.first) / self.length
         number = floor(share) if upwards else ceil(share) - 1
@@ -338,6 +340,7 @@ class PanelTracks:
         turns = np.arange(MOST_PERIOD + 1)
         values = (self.first + PROBES + tau * turns[:, None]).reshape(-1)
         low, high = self.rows.reducer.reach(self.first, float(values[-1]))
+        # a limit or an end within the probed turns means that nothing repeats
         if isfinite(low) or isfinite(high) or self._ends(self.first, float(values[-1])) != (-inf, inf):
             return 0.0
         rows = self.rows.at(values).reshape(self.rows.count, len(turns), -1)
@@ -347,6 +350,8 @@ class PanelTracks:
         for count in range(1, MOST_PERIOD + 1):
             apart = rows[:, count:] - rows[:, :-count]
             grown = np.zeros(self.rows.count)
+            # coordinates that run on with the drive grow by the same in each period: that is taken off before
+            # comparing
             grown[FORMULAS + COORDINATE :: EACH] = apart[FORMULAS + COORDINATE :: EACH, 0, 0]
             if np.all(np.abs(apart - grown[:, None, None]) <= SAME * scale[:, None, None]):
                 self._grown = np.where(np.abs(grown) > SAME * scale, grown, 0.0)
@@ -367,6 +372,7 @@ class PanelTracks:
         even = np.linspace(low, high, PANELS + 1)
         jumps = self.rows.jumps(low, high, even)
         near = np.min(np.abs(even[1:-1, None] - jumps), axis=1, initial=inf) if len(jumps) else inf
+        # even edges next to a jump would leave slivers of panels
         inner = even[1:-1][np.broadcast_to(near > 1e-9 * self.length, PANELS - 1)]
         edges = np.unique(np.concatenate([even[[0, -1]], inner, jumps[(jumps > low) & (jumps < high)]]))
         parts = [self._represent(part) for part in self._sections(edges)]
@@ -375,6 +381,7 @@ class PanelTracks:
 
     def _sections(self, edges: Array) -> list[Array]:
         """Edges in sections: towards a limit functions grow, and are represented to what they are there."""
+        # each section is represented to its own greatest values: the last one grows without bound
         cuts = [
             limit + side * near * self.unit
             for limit, side in ((self.low, 1.0), (self.high, -1.0))
@@ -406,6 +413,7 @@ class PanelTracks:
             )
         greatest = float(np.max(inertia))
         inner = inertia[1:-1]
+        # minima that are low beside the greatest inertia; others carry the motion in any case
         dips = 1 + np.flatnonzero((inner <= inertia[:-2]) & (inner <= inertia[2:]) & (inner < LOW * greatest))
         lows, inertias = self._least_inertias(places[dips - 1], places[dips + 1])
         at, least = min(
@@ -434,6 +442,7 @@ class PanelTracks:
         """Learn where the motion ends: at limits, and where it has no derivatives for another reason."""
         reach = self.rows.reducer.reach(low, high)
         margin = NEAR_LIMIT * self.unit
+        # a margin is kept: at the limit itself inertia is infinite
         self.low, self.high = max(self.low, reach[0] + margin), min(self.high, reach[1] - margin)
         below, above = self._ends(low, high)
         if below > self.low:
@@ -443,6 +452,7 @@ class PanelTracks:
             self.high = above
             self._change_points.add(above)
         some = np.linspace(max(low, self.low), min(high, self.high), 2 * PANELS + 1)
+        # what has no derivatives for any other reason ends the motion as well
         missing = some[~self.rows.state(some)[1]]
         self.low = max([self.low, *missing[missing < self.first]])
         self.high = min([self.high, *missing[missing >= self.first]])
@@ -464,6 +474,7 @@ class PanelTracks:
         """Measure by how much the series miss the reduction between their nodes."""
         middle, half = 0.5 * (edges[:-1] + edges[1:]), 0.5 * np.diff(edges)
         for share in CHECKED:
+            # between the nodes, at places that are no roots of a polynomial of the series
             exact = self.rows.at(middle + share * half)
             apart = np.abs(powers @ share ** np.arange(NODES) - exact.T)
             scale = self.rows.scales(np.max(np.abs(exact), axis=1))
@@ -503,7 +514,7 @@ class Driving:
         return self.sense * self.formula(m, t=t, q=q, v=self.sense * rate)
 
     def at(self, t: float, q: float, rate: float) -> float:
-        """The same of plain numbers; NaN where the formula has no value."""
+        """Generalised force of plain numbers t [s], q and rate; NaN where the formula has no value."""
         try:
             return float(self.over(SCALARS, float(t), float(q), float(rate)))
         except (ArithmeticError, ValueError):
@@ -536,6 +547,7 @@ class DriveForces:
     def acceleration(self, rate: Number) -> Number:
         """Second derivative of the drive's value by time."""
         moment = self.stored + self.friction + self.other + self.driving
+        # J q'' + J' q'^2 / 2 = M
         return (moment - 0.5 * self.slope * rate * rate) / self.inertia
 
 
@@ -567,6 +579,7 @@ class FieldLeg:
 
     def rows(self, value: float) -> Array:
         """All rows at a value; beyond the ends those at the end."""
+        # beyond the leg, within a step that overshoots, functions go on as they are at its end
         inside = min(max(value, self.low), self.high) + self.shift
         edges = self.edges
         panel = min(max(bisect_right(edges, inside) - 1, 0), len(edges) - 2)
@@ -611,6 +624,7 @@ class Field:
         low, high = float(stretch.edges[0]), float(stretch.edges[-1])
         ends = [low, *(float(x) for x in stretch.jumps if low < x < high), high]
         inside = ahead + shift
+        # the leg ahead of a jump, as the value lies on the jump but for rounding
         k = bisect_right(ends, inside) - 1 if upwards else int(np.searchsorted(ends, inside)) - 1
         k = min(max(k, 0), len(ends) - 2)
         grown = tracks.grown(periods) if periods else None
@@ -618,6 +632,7 @@ class Field:
         leg = FieldLeg(ends[k] - shift, ends[k + 1] - shift, sense, edges, stretch.powers, shift, grown)
         middle = leg.rows(0.5 * (leg.low + leg.high))
         formulas = tracks.rows.formulas
+        # in the middle of the leg, where nothing turns round: signs there hold for the whole leg
         grows = [middle[FORMULAS + EACH * j :] * sense >= 0.0 for j in range(len(formulas))]
         gates = tuple(
             bool(up[GATE]) or one.effort.gate is None for up, one in zip(grows, formulas, strict=True)
@@ -625,7 +640,7 @@ class Field:
         return replace(leg, gates=gates, senses=tuple(1.0 if up[SPEED] else -1.0 for up in grows))
 
     def leg_at(self, value: float, sense: float) -> FieldLeg:
-        """The same, remembered as long as values stay on it."""
+        """The leg on which a value lies for a motion in one sense, remembered as long as values stay on it."""
         last = self._last
         if last is None or last.sense != sense or not last.low <= value < last.high:
             last = self._last = self.leg(value, sense)
@@ -663,8 +678,10 @@ class Field:
 
     def leaving(self, t: float, value: float) -> float:
         """In which sense the drive leaves a standstill: +1.0, -1.0, or 0.0 where it sticks."""
+        # forces just after the start in either sense: friction takes the sign of the motion that would begin
         ahead = self.forces(self.leg(value, 1.0), t, value, CREEP).acceleration(0.0)
         behind = self.forces(self.leg(value, -1.0), t, value, -CREEP).acceleration(0.0)
+        # where both senses are possible, the drive's own is taken
         if ahead > 0.0 and not (behind < 0.0 and self.driving.sense < 0.0):
             return 1.0
         if behind < 0.0:

@@ -60,7 +60,7 @@ from centrode.numerics.search import bisect, root
 # The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates.
 
 TOLD = 256
-"""Steps after which it is told how far it is."""
+"""Steps between two reports of progress."""
 
 
 def fixed_steps(
@@ -110,6 +110,7 @@ def trajectory_of_states(
         )
 
     def slopes(t: float, y: States) -> States:
+        # at the end of the motion the interpolant may look a little beyond it
         inside = y.copy()
         inside[VALUE] = min(max(y[VALUE], field.tracks.low), field.tracks.high)
         return _rates(field, t, inside)
@@ -135,6 +136,7 @@ def next_state(field: Field, t: float, y: States, step: float) -> States:
     k3 = _rates(field, t + 0.5 * step, y + 0.5 * step * k2)
     k4 = _rates(field, t + step, y + step * k3)
     found = np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
+    # beyond the range there is no mechanism: NaN tells that the last step was one too many
     return found if field.tracks.low <= found[VALUE] <= field.tracks.high else np.full(STATES, np.nan)
 
 
@@ -144,6 +146,7 @@ def _rates(field: Field, t: float, y: States) -> States:
     tracks = field.tracks
     if not np.isfinite(value) or not tracks.low <= value <= tracks.high:
         return np.full(STATES, np.nan)
+    # at rest loads act as they would when the drive sets out in its own sense
     sense = 1.0 if rate > 0.0 else -1.0 if rate < 0.0 else tracks.rows.sense
     forces = field.forces(field.leg_at(value, sense), t, value, rate)
     found = np.array(
@@ -157,8 +160,8 @@ def _rates(field: Field, t: float, y: States) -> States:
 # The fixed-step scheme as one scan over expressions: machine code where llvmlite is there.
 #
 # Positions are those of the closed forms, traced at each of the four stages: nothing is represented, so
-# nothing is
-# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.machine_code`).
+# nothing is approximated but by the scheme. That needs a mechanism without events, as sweeps do
+# (`kinematics.machine_code`).
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -196,6 +199,7 @@ class Compiled:
     def course(self, field: Field, value: float, rate: float, duration: float, steps: int) -> Trajectory:
         """The course of so many steps, up to where the motion ends."""
         states = self.states(value, rate, duration, steps)
+        # the scan has made all steps: where it went too far, or stopped, is looked up afterwards
         far = np.flatnonzero(np.abs(states[VALUE] - value) > MOST_TURNS * field.tracks.length)
         if len(far):
             raise too_far(duration / steps * int(far[0]))
@@ -233,6 +237,7 @@ def compile_scan(rows: ReducedFunctions, driving: Driving, executor: str) -> Com
         for name in NAMES
     }
     used = Graph(after).variables
+    # only times that are used become inputs: others would make every step another one
     return Compiled(Scan((STEP,), tuple(x for x in (BEGINNING,) if x in used), after, after), executor)
 
 
@@ -290,8 +295,10 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
         if not set(names) & set(graph.variables):
             continue
         angle = np.asarray(rows.state(values)[0].angle(link).value).reshape(-1)
+        # angles are taken to turn with the drive as often as they do over one turn
         winding = round(float(angle[-1] - angle[0]) / tau)
         rest = angle - winding * values
+        # around a fixed centre only less than half a turn either way is unambiguous
         if np.ptp(rest) >= tau / 2:
             raise Untraceable(mark("links that swing by half a turn or more"))
         found |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
@@ -303,7 +310,7 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
 State: TypeAlias = npt.NDArray[np.float64]
 
 REST_SCANS = 2000
-"""Instants at which a mechanism at rest is asked whether it breaks loose, where something depends on time."""
+"""Instants at which a mechanism at rest is checked for breaking loose, where something depends on time."""
 
 
 def break_loose_time(field: Field, value: float, first: float, last: float) -> float | None:
@@ -315,6 +322,7 @@ def break_loose_time(field: Field, value: float, first: float, last: float) -> f
             def rests(time: State) -> npt.NDArray[np.bool_]:
                 return np.asarray([field.leaving(float(t), value) == 0.0 for t in time])
 
+            # the first instant at which it does not rest any more
             return float(bisect(rests, np.array([before]), np.array([after]))[1][0])
     return None
 
@@ -329,6 +337,7 @@ def first_event(
     above = y[VALUE] > high or (y[VALUE] == high and y[RATE] > 0.0)
     below = y[VALUE] < low or (y[VALUE] == low and y[RATE] < 0.0)
     targets = [(VALUE, high)] if above else [(VALUE, low)] if below else []
+    # the rate has the other sign, or is exactly zero, at the end of the step
     if sense and y[1] * sense <= 0.0:
         targets.append((1, 0.0))
     for component, target in targets:
@@ -337,6 +346,7 @@ def first_event(
             return float(dense(t)[component]) - target
 
         start = distance_to_target(before)
+        # a function that begins at zero, or does not change its sign, gives no bracket
         if start == 0.0 or start * distance_to_target(solver.t) > 0.0:
             when = (
                 solver.t
@@ -367,11 +377,13 @@ def refine_event(
     speed = float(slopes[component])
     if speed == 0.0:
         return t, y
+    # one Newton step in time: the place is very near already
     step = (target - float(y[component])) / speed
     moved = y + step * slopes
     if component == VALUE:
         moved[VALUE] = target
     else:
+        # the value is righted to second order, as the rate passes zero and the first order vanishes
         moved[VALUE] += 0.5 * slopes[1] * step * step
         moved[1] = target
     return t + step, moved
@@ -463,6 +475,8 @@ class Watch:
             forces: DriveForces = self.field.forces(leg, solver.t, value, speed)
             return float(forces.acceleration(speed))
 
+        # the derivative of the acceleration by the rate: its product with the step is what stability asks
+        # about
         damping = abs(slowness(more) - slowness(rate)) / (more - rate)
         held = damping * (solver.step_size or 0.0) > EDGE
         self.held_back = self.held_back + 1 if held else 0
@@ -519,12 +533,16 @@ class Solvers:
         if not np.isfinite(forces).all():
             raise without_value(t, float(begun[VALUE] + y[0]))
         unit = self.field.tracks.unit
+        # the speed gained by the present acceleration over a hundredth of a unit counts, so that a start from
+        # rest has a scale
         self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
         inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
+        # works are measured by the kinetic energy at the fastest speed so far
         energy = max(1e-300, inertia * self.fastest**2)
         scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
         kind = scipy.integrate.Radau if self.watch.stiff else scipy.integrate.DOP853
         limit = self.end if end is None else end
+        # SciPy takes no relative tolerance below 100 units of rounding
         return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
 
 
@@ -579,6 +597,7 @@ class Stepper:
             self._check_headway(t)
             if state[1] == 0.0:
                 sense = self.field.leaving(t, float(state[VALUE]))
+                # the sense before rest and the one after differ: it has turned round
                 if sense * self.sense < 0.0:
                     self._note("turns back", t, state)
                 if sense == 0.0:
@@ -598,6 +617,7 @@ class Stepper:
             t, state = self._pass(leg, t, state)
 
     def _at_limit(self, value: float, sense: float) -> bool:
+        # at the limit but for rounding: nothing lies ahead
         tracks = self.field.tracks
         near = AT_END * tracks.unit
         return value >= tracks.high - near if sense > 0.0 else value <= tracks.low + near
@@ -609,6 +629,7 @@ class Stepper:
     def _check_headway(self, t: float) -> None:
         """Refuse to go on where leg follows upon leg and no time passes."""
         self.idle = self.idle + 1 if t == self.last else 0
+        # the same time again: a leg was left as soon as it was entered
         self.last = t
         if self.idle > MOST_IDLE:
             raise MotionError(
@@ -647,9 +668,11 @@ class Stepper:
 
     def _pass(self, leg: FieldLeg, t: float, state: State) -> tuple[float, State]:
         """Go on to the end of a leg, a standstill, or the end of the run."""
+        # value and works count from the beginning of the leg, so that long runs lose no digits
         begun, y = state.copy(), state - state * _RELATIVE
         turning = self.field.turns_count
         low, high = leg.low - begun[VALUE], leg.high - begun[VALUE]
+        # the run ends at a way, which is an end of the range like any other
         if self.until.way is not None:
             gone = begun[VALUE] - self.start
             low, high = max(low, -self.until.way - gone), min(high, self.until.way - gone)
@@ -668,20 +691,24 @@ class Stepper:
                 t, y = solver.t, solver.y
                 if solver.status == "finished":
                     return t, y + begun * _RELATIVE
+                # the stiff scheme takes over in the middle of a leg, from the last good state
                 if self.watch.stiff and not isinstance(solver, scipy.integrate.Radau):
                     solver = self.solvers.solver(rates, t, y, begun, leg)
                 continue
             when, component, target = event
+            # from the beginning of the step once more, so that no stage looks beyond the event
             t, y = self._exactly(rates, before, y_before, when, begun, leg)
             t, y = refine_event(rates, t, y, component, target)
             ended = y + begun * _RELATIVE
             if component == VALUE:
                 ended[VALUE] = min(max(ended[VALUE], leg.low), leg.high)
+                # exactly the end of the leg, so that the next leg begins on the other side
                 edge = leg.high if leg.sense * (target + begun[VALUE] - leg.low) > 0.0 else leg.low
                 if abs(target + begun[VALUE] - edge) <= 1e-12 * max(1.0, abs(edge)):
                     ended[VALUE] = edge
             else:
                 ended[1] = 0.0
+            # the last piece ends short of the event by what was refined
             if not self.course.pieces or self.course.pieces[-1].last < t:
                 self._close(t, ended, leg.sense)
             return t, ended

@@ -44,6 +44,7 @@ class Interpolant:
         places = times / self.step
         nearest = np.clip(np.rint(places).astype(np.intp), 0, count)
         found = np.asarray(self.states[:, nearest])
+        # at steps the states themselves: the interpolant would differ by rounding
         between = np.flatnonzero(np.abs(times - nearest * self.step) > 4.0 * np.spacing(times))
         steps = np.clip(np.floor(places[between]).astype(np.intp), 0, max(count - 1, 0))
         for k in np.unique(steps) if count else ():
@@ -55,6 +56,7 @@ class Interpolant:
         """States at shares of a step."""
         h, begun = self.step, number * self.step
         y0, y1 = self.states[:, number], self.states[:, number + 1]
+        # slopes times the step, so that shares of the step are the variable
         k0, k1 = h * self.rates(begun, y0), h * self.rates((number + 1) * h, y1)
         way = y1 - y0
         # y0 + way s + s (1 - s) ((k0 - way) (1 - s) - (k1 - way) s) is the cubic of Hermite

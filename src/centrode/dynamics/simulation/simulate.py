@@ -190,6 +190,7 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     smooth = mechanism.model_copy(update={"assembly": passing}) if kept else mechanism
     reducer = Reducer(ready(smooth), MassesAndLoads.of(smooth))
     shafts = () if mechanism.machine is None else mechanism.machine.shafts
+    # shafts turn at a constant ratio: their inertia is a constant of the drive
     rows = ReducedFunctions(reducer, sum(shaft.inertia * shaft.ratio**2 for shaft in shafts), kept)
     if not reducer.burden.masses and not rows.added:
         raise InputError(
@@ -213,6 +214,7 @@ def simulation_dataset(
     states, senses = course.at(times)
     forces = _forces(setting, times, states, senses)
     moving = senses != 0.0
+    # at rest acceleration is zero, whatever forces would ask for: friction holds
     acceleration = np.where(moving, forces.acceleration(states[RATE]), 0.0)
     solved = solve(setting.prepared, SampleGrid(times, states[VALUE], states[RATE], acceleration))
     unit = solved.ready.parameter.units[0]
@@ -238,6 +240,7 @@ def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> Dri
     field, found = setting.field, np.empty((len(times), len(fields(DriveForces))))
     rows = zip(times, states[VALUE], states[RATE], senses, strict=True)
     for k, (t, value, rate, sense) in enumerate(rows):
+        # at rest in the sense in which it would go on
         way = (1.0 if rate > 0.0 else -1.0) if rate else sense or setting.rows.sense
         leg = field.leg_at(float(value), way)
         found[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
@@ -259,6 +262,7 @@ def _curves(
     potential = setting.rows.energy(states[VALUE])
     began = 0.5 * inertia_at(setting, setting.start) * setting.rate**2
     before = float(setting.rows.energy(np.array([setting.start]))[0])
+    # energies are counted from the start, so that the balance is zero there
     works = states[[OF_DRIVE, OF_FRICTION, OF_OTHERS]]
     return {
         # adding zero leaves no negative one
@@ -371,7 +375,7 @@ def simulate(
 
 
 def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
-    """Integrate by the scheme that is asked for."""
+    """Integrate by the scheme that is requested."""
     settings, until = setting.settings, setting.until
     if settings.scheme != "runge-kutta-4":
         stepper = Stepper(setting.field, until, settings.tolerance, settings.scheme == "stiff", progress)

@@ -111,6 +111,7 @@ def _repeats(field: Field, period: float, sense: float) -> bool:
         one, other = (field.forces(field.leg(q, sense), 0.0, q, sense) for q in (here, there))
         for name in ("stored", "friction", "other", "driving"):
             a, b = getattr(one, name), getattr(other, name)
+            # moments may be small beside what inertia makes of a unit of speed: that counts as their size too
             if abs(a - b) > 1e-7 * (abs(a) + abs(b) + one.inertia):
                 return False
     return True
@@ -121,16 +122,20 @@ def fixed_point(maps: Callable[[float], float], speed: float) -> float:
     before, missed_before = speed, maps(speed) - speed
     if abs(missed_before) <= SETTLED * speed:
         return speed
+    # the first step is the map itself, as one value tells no slope
     here = before + missed_before
     for _k in range(MOST_MAPS):
         back = maps(here) if here > 0.0 else np.nan
         missed = back - here
         if not np.isfinite(missed):
             break
+        # the error of the fixed point is what is missed over |1 - slope|
         if abs(missed) <= SETTLED * here * min(1.0, abs(1.0 - _slope(before, here, missed_before, missed))):
             return here
         slope = _slope(before, here, missed_before, missed)
+        # where the line through two values of the map meets the diagonal
         ahead = here - missed / (slope - 1.0) if slope != 1.0 else back
+        # a step by more than five times leads astray: the map itself is tried instead
         if not 0.2 * here < ahead < 5.0 * here:
             ahead = back
         before, missed_before, here = here, missed, ahead
@@ -156,7 +161,7 @@ def _slope(before: float, here: float, missed_before: float, missed: float) -> f
 NEUTRAL = 1e-5
 """A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
 INDIFFERENT = 1e-4
-"""The same of a regime that is found: nothing tells its speed from another."""
+"""A multiplier of a found regime as near to 1 says that any other speed would come back as well."""
 PARTS = 2000
 
 
@@ -223,7 +228,7 @@ def steady_regime(mechanism: Mechanism, settings: Simulation | None = None) -> R
 
 
 def steady_state_of(setting: Setting) -> Regime:
-    """The same of a mechanism made ready."""
+    """The steady regime that a setting runs up to; see `steady_regime`."""
     period = period_of(setting)
     maps = ReturnMap(setting, period)
     speed = maps.run_in()
@@ -233,6 +238,7 @@ def steady_state_of(setting: Setting) -> Regime:
     found = fixed_point(maps, speed)
     course = maps.course(found)
     slightly = found * (1.0 + 1e-5)
+    # the multiplier by a difference of 1e-5: rounding of the maps, some 1e-11, leaves six digits of it
     multiplier = (maps(slightly) - maps(found)) / (slightly - found)
     if abs(found - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
         raise unsettled_error(speed, found)  # it went so far that rounding hides how it grows
@@ -257,6 +263,7 @@ def _steady_state(
         greatest[1],
         _in_turn(values[1], setting.start, period, sense),
         greatest[0],
+        # the difference over half the sum
         2.0 * (greatest[1] - least[1]) / (greatest[1] + least[1]),
         float(ended[OF_DRIVE]) / period,
         setting.start,

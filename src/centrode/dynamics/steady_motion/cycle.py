@@ -26,9 +26,8 @@ from centrode.numerics.text_formula import TextFormula
 #
 # Functions are given at Gauss nodes of panels, which end at the jumps. Each panel holds the Legendre series
 # through its nodes, so that values and integrals exist everywhere, not at the nodes alone. Panels whose
-# series
-# has not died away are halved. Source: Gauss-Legendre quadrature and the recurrence of its polynomials, NIST
-# Handbook of Mathematical Functions, sections 3.5(v) and 18.9.
+# series has not died away are halved. Source: Gauss-Legendre quadrature and the recurrence of its
+# polynomials, NIST Handbook of Mathematical Functions, sections 3.5(v) and 18.9.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Function: TypeAlias = Callable[[Array], Array]
@@ -43,6 +42,7 @@ MOST_ROUNDS = 45
 
 _ROOTS, _WEIGHTS = legendre.leggauss(NODES)
 _ORDERS = np.arange(NODES)
+# c_k = (k + 1/2) sum of w_i f(x_i) P_k(x_i): Gauss's rule is exact for these products
 _TO_SERIES = (legendre.legvander(_ROOTS, NODES - 1) * _WEIGHTS[:, None] * (_ORDERS + 0.5)).T
 
 
@@ -114,6 +114,7 @@ class PanelSeries:
         half = 0.5 * np.diff(self.panels.edges)[:, None]
         shares = half * self.coefficients / (2 * _ORDERS + 1)
         found = np.zeros((len(shares), NODES + 1))
+        # the integral of P_k is (P_(k+1) - P_(k-1)) / (2 k + 1)
         found[:, 1:] += shares
         found[:, : NODES - 1] -= shares[:, 1:]
         found[:, 0] += shares[:, 0]  # of P_0 the integral is P_1 + 1
@@ -123,11 +124,13 @@ class PanelSeries:
     def _before(self) -> Array:
         """Integrals from the first edge to every edge."""
         widths = np.diff(self.panels.edges)
+        # of a panel only P_0 has an integral
         return np.concatenate([[0.0], np.cumsum(widths * self.coefficients[:, 0])])
 
 
 def tails(coefficients: Array) -> Array:
     """The last terms of series (..., NODES): what they may leave out."""
+    # the last two terms: of an even or odd function every second one vanishes
     return np.asarray(np.max(np.abs(coefficients[..., -2:]), axis=-1))
 
 
@@ -163,10 +166,13 @@ def resolve_panels(
         peak = greatest if not peak.size else np.maximum(peak, greatest)
         scale = scales(peak)[:, None]
         last = tails(values @ _TO_SERIES.T)
+        # the last terms over the panel's width against what the whole range may lose
         too_great = last * (high - low) > span * allowed[:, None] * scale
+        # a panel whose last terms halving does not make much smaller holds noise, which no halving resolves
         resolvable = (last < before / 4) | (last > NOISE * scale)
         coarse: npt.NDArray[np.bool_] = np.any(too_great & resolvable, axis=0)
         if count + int(coarse.sum()) > MOST_PANELS:
+            # no room for more panels: what is there has to do, and the error tells
             coarse[:] = False
         done.append((low[~coarse], values[:, ~coarse]))
         if not coarse.any():
@@ -174,6 +180,7 @@ def resolve_panels(
         count += int(coarse.sum())
         middle = 0.5 * (low[coarse] + high[coarse])
         before = np.concatenate([last[:, coarse]] * 2, axis=1)
+        # new halves behind the others: order is made at the end
         low, high = np.concatenate([low[coarse], middle]), np.concatenate([middle, high[coarse]])
     else:
         done.append((low, functions(_nodes(low, high).reshape(-1)).reshape(-1, len(low), NODES)))
@@ -198,7 +205,7 @@ class MomentShape:
     formula: TextFormula
 
     def at(self, values: Array, speed: Array | float) -> Array:
-        """Its values (n) at values and speeds of the drive; raises InputError where it has none."""
+        """Moment (n,) up to the factor, at values (n,) [rad] and speeds [rad/s]; InputError where it is not finite."""
         # one speed as an array too: plain numbers would raise where arrays have infinities
         speeds = np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape)
         with np.errstate(all="ignore"):
@@ -250,7 +257,7 @@ class Cycle:
     inertia, slope : PanelSeries [kg m^2], [kg m^2/rad]
         Inertia of the links (group II), reduced to the drive, and its derivative.
     moment : PanelSeries [N m]
-        Of all loads and weights, at the speed the cycle was asked at.
+        Of all loads and weights, at the speed the cycle was computed at.
     """
 
     reduction: CycleReduction
@@ -276,7 +283,7 @@ class Cycle:
         return self.first + self.sense * turned
 
     def at_speed(self, speed: Array) -> Cycle:
-        """The same cycle with loads at speeds [rad/s] of the drive at the nodes of the panels."""
+        """The cycle with loads at speeds (nodes) [rad/s] of the drive at the nodes of the panels."""
         moment = _reduce_in_sense(self.reduction, self.first, self.sense, self.panels.nodes, speed)[1]
         return replace(self, moment=self.panels.series(moment))
 
@@ -346,6 +353,7 @@ def _edges(reduction: CycleReduction, first: float, sense: float, turns: int) ->
     even = np.linspace(0.0, period, PANELS_PER_TURN * turns + 1)
     inner = even[1:-1]
     if jumps.size:
+        # even edges next to a jump would leave slivers of panels
         inner = inner[np.min(np.abs(inner[:, None] - jumps), axis=1) > 1e-9]
     return np.unique(np.concatenate([even[[0, -1]], inner, jumps]))
 
@@ -353,6 +361,7 @@ def _edges(reduction: CycleReduction, first: float, sense: float, turns: int) ->
 def _turns(prepared: Ready, reduction: CycleReduction, speed: float) -> int:
     """The least number of turns after which places, inertia and loads repeat."""
     path = prepared.kinematics.path
+    # few turns first, as most machines repeat after one
     for most in (FEW_TURNS, MOST_TURNS):
         turned = (PROBES + tau * np.arange(most + 1)[:, None]).reshape(-1)
         places = _places(prepared, turned)
@@ -384,6 +393,7 @@ def _turns(prepared: Ready, reduction: CycleReduction, speed: float) -> int:
 def _repeats(values: Array, most: int, small: float) -> npt.NDArray[np.bool_]:
     """Whether values at the probes (turns * probes, ...) are the first ones again after 1, 2, ... `most` turns."""
     by_turn = values.reshape(most + 1, -1)
+    # each turn against the first one, at the same probes
     apart = np.max(np.abs(by_turn[1:] - by_turn[0]), axis=1, initial=0.0)
     return np.asarray(apart <= SAME * (float(np.max(np.abs(values), initial=0.0)) + small))
 

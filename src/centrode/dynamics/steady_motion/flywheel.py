@@ -16,13 +16,12 @@ from centrode.model.settings import FlywheelShape
 # Sizes of flywheels of a given moment of inertia: a rim on thin spokes, a disc.
 #
 # With D the outer diameter, d = psi_h D the inner one (0 of a disc), b = psi_b D the width and rho the
-# density,
-# J = pi rho b (D^4 - d^4) / 32 and m = pi rho b (D^2 - d^2) / 4; spokes and hub are left out.
+# density, J = pi rho b (D^4 - d^4) / 32 and m = pi rho b (D^2 - d^2) / 4; spokes and hub are left out.
 
 SOURCE_DENSITY, SOURCE_WIDTH, SOURCE_INNER = 7800.0, 0.2, 0.8
 """Density [kg/m^3], width and inner diameter over the outer one, of the coursework (docs: flywheel)."""
 SOURCE_RIM, SOURCE_DISC = 0.437, 0.366
-"""Its coefficients of J^(1/5); the one of the rim does not fit its own data."""
+"""Coefficients of J^(1/5) in the coursework; the one of the rim does not fit the data given there."""
 SOURCE_RIM_MASS, SOURCE_DISC_MASS = 6123.0, 1230.0
 
 
@@ -80,10 +79,12 @@ def wheel(
     rim_speed : float [m/s], optional
         Greatest admissible one: bounds the diameter; then the width follows from the inertia.
     """
+    # from J = pi rho psi_b (1 - psi_h^4) D^5 / 32
     outer = (32 * inertia / (math.pi * density * width * (1 - inner**4))) ** 0.2
     broad, bounded = width * outer, False
     if rim_speed is not None and 0.5 * speed * outer > rim_speed:
         outer, bounded = 2 * rim_speed / speed, True
+        # inertia is proportional to the width, so that of unit width gives it by division
         broad = inertia / inertia_of(outer, inner * outer, 1.0, density)
     hole = inner * outer
     mass = mass_of(outer, hole, broad, density)
@@ -238,10 +239,13 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
     if machine.fluctuation is None or found.needed is None or found.tangents is None:
         return common
     by_source = needed_by_source(energies, machine.mean_speed, machine.fluctuation)
+    # both meanings of the mean speed are reported, whichever was requested
     in_time = found if found.kind == "time" else in_other_mean(found, "time")
     shape = machine.flywheel
     added, added_first_order = (
-        max(0.0, (inertia - found.present) / shape.ratio**2) for inertia in (found.needed, by_source)
+        # on a shaft of another speed inertia counts by the square of the ratio
+        max(0.0, (inertia - found.present) / shape.ratio**2)
+        for inertia in (found.needed, by_source)
     )
     speed = abs(shape.ratio) * ends.greatest
     rim, disc = (_size_wheel(added, shape, inner, speed) for inner in (shape.inner, 0.0))

@@ -87,6 +87,7 @@ def balance_of(cycle: Cycle, shape: MomentShape | None, speed: Array) -> EnergyB
     """
     panels, needed = cycle.panels, -cycle.moment.total
     magnitude = float(np.sum(panels.weights * np.abs(cycle.moment.at(panels.nodes))))
+    # resisting loads do negative work; what is positive beyond rounding drives
     if needed < -1e-9 * magnitude:
         raise InputError(
             "[[loads]]",
@@ -103,6 +104,7 @@ def balance_of(cycle: Cycle, shape: MomentShape | None, speed: Array) -> EnergyB
             _("the driving moment does no work over the cycle"),
             _("give one that drives: its mean has to be positive"),
         )
+    # the drive does the work of the loads over the cycle, so that the speed comes back
     driving = panels.series(values * (needed / given))
     total = panels.series(cycle.moment.at(panels.nodes) + driving.at(panels.nodes))
     return EnergyBalance(cycle, driving, total)
@@ -111,13 +113,10 @@ def balance_of(cycle: Cycle, shape: MomentShape | None, speed: Array) -> EnergyB
 # The speed of a machine over its cycle by the energy equation, without approximation.
 #
 # (J_I + J_II) omega^2 / 2 = E + W, with E the energy at the beginning and W the work of drive and loads. So
-# at a
-# speed omega the line with slope omega^2 / 2 through the point (J_II, W) cuts off -E + omega^2 J_I / 2: of
-# all
-# lines with the slope of the greatest speed the uppermost one touches the diagram of (J_II, W) there, of
-# those
-# of the least speed the lowermost one. Source: F. Wittenbauer, Graphische Dynamik, Berlin 1923; energies and
-# inertia of a machine as in I. I. Artobolevskii, Theory of Mechanisms and Machines.
+# at a speed omega the line with slope omega^2 / 2 through the point (J_II, W) cuts off -E + omega^2 J_I / 2:
+# of all lines with the slope of the greatest speed the uppermost one touches the diagram of (J_II, W) there,
+# of those of the least speed the lowermost one. Source: F. Wittenbauer, Graphische Dynamik, Berlin 1923;
+# energies and inertia of a machine as in I. I. Artobolevskii, Theory of Mechanisms and Machines.
 
 
 @dataclass(frozen=True)
@@ -198,6 +197,7 @@ class Tangents:
 
 def tangents(balance: EnergyBalance, greatest: float, least: float) -> Tangents:
     """The tangents of the greatest and the least speed [rad/s]."""
+    # W - omega^2 J / 2 is greatest, or least, where the line of that slope touches the diagram
     upper, lower = balance.energy_extremes(greatest**2), balance.energy_extremes(least**2)
     return Tangents(
         0.5 * greatest**2, upper.greatest, upper.at_greatest, 0.5 * least**2, lower.least, lower.at_least
@@ -211,6 +211,7 @@ def with_fluctuation(
 
     The inertia of the result may be negative: then none is needed.
     """
+    # greatest and least lie half the fluctuation either side of the middle
     spread = 0.5 * fluctuation * mean
 
     def about(middle: float) -> tuple[Speed, Tangents]:
@@ -243,12 +244,14 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
             ),
             _("give masses, [[machine.shafts]] with inertia, or fluctuation"),
         )
+    # with no speed the links take no energy: how much the work alone swings
     swing = balance.energy_extremes(0.0)
 
     def excess(energy: float) -> float:
         return Speed(balance, inertia, energy).mean(kind) - mean
 
     least = -swing.least  # at this energy the machine stands still once a cycle
+    # just above standing still the mean in time is infinitely slow: the bracket begins a hair above that
     margin = 1e-9 * (swing.range + carried.greatest * mean**2)
     if excess(least + margin) > 0.0:
         raise InputError(
@@ -258,5 +261,6 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
             ).format(inertia=inertia),
             _("give [[machine.shafts]] with more inertia, or fluctuation to find a flywheel"),
         )
+    # at this energy the slowest speed of the cycle is greater than the mean that is sought
     greatest = least + margin + 2.0 * carried.greatest * mean**2 + swing.range
     return Speed(balance, inertia, root(excess, least + margin, greatest))

@@ -61,12 +61,15 @@ class Mixing:
 
     def following(self, argument: Array, value: Array) -> Array:
         """What to try after an argument (n) with its value (n): the combination whose change would be least."""
+        # the latest steps only: old ones describe the function somewhere else
         self.arguments = [*self.arguments[-KEPT:], argument]
         self.changes = [*self.changes[-KEPT:], value - argument]
         if len(self.changes) == 1:
             return value
         steps = np.diff(np.stack(self.arguments), axis=0).T
         bends = np.diff(np.stack(self.changes), axis=0).T
+        # the combination of former steps that would have left the least change, to rounding of their
+        # differences
         shares = np.linalg.lstsq(bends, self.changes[-1], rcond=1e-12)[0]
         return np.asarray(value - (steps + bends) @ shares)
 
@@ -93,9 +96,9 @@ class SteadySolution:
         Inertia of the shafts, reduced to the drive.
     by_source : SpeedBySource
     tangents : Tangents or None
-        Wittenbauer's, with loads at the mean speed; None where no fluctuation is asked for.
+        Wittenbauer's, with loads at the mean speed; None where no fluctuation is requested.
     needed : float or None [kg m^2]
-        J_I for the fluctuation asked for, exactly; negative where the links alone are enough.
+        J_I for the fluctuation requested, exactly; negative where the links alone are enough.
     speed : Speed
         Exact, with the greater one of `needed` and `present`.
     iterations : int
@@ -171,7 +174,7 @@ def solution_of(
 
 
 def in_other_mean(found: SteadySolution, kind: MeanSpeed) -> SteadySolution:
-    """The same machine with another meaning of its mean speed."""
+    """A machine in steady motion with another meaning of its mean speed."""
     shape = (
         None
         if found.machine.driving is None
@@ -219,6 +222,7 @@ def _settle(
     def as_present(balance: EnergyBalance) -> tuple[float | None, Speed]:
         return None, with_inertia(balance, machine.mean_speed, present, kind)
 
+    # as asked first; only where that does not settle the inertia that is there is tried
     found = _iterate(cycle, shape, machine.mean_speed, as_asked)
     if found is None and machine.fluctuation is not None:
         # loads that damp may keep the speed more even than asked, whatever the inertia: then none is needed
@@ -227,6 +231,7 @@ def _settle(
         if found is not None:
             speed = found[1]
             needed = with_fluctuation(speed.balance, machine.mean_speed, machine.fluctuation, kind)[0].inertia
+            # the machine as it is keeps its speed even enough: the answer is that none is needed
             found = (needed, speed, found[2]) if needed <= present else None
     if found is not None:
         return found
@@ -255,6 +260,7 @@ def _iterate(
         if _agrees(balance, balance_of(cycle.at_speed(found), shape, found), nodes):
             return needed, speed, iteration
         mixed = mixing.following(speeds, found)
+        # a speed that is not positive is no speed: then the plain step is taken
         speeds = mixed if mixed.min() > 0.0 else found
         cycle = cycle.at_speed(speeds)
     return None
@@ -272,6 +278,7 @@ def _balance_speed(
 
 
 def _agrees(one: EnergyBalance, other: EnergyBalance, nodes: Array) -> bool:
+    # what both agree on is the resultant, over what it is the difference of
     before, after = one.total.at(nodes), other.total.at(nodes)
     size = sum(float(np.max(np.abs(part.at(nodes)))) for part in (one.cycle.moment, one.driving))
     return bool(np.max(np.abs(after - before)) <= SETTLED * size)

@@ -33,10 +33,8 @@ from centrode.structure.constraints import Positions
 # The track of a group of higher class: its curve over the path in pieces, and where Newton's method starts.
 #
 # Pieces belong to the mechanism and its path, not to the samples: a place starts from the piece on which it
-# lies.
-# So what is found does not depend on what else is asked for. A curve that closes after whole turns is
-# followed once:
-# behind that every place starts from the one as many turns before.
+# lies. So what is found does not depend on what else is requested. A curve that closes after whole turns is
+# followed once: behind that every place starts from the one as many turns before.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -131,6 +129,7 @@ class CurveTracks:
             own = [*reversed(trails[0].pieces), *trails[1].pieces]
             first.append(len(pieces))
             pieces += own
+            # every inner edge is the end of one piece and the beginning of the next: one of each pair is kept
             edges.append(np.sort([edge for piece in own for edge in (piece.first, piece.last)])[1:-1:2])
             for side, trail in enumerate(trails):
                 if trail.pieces:
@@ -181,6 +180,7 @@ class CurveTracks:
         period = self.period[lanes, side]
         # the end of a round belongs to it
         rounds = np.maximum(np.ceil(np.abs(parameter - self.initial) / period) - 1.0, 0.0)
+        # back towards the initial position: down ahead of it, up behind it
         back = rounds * np.where(np.isfinite(period), period, 0.0) * (1.0 - 2.0 * side)
         return parameter + back, rounds[:, None] * self.grown[lanes, side]
 
@@ -190,9 +190,11 @@ class CurveTracks:
         order = np.argsort(lanes, kind="stable")
         bounds = np.searchsorted(lanes[order], np.arange(self.lanes + 1))
         for lane in np.nonzero(np.diff(bounds))[0]:
+            # pieces of a lane lie in the order of the parameter, so edges tell which one a place is on
             here = order[bounds[lane] : bounds[lane + 1]]
             which[here] = self.first[lane] + np.searchsorted(self.edges[lane], parameter[here])
         reach = self.followed[lanes]
+        # a trail without pieces has NaN for its end and counts as not followed on that side
         low, high = np.fmin(reach[:, 0], reach[:, 1]), np.fmax(reach[:, 0], reach[:, 1])
         return which, (parameter >= low) & (parameter <= high)
 
@@ -213,12 +215,14 @@ def share_at(powers: Array, which: Lanes, wanted: Array) -> Array:
     own = powers[:, which]
     slopes = own[1:] * np.arange(1.0, len(own))[:, None]
     low, high = np.zeros(len(wanted)), np.ones(len(wanted))
+    # polynomials begin with zero, so the value at 1 is the sum of the other coefficients
     whole = _horner(own[1:], np.ones(len(wanted)))
     with np.errstate(all="ignore"):
         share = np.clip(wanted / whole, 0.0, 1.0)
         going = np.ones(len(wanted), dtype=bool)
         for _step in range(HALVINGS):
             beyond = _horner(own, share) - wanted
+            # the end with the sign of what is missing moves: the polynomial may grow or fall
             short = (beyond < 0.0) == (whole > 0.0)
             low, high = np.where(short, share, low), np.where(short, high, share)
             better = share - beyond / _horner(slopes, share)
@@ -245,16 +249,13 @@ def _horner(coefficients: Array, share: Array) -> Array:
 # Groups of higher class that stand after whole turns of the drive as they began.
 #
 # Where the drive is an angle, how the mechanism goes on depends on where everything stands, and not on the
-# turns
-# made: two drives' values whole turns apart, with everything before a group and the group itself in the same
-# places,
-# are followed by the same curve. So a curve that has come back to a place near its beginning is closed: it
-# repeats
-# itself, and only angles grow, by whole turns.
+# turns made: two drives' values whole turns apart, with everything before a group and the group itself in the
+# same places, are followed by the same curve. So a curve that has come back to a place near its beginning is
+# closed: it repeats itself, and only angles grow, by whole turns.
 
 BEHIND = 0.1
 """How far [rad] behind the beginning of a turn a group is compared with itself: at the very start both assemblies of
-a dyad may meet. The mesh reaches further beyond what is asked for, so it does not decide whether a curve is closed."""
+a dyad may meet. The mesh reaches further beyond what is requested, so it does not decide whether a curve is closed."""
 
 
 @dataclass
@@ -284,6 +285,7 @@ class Rounds:
         self, who: Lanes, origin: Array, pieces: Array, reached: Array
     ) -> list[tuple[np.intp, Period]]:
         """Walkers that have come round, of those whose last pieces brought them from an origin to what is reached."""
+        # only where angles drive does the mechanism come back to where it was
         if not self.around.kinematics.path.turns:
             return []
         places = self._place(who, self.passed[who])
@@ -291,6 +293,8 @@ class Rounds:
         if not passing.any():
             return []
         who, places, last = who[passing], places[passing], pieces[passing]
+        # the last piece leads past the place: where on it the parameter takes the value, the state is
+        # foretold
         ways = np.ascontiguousarray(last[:, :, -1].T)
         share = share_at(ways, np.arange(len(who)), places - origin[passing])
         return self._walkers_at_start(
@@ -304,15 +308,18 @@ class Rounds:
         before = self.around.before(places, lane)
         system = self.around.system(needed_positions(self.around.equations, before), lane)
         found = newton(system, system.normalise(foretold))
+        # a place that is not found compares with nothing, and closes nothing
         state = np.where(found.found[:, None], found.state, np.nan)
         first = turns == 0
         self.begun[who[first]] = state[first]
         grown = state - self.begun[who]
         whole = np.zeros(grown.shape)
         angles = slice(grown.shape[1] - system.turning, None)
+        # only angles may have grown, and by whole turns alone: all else has to be where it was
         whole[:, angles] = tau * np.round(grown[:, angles] / tau)
         with np.errstate(invalid="ignore"):
             met = np.max(np.abs(grown - whole) * system.weights(), axis=1) <= SMALL
+        # the group alone is not enough: what it stands on has to be where it was as well
         met &= ~first & self._alike(before, self.around.before(self._place(who, 0 * turns), lane), lane)
         return [(who[k], Period(tau * float(turns[k]), whole[k])) for k in np.nonzero(met)[0]]
 
@@ -401,6 +408,7 @@ def trace(
     """
     walkers = _setting_out(around, start, initial, extent)
     events: list[Event] = []
+    # strides are bounded, so that a curve which winds for ever inside the range is given up
     most = MOST * (1.0 + float(np.max(np.abs(walkers.end - initial))) / around.unit)
     while walkers.active.any() and most > 0:
         most -= 1
@@ -408,6 +416,8 @@ def trace(
     for walker in np.nonzero(walkers.active)[0]:
         walkers.stop(walker, lost=True)
     lanes = len(start)
+    # what it stands on ends there: behind that limit nothing of the group can be computed, and its own end is
+    # the same
     for trail, stop in zip(walkers.trails, reaches.T.reshape(-1), strict=True):
         if (
             trail.end == "lost"
@@ -425,6 +435,8 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     forward = np.repeat([-1.0, 1.0], lanes)
     state, parameter = np.tile(start, (2, 1)), np.full(2 * lanes, initial)
     free = around.blank(both).free
+    # the first plane is square to the parameter's axis: the initial position has the initial parameter
+    # exactly
     along = np.zeros((2 * lanes, free + 1))
     along[:, -1] = forward
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
@@ -453,11 +465,16 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     step = walkers.step[who]
     there = reach(around, walkers.lane[who], here, here.along, parameter, state, step)
     with np.errstate(all="ignore"):
+        # a step counts if the place was foretold nearly right, the curve has not turned away, and it went
+        # forwards
         cosine = total(there.places.along * here.along)
         left = np.abs(there.places.size / here.size)
         good = there.found & (there.wrong <= TRUST * step) & (cosine >= STRAIGHT) & (there.arc > 0.0)
+        # a bordered determinant that falls fast may have passed zero twice: only short steps are trusted with
+        # it
         good &= (step <= CAUTIOUS) | (left >= SHRINKING)
         crossed = good & (np.sign(there.places.size) != np.sign(here.size))
+        # a change of sign is looked into from near by, where a crossing and a near miss are told apart
         good &= ~crossed | (step <= CAUTIOUS)
     events: list[Event] = []
     passed = np.full(len(who), np.nan)
@@ -470,6 +487,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
             passed[k] = at
             events.append(Event("change point", around.group, int(walkers.lane[who[k]]), at))
     _shorten(walkers, who[~good])
+    # the parameter runs against the sense of the way: it has turned back, so a limit was passed
     ends = good & (there.places.along[:, -1] * walkers.forward[who] <= 0.0)
     on = good & ~ends
     if ends.any():
@@ -482,20 +500,24 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
 def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePlaces) -> tuple[Array, Array]:
     """Parameters and states a step ahead, by the last pieces, or by Taylor's polynomial at the start."""
     step = walkers.step[who][:, None]
+    # without a last piece the second Taylor coefficient foretells
     taylor = step * (here.first + step * here.second)
     passed, rate = walkers.passed[who].T[:, :, None]
     with np.errstate(all="ignore"):
+        # the last polynomial is continued beyond its end at share 1, by the step in units of its own arc
         share = 1.0 + step * rate / passed
         value = np.zeros(taylor.shape)
         for k in range(5, -1, -1):
             value = value * share + walkers.last[who, k]
         end = total(walkers.last[who])
+    # only the change since the end of the piece is taken: rounding of the polynomial does not add up
     ahead = np.where(np.isfinite(value), value - end, taylor)
     parameter = here.parameter + ahead[:, -1]
     return parameter, around.blank(walkers.lane[who]).normalise(here.state + ahead[:, :-1])
 
 
 def _shorten(walkers: Walkers, who: Lanes) -> None:
+    # below a half: a step that fails twice in a row is six times shorter, and few steps are tried for nothing
     walkers.step[who] *= 0.4
     for walker in who[walkers.step[who] < LEAST]:
         walkers.stop(walker, lost=True)
@@ -507,12 +529,14 @@ def _go_on(
     """Leave pieces to the places reached, and stand there."""
     pieces = quintic(here, there)
     for k, walker in enumerate(who):
+        # a change point splits the piece, as the sign of the determinant differs before and behind it
         trail, parts = walkers.trails[walker], [float(here.parameter[k]), float(there.places.parameter[k])]
         if np.isfinite(passed[k]):
             parts.insert(1, float(passed[k]))
         for number, (first, last) in enumerate(pairwise(parts)):
             sense = float(walkers.sense[walker] * walkers.forward[walker]) * (-1.0) ** number
             trail.pieces.append(CurvePiece(pieces[k], float(here.parameter[k]), first, last, sense))
+            # where the assembly is kept, nothing goes through a change point
             if number == 0 and len(parts) == 3 and not smooth:
                 walkers.stop(walker, lost=True)
                 break
@@ -525,6 +549,8 @@ def _go_on(
     walkers.passed[who, 1] = here.distance(there.places.first)
     walkers.here.put(who, there.places)
     with np.errstate(all="ignore"):
+        # a continued quintic is wrong by the sixth power of the step, and TARGET is a share of the step:
+        # hence the fifth root
         longer = np.clip((TARGET * walkers.step[who] / there.wrong) ** (1.0 / 5.0), 0.3, 2.0)
     walkers.step[who] = np.minimum(walkers.step[who] * longer, GREATEST)
     for walker, period in walkers.rounds.closed(who, here.parameter, pieces, there.places.parameter):
@@ -538,6 +564,7 @@ def _turn_back(
 ) -> list[Event]:
     """Limits between places and those found beyond them; the walkers stop there."""
     limit = limits(around, walkers.lane[who], here, there)
+    # from nearer by, the polynomial between the places foretells the limit better
     _shorten(walkers, who[~limit.reached.found])
     pieces = quintic(here, limit.reached)
     events = []

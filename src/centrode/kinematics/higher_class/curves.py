@@ -76,6 +76,7 @@ class CurvePlaces:
     def distance(self, numbers: Array) -> Array:
         """Distance of numbers (k, width + 1) along the curve's direction here."""
         own = self.first * self.weight**2
+        # the scalar product with the curve's direction, every number in its own measure
         return total(own * numbers) / total(own * self.first)
 
 
@@ -128,15 +129,19 @@ def reach(
         size = size_of(system, moved, step)
         if k == 0:
             wrong = size
+        # a step of a radian, or of the greatest length, has nothing to do with the place foretold
         good = active & np.isfinite(size) & (size < 1.0)
         state = np.where(good[:, None], system.move(state, motion), state)
         parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
         with np.errstate(all="ignore"):
+            # without a stride to the last digit; with one, until the next step, foretold by quadratic
+            # convergence, is small beside it
             enough = (
                 is_rounding_step(last, size)
                 if stride is None
                 else size * (size / last) ** 2 <= ENOUGH * stride
             )
+        # steps have to shrink, or the place belongs to another curve; tiny ones are rounding and need not
         done = good & enough
         found |= done
         active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
@@ -144,6 +149,7 @@ def reach(
         if not active.any():
             break
     system, linear, _moved, _rest, follow, matrix = bordered_equations(around, lanes, parameter, state, along)
+    # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
     ahead = np.zeros((count, free + 1, 1))
     ahead[:, -1] = 1.0
     slope = solve_places(matrix, ahead)[:, :, 0]
@@ -165,6 +171,7 @@ def reach(
 def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:
     """Taylor coefficients by the distance along a base's direction, from those by any other variable."""
     rate, bend = base.distance(first)[:, None], base.distance(second)[:, None]
+    # with the distance t = r s + b s^2, x = x1 s + x2 s^2 has x1 / r and x2 / r^2 - x1 b / r^3
     return first / rate, second / rate**2 - first * bend / rate**3
 
 
@@ -185,6 +192,8 @@ def _coefficients(
     still = {entity: (0.0,) * entity.unknowns for entity in follow}
     one = motion_along(linear, still, follow, slope)
     zero = np.zeros(len(parameter))
+    # along the tangent alone the equations fail in second order: by how much is the right side of the second
+    # coefficient
     straight = GroupMotion(
         {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()},
         [Jet((zero, x, zero)) for x in one.free],
@@ -213,6 +222,8 @@ def quintic(base: CurvePlaces, reached: ReachedPlace) -> Array:
 
     Values, first and second derivatives agree at both ends; the parameter is that beyond the base.
     """
+    # c0, c1, c2 match the base; a, b, c are what these leave of value, slope and second derivative at the
+    # other end
     arc = reached.arc[:, None]
     c1, c2 = base.first * arc, base.second * arc**2
     d, e = reached.first * arc, 2.0 * reached.second * arc**2
@@ -220,6 +231,7 @@ def quintic(base: CurvePlaces, reached: ReachedPlace) -> Array:
     b, c = d - c1 - 2.0 * c2, e - 2.0 * c2
     c3, c4, c5 = 10.0 * a - 4.0 * b + 0.5 * c, -15.0 * a + 7.0 * b - c, 6.0 * a - 3.0 * b + 0.5 * c
     start = base.numbers.copy()
+    # the parameter counts from the base, so that a short piece far out loses no digits
     start[:, -1] = 0.0
     return np.stack([start, c1, c2, c3, c4, c5], axis=1)
 
@@ -256,6 +268,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
         state = around.blank(lanes).normalise(value[:, :-1])
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
+            # at a limit the parameter's first coefficient is zero: Newton's step of that along the arc
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
             change = np.where(np.isfinite(change), np.clip(change, -LONGEST, LONGEST), np.inf)
         if arrived.all():
@@ -268,6 +281,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
 
 def _first_turn(coefficients: Array) -> Array:
     """The first share in [0, 1] at which polynomials (k, 6) turn back."""
+    # where the polynomial has no turn, its middle: Newton's method goes on from there
     found = np.full(len(coefficients), 0.5)
     for k, c in enumerate(coefficients):
         roots = np.polynomial.Polynomial(c).deriv().roots()
@@ -290,19 +304,17 @@ def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:
         least = np.linalg.svd(np.where(np.isfinite(matrix), matrix, 0.0)[:, :, :-1])[0][:, :, -1]
         pushed = np.abs(total(least * matrix[:, :, -1]))
         shift = around.unit * total(np.abs(least) * bounds) / pushed
+    # as near as this to a limit the parameter itself has no digits to tell the places apart
     spacing = LEAST_MARGIN * np.spacing(np.maximum(np.abs(parameter), 1e-3 * around.unit))
     return np.asarray(np.fmax(SAFETY * shift, spacing), dtype=np.float64)
 
 
-# Where two curves of a group of higher class meet: a change point, told from a near miss.
+# Where two curves of a group of higher class meet: a change point, distinguished from a near miss.
 #
 # At a change point the equations are dependent, parameter included. Seen along the two directions in which
-# they
-# tell least, the worst equation has a saddle there; its value at the saddle is to a group of higher class
-# what the
-# radicand is to a dyad: zero within its rounding error at a change point, anything else a near miss
-# (Golubitsky
-# and Schaeffer, Singularities and Groups in Bifurcation Theory I, 1985, chapter 1).
+# they tell least, the worst equation has a saddle there; its value at the saddle is to a group of higher
+# class what the radicand is to a dyad: zero within its rounding error at a change point, anything else a near
+# miss (Golubitsky and Schaeffer, Singularities and Groups in Bifurcation Theory I, 1985, chapter 1).
 
 CROSSING_STEPS = 20
 GREATEST = 0.05
@@ -328,10 +340,14 @@ class _Saddle:
             self.around, self.lane, self.parameter, self.state, None
         )
         left, values, right = np.linalg.svd(matrix[0])
+        # the combination of equations that changes least, and the two directions in which anything changes
+        # least
         least, plane = left[:, -1], right[-2:]
         bends = [self._bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
+        # by polarisation: B(p + q) - B(p) - B(q) = 2 B(p, q)
         mixed = 0.5 * (bends[2] - bends[0] - bends[1])
         hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
+        # in the plane to where the worst equation has no slope; square to it to where the others hold
         inside = -np.linalg.solve(hessian, plane @ matrix[0].T @ least)
         back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest[0]) / values[:-1])
         step = plane.T @ inside + back
@@ -339,6 +355,7 @@ class _Saddle:
         step *= min(1.0, GREATEST / size)
         self.state = system.move(self.state, motion_along(linear, moved, follow, step[None, :]))
         self.parameter = self.parameter + self.around.unit * step[-1]
+        # a saddle is met by two curves; a top or a bottom is an isolated point or nothing
         return size, bool(np.linalg.det(hessian) < 0.0)
 
     def _bend(self, least: Array, direction: Array) -> float:
@@ -372,6 +389,7 @@ class _Saddle:
 
 def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: ReachedPlace) -> float | None:
     """The parameter at which curves cross between two places; None if they do not."""
+    # where the determinant, taken for straight, is zero; the polynomial has the state there
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
     middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
     system = around.blank(lane)
@@ -388,5 +406,6 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
         return None
     parameter = float(saddle.parameter[0])
     away = abs(parameter - float(base.parameter[0])) / around.unit
+    # the saddle has to be found, near by, with a value that its rounding error explains
     met = crosses and size <= 1e-7 and away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
     return parameter if met else None

@@ -72,14 +72,18 @@ def close(
     with np.errstate(all="ignore"):
         if rough:
             right, state, linear = ~(foretold.beyond | foretold.limit), start, None
+            # derivatives need a place where the equations hold; values on the mesh do not
             if isinstance(m, JetFunctions):
                 linear = system.linear(system.at(ARRAYS, system.known, state))
                 state = system.move(state, step_at(system, state, linear)[0])
         else:
             found = newton(system, start)
             linear = system.linear(system.at(ARRAYS, system.known, found.state))
+            # the sign of the determinant tells the two assemblies apart that meet in a limit: Newton's method
+            # may find the other
             right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
             state = np.where(right[:, None], found.state, np.nan)
+        # at a limit the matrix is singular and nothing converges: its state is known from the track
         state[foretold.limit] = foretold.state[foretold.limit]
         add_in_shape(_lift_states(system, m, known, state, linear), group, shape, at)
     lost = ~(right | foretold.limit | foretold.beyond)
@@ -97,11 +101,14 @@ def follow(
     known = flatten_positions(needed_positions(group, at), parameter.shape)
     system = GroupSystem(group, around.kinematics.take(lanes).numbers, known, len(parameter))
     first = np.arange(0, len(parameter), steps)
+    # a way begins with a real parameter, where the track knows the state; from there it goes through complex
+    # ones
     state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
     state = system.take(first).normalise(state)
     states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
     for k in range(steps):
         found = newton(system.take(first + k), state)
+        # each place starts from the one before: along a way there is no track to start from
         state = np.where(found.found[:, None], found.state, np.nan)
         states[first + k] = state
     add_in_shape(system.at(ARRAYS, known, states), group, parameter.shape, at)
@@ -138,6 +145,8 @@ def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial:
     state = np.repeat(own.state_of(start), lanes, axis=0)
     if all(isinstance(x, float) for x in numbers_of(around.kinematics.numbers)):
         return state
+    # a change of this sign on the way means a singular position was crossed, and another assembly may have
+    # been reached
     sense = sense_of(own, state[:1])
     done, part = np.zeros(lanes), np.ones(lanes)
     while (going := np.nonzero((done < 1.0) & (part >= LEAST_PART))[0]).size:
@@ -152,6 +161,7 @@ def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial:
             good = found.found & (sense_of(system, found.state) == sense) & (found.sizes[0] < NEAR)
         state[going[good]] = found.state[good]
         done[going[good]] = aim[good]
+        # as a step size: doubled after success, halved after failure
         part[going] *= np.where(good, 2.0, 0.5)
     state[done < 1.0] = np.nan
     return state
@@ -181,6 +191,7 @@ def blend_dimensions(first: Dimensions, second: Dimensions, part: Array) -> Dime
 
     def between(x: Number) -> Number:
         y = next(from_first)
+        # at the end the batch's own bits: y + 1 (x - y) need not round to x
         return x if isinstance(x, float) else np.where(part == 1.0, x, y + part * (x - y))
 
     return second.map_numbers(between)

@@ -26,8 +26,7 @@ from centrode.structure.groups import Newton
 # Starting places for groups that no chain of initial angles reaches, such as a platform on three cylinders.
 #
 # Their links know their angles and no place. So the first of them is tried at many places about what is
-# known; of
-# what closes, the positions count that have the angles given.
+# known; of what closes, the positions count that have the angles given.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -59,16 +58,19 @@ def closing_states(
 
     One if its angles are much nearer to those given than the angles of all others.
     """
+    # all starts are places of one system, so that Newton's method runs once
     many = GroupSystem(system.group, system.numbers, system.known, len(starts))
     with np.errstate(all="ignore"):
         found = newton(many, np.concatenate(starts), steps)
     states: list[Array] = []
     for k in np.nonzero(found.found)[0]:
         state = found.state[k : k + 1]
+        # several starts lead to the same position
         if all(_apart(system, state, other) > SAME for other in states):
             states.append(state)
     near = [(_misfit(mechanism, system, state), state) for state in states]
     near = sorted((pair for pair in near if pair[0] <= NEAR), key=lambda pair: pair[0])
+    # a position much nearer to the angles given than any other is the one meant
     if len(near) > 1 and near[0][0] < CLEARLY * near[1][0]:
         near = near[:1]
     return [state for _off, state in near]
@@ -225,6 +227,7 @@ def _pose_link(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Posi
     if link in numbers.ends and is_measured(numbers, guess, link):
         cosine, sine = rotor_of_angle(ARRAYS, numbers, guess, link)
         near = angle or 0.0
+        # the angle keeps the turn of the initial angle that was given
         guess.angles[link] = near + remainder(float(np.arctan2(sine, cosine)) - near, tau)
     for point, at_rest in local.items():
         if point not in guess.points:

@@ -58,6 +58,7 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
         part = system if len(going) == len(start) else system.take(going)
         motion, size = step_at(part, state[going])
         sizes[k, going] = size
+        # a step of a thousand radians comes from a singular matrix: the place is given up
         good = np.isfinite(size) & (size < 1.0e3)
         state[going[good]] = part.move(state[going], motion)[good]
         # next to a limit rounding makes steps that are not small; they do not shrink any more
@@ -97,6 +98,7 @@ def is_rounding_step(last: Array, size: Array) -> Mask:
     cannot give more digits.
     """
     with np.errstate(all="ignore"):
+        # quadratic: the next step is C size^2 with C = size / last^2
         next_size = size * (size / last) ** 2
         return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
 
@@ -118,9 +120,11 @@ def bordered_equations(
     system = around.system(known, lanes)
     linear = system.linear(system.at(JETS, system.known, state))
     values = system.residual(JETS, system.at(JETS, known, state))
+    # jets of first order: values are the residual, slopes how the equations move with the parameter
     jets = [x if isinstance(x, Jet) else Jet((x, 0.0)) for x in values]
     moved, rest = linear.reduced([-x.coefficients[0] for x in jets])
-    # how unknowns and right sides move with one unit of the parameter
+    # how unknowns and right sides move with one unit of the parameter in units of the path, so that the
+    # parameter's column is of the size of the others
     follow, pushed = linear.reduced([_times(x.coefficients[1], -around.unit) for x in jets])
     count, free = len(parameter), linear.pattern.free
     rows = free if along is None else free + 1

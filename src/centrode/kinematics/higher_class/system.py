@@ -41,10 +41,9 @@ from centrode.structure.groups import Newton
 # out.
 #
 # A link that hangs on a known point has one free coordinate, its turn about that point; a point of such a
-# link has
-# none. Only the equations that are left over have to be solved together (tearing; Cellier and Kofman,
-# Continuous
-# System Simulation, 2006, section 7). The order of elimination follows from the group alone.
+# link has none. Only the equations that are left over have to be solved together (tearing; Cellier and
+# Kofman, Continuous System Simulation, 2006, section 7). The order of elimination follows from the group
+# alone.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -84,6 +83,7 @@ class Pattern:
 @lru_cache(maxsize=256)
 def pattern_of(group: Newton) -> Pattern:
     """In which order the unknowns of a group follow."""
+    # hinges whose two rows both belong to the group tie all that a point has
     whole = [
         c
         for c, row in group.equations
@@ -94,6 +94,8 @@ def pattern_of(group: Newton) -> Pattern:
     used: set[PointInLink] = set()
     free = 0
     while left:
+        # what follows from something known goes first; without such, the coordinates of the next unknown are
+        # free
         found = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
         entity = left[0] if found is None else found[0]
         by = None if found is None else found[1]
@@ -104,6 +106,7 @@ def pattern_of(group: Newton) -> Pattern:
         else:
             used.add(by)
             free += entity.kind == "link"
+    # both rows of a hinge that an unknown follows from hold by construction, and are not solved
     kept = tuple(i for i, (c, _row) in enumerate(group.equations) if c not in used)
     return Pattern(tuple(follows), kept)
 
@@ -157,6 +160,7 @@ class Linear:
         if entity.kind == "link":
             pivot = at.points[by.point]
             self._shifts[entity] = space.shifts(ARRAYS, pivot, 1.0)[:2]
+            # how the hinge's two rows change as the link shifts: its inverse makes the link follow its pivot
             block = [[_dot(row[entity], shift) for shift in self._shifts[entity]] for row in (one, other)]
         else:
             block = [[row[entity][0], row[entity][1]] for row in (one, other)]
@@ -173,7 +177,7 @@ class Linear:
         return self.rows[self.number[by, 0]], self.rows[self.number[by, 1]]
 
     def _answer(self, entity: Entity, right: Sequence[Number]) -> Shift:
-        """How an unknown moves so that the two rows of its hinge give what is asked."""
+        """How an unknown moves so that the two rows of its hinge give the requested displacements."""
         (a, b), (c, d) = self._inverses[entity]
         pair = _dot((a, b), right), _dot((c, d), right)
         if entity.kind == "point":
@@ -214,7 +218,7 @@ class Linear:
         return moved, rest
 
     def whole(self, moved: Mapping[Entity, Shift], free: Sequence[Number]) -> dict[Entity, Shift]:
-        """How all unknowns move: as asked for at no free motion, and with free coordinates."""
+        """How all unknowns move: as requested at no free motion, and with free coordinates."""
         found: dict[Entity, Shift] = {}
         for entity, tangents in self.tangents.items():
             total = moved.get(entity, (0.0,) * entity.unknowns)
@@ -227,6 +231,7 @@ class Linear:
 def solve_places(matrix: Array, right: Array) -> Array:
     """Solution (k, n, m) of the equations at every place; NaN where the matrix is singular."""
     try:
+        # NumPy refuses all places where one is singular: the others are solved without it
         return np.asarray(np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError:
         sign, _size = np.linalg.slogdet(matrix)
@@ -295,7 +300,7 @@ class GroupSystem:
     places: int
 
     def take(self, which: npt.NDArray[np.intp]) -> GroupSystem:
-        """The same equations at some of the places."""
+        """The system of equations at the places with these numbers (n,)."""
 
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
@@ -383,6 +388,7 @@ class GroupSystem:
             at.poses[name] = space.normalise(ARRAYS, at.poses[name])
         for name in self._turns:
             near = at.angles[name]
+            # measured from the angle before, so that turns stay counted
             at.angles[name] = near + space.turn(
                 ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None
             )
@@ -423,6 +429,7 @@ class GroupSystem:
         zero = np.zeros(self.places)
         shifts = {f.entity: [[zero] for _ in range(f.entity.unknowns)] for f in linear.pattern.follows}
         free = [[zero] for _ in range(self.free)]
+        # the matrix is the same for every order, so it is inverted once
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         for k in range(1, order + 1):
             motion = _as_jets(shifts, free, k)
@@ -441,6 +448,7 @@ class GroupSystem:
         """The motion zero with the bound of the state's rounding error."""
         values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
         zero = np.zeros(self.places)
+        # a converged state leaves a residual: that is part of the error as well
         moved, rest = linear.reduced([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         bound = times(np.abs(inverse), self.stack([Rounded.of(x).bound for x in rest]))
@@ -489,11 +497,9 @@ def times(matrix: Array, vector: Array) -> Array:
 # A group of higher class by its free coordinates alone: everything else follows, link by link, from what is
 # known.
 #
-# A link that hangs on a point that is known is told by its rotor; its points follow, and from these the links
-# that
-# hang on them. So the equations that `reduction` eliminates hold by construction, and only those left over
-# are
-# solved. In the plane.
+# A link that hangs on a point that is known is given by its rotor; its points follow, and from these the links
+# that hang on them. So the equations that `reduction` eliminates hold by construction, and only those left
+# over are solved. In the plane.
 
 
 @dataclass(frozen=True)
@@ -549,10 +555,13 @@ class LinkChain:
         found = []
         for number, (c, row) in enumerate(self.kept):
             if row or not isinstance(c, PointInLink) or c.link not in follows or (c, 1) not in self.kept:
+                # of two rows of the point both have to be left over, and the link one that follows from a
+                # hinge
                 continue
             # the link is spoken of by its hinge and by this constraint, and by nothing else
             if sum(body.kind == "link" and body.name == c.link for body in spoken) == 2:
                 found.append(Leaf(c, follows[c.link].turn, (number, self.kept.index((c, 1)))))
+        # by the hinge and by the point it has to reach: two constraints speak of it
         return tuple(found)
 
     def posture(self, at: Positions) -> Posture:
@@ -638,6 +647,7 @@ def _moves(x: Number) -> bool:
     return isinstance(x, Jet)
 
 
+# (cos, sin) of r t + b t^2 up to second order
 def _rotor_of_zero(turn: Jet) -> Vector:
     """Rotor of a jet of first or second order whose value is zero."""
     rate = turn.coefficients[1]
@@ -678,7 +688,7 @@ class Surroundings:
         return needed_positions(self.equations, at)
 
     def known_at(self, parameter: Array, lanes: Lanes) -> Positions:
-        """The same at plain parameters."""
+        """Positions that the group's equations need, at plain parameters (k,)."""
         return needed_positions(self.equations, self.before(parameter, lanes))
 
     def before(self, parameter: Array, lanes: Lanes) -> Positions:
@@ -690,7 +700,7 @@ class Surroundings:
         return at
 
     def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
-        """The same with bounds of rounding errors."""
+        """Positions that the group's equations need, with bounds of their rounding errors, at parameters (k,)."""
         used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = used.frame(ROUNDED, Rounded.of(parameter))
@@ -704,7 +714,7 @@ class Surroundings:
         )
 
     def with_numbers(self, numbers: Dimensions, lanes: Lanes) -> Surroundings:
-        """The same part of the plan with other dimensions of some mechanisms, which are counted anew."""
+        """The plan up to the group with other dimensions of some mechanisms, numbered from 0 in this selection."""
 
         def hooks(m: Namespace, parameter: Array, which: Lanes) -> EvaluationPolicy:
             return self.hooks(m, parameter, lanes[which])

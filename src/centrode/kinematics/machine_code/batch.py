@@ -62,6 +62,8 @@ def solve_many(
     ready: Ready, span: SampleGrid, numbers: Dimensions, lanes: int, progress: Progress | None = None
 ) -> Solved:
     """Motion of a batch at the samples of a span: what `solve` gives."""
+    # the search for events looks at the mesh, the motion at the samples: the longer of the two says what the
+    # work is
     places = max(len(span.parameter), len(mesh_of(ready.kinematics.path, span.parameter)))
     if lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
         return solve(ready, span, numbers, lanes, progress)
@@ -75,6 +77,8 @@ def solve_many(
     judging = EventScreening(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
     values = varied.values(numbers)
     writer = Writer(nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE)
+    # without varied numbers there is one mechanism; and a plan whose functions a kernel would round must not
+    # change bits, save in groups of higher class, where bits hang on Newton's method anyway
     if not values or not (plan.steps or writer.alike):
         return solve(ready, span, numbers, lanes, progress)
     if plan.steps:
@@ -105,10 +109,15 @@ class _Many:
         sure = self._write(writer, room, progress)
         found = writer.placed(room)
         residual = found["residual"]
+        # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes to
+        # the arrays
         clear = sure & (residual.max(axis=1) <= 0.5 * CLOSED)
         if SLACK in found:
+            # any radicand this near to zero has to be compared with its rounding error, which is the arrays'
+            # work
             clear &= found[SLACK].min(axis=1) > 0.0
         if SINES in found:
+            # the arc tangent is NumPy's, so that angles have the bits of `solve`
             self._angles(found["angles"], found[SINES])
         status = np.full(residual.shape, Status.OK, dtype=np.int8)
         branches = self._branches()
@@ -134,6 +143,7 @@ class _Many:
         sure = self.judged.clear.copy()
         walking = Walking(self.judging.walk, outputs=writer.graph.outputs) if self.plan.steps else None
         for rows in self._parts():
+            # a part without any clear mechanism is computed with the others that have events
             if sure[rows].any():
                 some = {name: row[rows] for name, row in self.values.items()}
                 if walking is None:
@@ -162,6 +172,7 @@ class _Many:
                 if not self.judged.clear[rows].any():
                     continue
                 angle = angles[0, rows, :, layout.angles.index(link)]
+                # the cosines stand in the place of the angles, and are overwritten
                 np.arctan2(sines[rows, :, k], angle, out=angle)
                 middle = values[centre_of(link)][rows, None]
                 for drive, value in drives.items():
@@ -208,6 +219,8 @@ class _Many:
 
     def _worst(self, residual: Array) -> Kept:
         """The constraint that is worst of all, as `solve` finds it: in the first of its parts that has the worst."""
+        # `solve` goes through the batch in parts and reports the constraint of the first part that has the
+        # worst residual; here the same part has to be found
         size = max(1, CHUNK // self._places)
         worst = np.fmax.reduce(residual, axis=1)
         lanes = np.nonzero(worst == np.fmax.reduce(worst))[0]

@@ -62,12 +62,14 @@ def bent_guards(
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, 2)
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
+    # with one drive all cells of the mesh are equally wide, and the width is a constant of the kernel
     half: Operand = variable(HALF) if path.by_time else 0.5 * path.step
     cells = Cells(half, EXPRESSIONS)
     place = NODE_BENDS.variable(variable(PARAMETER), half)
     drives = {drive: _driven(drive, x, cells) for drive, x in path.drive_values(NODE_BENDS, place).items()}
     hooks = _Bounding(ready.assembled.signs if signs is None else signs, {}, cells)
     at = Positions.of_frame(kinematics.numbers, drives, NODE_BENDS)
+    # behind a group of higher class nothing bounds second derivatives; what was kept so far is used
     with suppress(ReachedRadicand):
         kinematics.advance(at, range(len(kinematics.structure.groups)), NODE_BENDS, hooks)
     return hooks.found
@@ -77,6 +79,7 @@ def _driven(drive: str, value: Number, cells: Cells) -> Number:
     """A drive's value with the bend of its law, a variable where that is not plainly zero."""
     if isinstance(value, Bent) or not isinstance(value, Jet):
         return value
+    # a drive at constant speed has no bend, and its literal zero saves the operations behind it
     still = all(type(x) is float and x == 0.0 for x in value.coefficients[2:])
     found, slope = value.coefficients[:2]
     return Bent(found, slope, 0.0 if still else variable(_name(drive)), cells)

@@ -81,6 +81,8 @@ class Centring:
         """Every fourth node, the one nearest to the initial position among them."""
         start = int(np.argmin(np.abs(self.mesh - self.path.initial)))
         nodes = np.arange(len(self.mesh))
+        # turns are counted from the initial position, so its node is looked at; the ends bound the range of
+        # the angle
         chosen = np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]]))
         return {
             **places_of(self.path, self.mesh[chosen], ORDERS - 1),
@@ -100,6 +102,7 @@ class Centring:
             cosine, sine = self.traced.turning[link]
             raw, before = m.atan2(sine, cosine), variable(f"angle {link}")
             angle = as_node(raw + TURN * whole_turns(before, raw))
+            # the first node has none before it to jump from
             jump = m.where(m.equal(variable(FIRST), 1.0), 0.0, m.abs(angle - before))
             there = m.where(m.equal(variable(START), 1.0), angle, variable(f"at start {link}"))
             parts.append(
@@ -123,14 +126,18 @@ class Centring:
         off = np.abs(start - found[f"at start {link}"] - TURN * whole)
         kinds = range(len(self._windings))
         halves = np.stack([found[f"high {k} {link}"] - found[f"low {k} {link}"] for k in kinds]) / 2.0
+        # of the windings the one that leaves the least range: NaN, of an angle without value, must not win
         best = np.argmin(np.where(np.isnan(halves), INFINITE, halves), axis=0)
         middles = np.stack([found[f"high {k} {link}"] + found[f"low {k} {link}"] for k in kinds]) / 2.0
         lanes = np.arange(len(best))
         for drive in self.traced.winders:
             of_each = np.array([winding.get(drive, 0.0) for winding in self._windings])
             further[winding_of(link, drive)] = of_each[best]
+        # the centre is moved by whole turns to where the initial position of the description has the angle
         further[centre_of(link)] = middles[best, lanes] + TURN * whole
         jump = found[f"jump {link}"]
+        # between two nodes looked at, the angle may go beyond what was seen by as much as it changes from one
+        # to the next
         fits: Mask = halves[best, lanes] + jump < np.pi - AWAY
         return fits & (jump < MOST) & (off < np.pi - AWAY)
 
@@ -157,7 +164,7 @@ class ScreenedEvents:
 
 @dataclass(frozen=True)
 class EventScreening:
-    """How mechanisms of a traced plan are judged; `links` are those whose turns are asked for."""
+    """How mechanisms of a traced plan are judged; `links` are those whose turns are requested."""
 
     traced: Traced
     samples: Array
@@ -199,6 +206,7 @@ class EventScreening:
             clear &= found[slack] > 0.0
         for group in self.traced.divisors:
             if f"least {group}" in found:
+                # NaN fails both comparisons: what is not known is not clear
                 clear &= (found[f"least {group}"] > 0.0) | (found[f"most {group}"] < 0.0)
         further = {name: array for name, array in found.items() if name.startswith("largest")}
         if self.links and not self.traced.steps:
@@ -209,6 +217,8 @@ class EventScreening:
 
     def _events(self, values: Mapping[str, Array]) -> Values:
         walk = Walk(self.traced)
+        # where no radicand hangs on a group of higher class, nodes have nothing to do with one another and
+        # need no walk
         if walk.moves(list(self._of_events.state.values())):
             way = way_of(self._path, {PARAMETER: self._near})
             return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
@@ -219,6 +229,8 @@ class EventScreening:
         """The nodes on which an event would matter to a sample, or to the way from the initial position to it."""
         path = self._path
         ends = np.append(self.samples, path.initial)
+        # a change point beyond the samples still reaches into them by its window, and two steps cover the
+        # cell it lies in
         beyond = WINDOW * path.unit + 2.0 * path.step
         near: Array = self.mesh[(self.mesh >= ends.min() - beyond) & (self.mesh <= ends.max() + beyond)]
         return near
@@ -231,6 +243,7 @@ class EventScreening:
     def _nodes(self) -> Values:
         """The mesh; with several drives also how far from each node the next one may be."""
         gaps = np.diff(self.mesh)
+        # the next node on either side: the farther one counts
         either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
         found = self._places(self.mesh) | bends_of(self._path, self.mesh)
         return found | ({GAP: either} if self._path.by_time else {})
@@ -252,6 +265,8 @@ class EventScreening:
         for group, divisor in self.traced.divisors.items():
             bent = self.traced.bends.get((DIVISOR, group))
             if bent is None:
+                # a divisor behind a group of higher class has no bound of its bend: its sign at the nodes has
+                # to do
                 value = as_node(_with_slope(divisor)[0])
                 parts += [greatest(f"most {group}", value), least(f"least {group}", value)]
             else:

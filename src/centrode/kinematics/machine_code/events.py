@@ -109,6 +109,7 @@ class Patches:
         room = ResultArrays.of(self.plan.layout, kinematics.numbers, len(lanes), 1)
         samples = room.samples
         single = Samples(
+            # samples of many mechanisms, one of each, in the shape that `sample` takes
             self.plan.layout,
             samples.columns[..., 0],
             samples.angles[..., 0],
@@ -148,6 +149,7 @@ class Patches:
             angle_and_rates(rotor, turns[:, None], samples.angles[:, angle])
         for angle, link in enumerate(self.plan.layout.angles):
             if link not in self.turns and link not in samples.followed:
+                # NaN of an open sample times zero is NaN, so that a link that stands is absent there too
                 samples.angles[:, angle] = 0.0 * samples.columns[:, self.plan.layout.rotor(link).start]
                 samples.angles[0, angle] += self.plan.angles[0, 0, 0, angle]
 
@@ -170,6 +172,7 @@ def _sign(group: int, sign: float, initial: float, count: int) -> Operand:
     m, found = EXPRESSIONS, sign
     if not count:
         return sign
+    # a sign flips for a sample if the change point lies between the initial position and the sample
     low, high = m.min(variable(PARAMETER), initial), m.max(variable(PARAMETER), initial)
     for k in range(count):
         at = variable(crossing_of(group, k))
@@ -186,8 +189,10 @@ def crossing_of(group: int, k: int) -> str:
 
 def counts_of(branches: Branches) -> dict[int, int]:
     """How many change points the signs of a batch have to know: the next power of two, so that kernels are few."""
+    # where assemblies are kept, signs never flip
     if not branches.smooth:
         return {}
+    # every count is a kernel of its own: rounded up to powers of two there are few
     return {group: 1 << (table.shape[1] - 1).bit_length() for group, table in branches.crossings.items()}
 
 
@@ -254,19 +259,26 @@ class EventSearch:
         scan = EventScan(self.continuation, self.mesh)
         self._write()
         plan, _writer = self.writers(self._counts)
+        # in the order of the plan: a change point of a group changes the signs on which the groups behind it
+        # stand
         for group in sorted({*plan.radicands, *plan.divisors}):
             for kind, find in (("radicand", scan.find), ("divisor", scan.find_poles)):
                 if f"{kind} {group}" in self._found:
+                    # the search of the group before may have found change points: then this group is looked
+                    # at with the new signs
                     if not self._up_to_date():
                         return False
                     bend = self._found.get(f"bend of {kind} {group}")
                     find(group, self._with_patches(scan, group, self._found[f"{kind} {group}"], bend))
+        # the last group may have found some too
         return self._up_to_date()
 
     def turns(self, link: str, initial: float) -> NodeTurns:
         """Turns of a link's angle along the mesh; `initial` [rad] is its value in the initial position."""
         cosine, sine = self._found[f"rotor {link}"]
         if len(self._repaired_nodes[0]):
+            # on a power series the kernel's rotor is the root of a rounded difference; the arrays have the
+            # right one
             cosine[self._repaired_nodes], sine[self._repaired_nodes] = self._rotors_mended[link]
         start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
         quick = self._quick.measured(partial(_angle_of, link))
@@ -407,6 +419,8 @@ class Eventful:
         found = writer.placed(room)
         turns = self._turns(plan, search, found)
         status, doubtful = self._judge_samples(continuation, found[JUDGED], found["residual"])
+        # samples that do not close although no radicand says so: their numbers go, as the arrays take theirs
+        # out
         broken = (status == Status.OPEN) & (found[JUDGED] != OPEN)
         if broken.any():
             self.unclosed.update(some[broken.any(axis=1)].tolist())
@@ -425,6 +439,8 @@ class Eventful:
             signs = signs_of(self.ready, counts)
             plan = trace_motion(self.ready, self.span, self.varied, signs) if counts else self.plan
             nodes = plan
+            # a radicand that does not move is a number on the mesh and a jet of zero derivatives at samples:
+            # quotients by what depends on it are rounded in two ways, as in the arrays
             if not all(isinstance(radicand, Jet) for radicand in plan.radicands.values()):
                 nodes = trace_motion(self.ready, self.span, self.varied, signs, on_mesh=True)
             path = self.ready.kinematics.path
@@ -456,10 +472,13 @@ class Eventful:
         status[beyond_limits(continuation.branches, self.span.parameter)] = Status.CUT_OFF
         with np.errstate(invalid="ignore"):
             status[(judged == OPEN) | (residual > CLOSED)] = Status.OPEN
+            # the kernel's residual may differ in its last bits, so those beside the bound are decided by the
+            # arrays
             doubtful = (judged == DOUBTFUL) | (np.abs(residual - CLOSED) <= NEARLY * CLOSED)
         for group in continuation.branches.largest:
             windows = continuation.windows_of(group)
             if windows is not None:
+                # next to a change point a power series takes the place of the formula
                 doubtful[inside(windows, self.span.parameter, None)[0]] = True
         return status, doubtful
 
@@ -483,9 +502,11 @@ def _outputs(plan: Traced) -> dict[str, Nodes]:
     for nodes in found.values():
         for node in nodes.ravel():
             total = total + node
+    # zero times a finite number is zero; times infinity or NaN it is NaN: one comparison looks at all numbers
     judged: Operand = m.where(m.equal(as_node(total) * 0.0, 0.0), FINE, DOUBTFUL)
     if lowest is not None and near is not None:
         opened = m.less(lowest, 0.0)
+        # near zero first: there the sign of a radicand is not to be trusted
         judged = m.where(near, DOUBTFUL, m.where(opened, OPEN, judged))
         found = {
             name: box_array([m.where(opened, np.nan, node) for node in nodes.ravel()]).reshape(nodes.shape)

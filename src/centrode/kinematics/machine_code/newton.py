@@ -63,6 +63,7 @@ class Names:
 
 def numbers_of(posture: Posture) -> list[Number]:
     """All numbers of a posture in one order."""
+    # the order of `labels`, in which states are handed on
     pairs = [x for vector in (*posture.rotors.values(), *posture.places.values()) for x in vector]
     return [*pairs, *posture.angles.values()]
 
@@ -74,6 +75,7 @@ def move_posture(chain: LinkChain, posture: Posture, by: Sequence[Operand], far:
         name = follow.entity.name
         if follow.entity.kind == "link":
             turn = by[follow.turn]
+            # by a product with a rotor near 1: no sine or cosine, which kernels and NumPy round differently
             rotors[name] = _normalise_rotor(rotate_vector(rotors[name], _rotor(turn, far)))
             angles[name] = angles[name] + turn
         if follow.by is None:
@@ -84,7 +86,7 @@ def move_posture(chain: LinkChain, posture: Posture, by: Sequence[Operand], far:
 
 
 def with_turns(posture: Posture) -> Posture:
-    """The same posture with the angles of its rotors, on the turn on which they are counted."""
+    """A posture whose angles [rad] are those of its rotors, on the turns that the angles had before."""
     angles = {}
     for link, (cosine, sine) in posture.rotors.items():
         angle = EXPRESSIONS.atan2(sine, cosine)
@@ -97,6 +99,8 @@ def _rotor(turn: Operand, far: bool) -> Vector:
     if not far:
         return 1.0, turn
     square = turn * turn
+    # Taylor's polynomials: what they leave out, some 1e-6 at the greatest step, is within what Newton's
+    # method rights
     return (
         1.0 - square * (0.5 - square * (1.0 / 24.0)),
         turn * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0))),
@@ -106,6 +110,7 @@ def _rotor(turn: Operand, far: bool) -> Vector:
 def _normalise_rotor(rotor: Vector) -> Vector:
     """A rotor of nearly unit length made one: 1 / sqrt(1 + e) by its tangent."""
     cosine, sine = rotor
+    # 1 / sqrt(1 + e) is 1 - e/2 but for e^2, with e = |rotor|^2 - 1: no root and no division
     factor = 1.5 - 0.5 * (cosine * cosine + sine * sine)
     return cosine * factor, sine * factor
 
@@ -175,6 +180,7 @@ def _by_cofactors(matrix: Rows) -> list[list[Operand]]:
     if not size:
         return []
     cofactors = [[_cofactor(matrix, i, j) for j in range(size)] for i in range(size)]
+    # the determinant is the first row times its cofactors, which are needed anyway
     over = 1.0 / scalar_product(matrix[0], cofactors[0])
     return [[times(cofactors[j][i], over) for j in range(size)] for i in range(size)]
 
@@ -199,6 +205,7 @@ def _by_elimination(matrix: Rows) -> list[list[Operand]]:
         for i in range(k + 1, size):
             _exchange_rows(rows, k, i)
         over = 1.0 / rows[k][k]
+        # columns up to the pivot's are never read again: literal zeros spare their operations
         rows[k] = [0.0 if c <= k else times(x, over) for c, x in enumerate(rows[k])]
         for i in range(size):
             if i != k:
@@ -213,6 +220,7 @@ def _by_elimination(matrix: Rows) -> list[list[Operand]]:
 def _exchange_rows(rows: list[list[Operand]], k: int, i: int) -> None:
     """Exchange two rows where the lower one has the greater number in column k."""
     first, second = rows[k][k], rows[i][k]
+    # a literal zero is in no lane the greater number
     if is_literal_zero(second):
         return
     if is_literal_zero(first):
@@ -220,6 +228,7 @@ def _exchange_rows(rows: list[list[Operand]], k: int, i: int) -> None:
         return
     lower = m.less(m.abs(first), m.abs(second))
     pairs = list(zip(rows[k], rows[i], strict=True))
+    # the same node in both rows needs no selection
     rows[k] = [x if x is y else _select(lower, y, x) for x, y in pairs]
     rows[i] = [y if x is y else _select(lower, x, y) for x, y in pairs]
 
@@ -265,6 +274,7 @@ class Matrix:
         terms: list[Operand] = [1.0] * len(whole)
         for leaf in chain.leaves:
             local = chain.arm(leaf)
+            # an equation seen along an arm is a length times the arm's length
             terms[leaf.rows[0]] = EXPRESSIONS.sqrt(dot(local, local)) * (1.0 / chain.unit)
             # across its arm a leaf turns by minus the square of that, whatever it stands at
             leaves.append((leaf.rows[1], leaf.column, -(chain.unit**2) / dot(local, local)))
@@ -296,6 +306,7 @@ class Matrix:
         found: list[Operand] = [0.0] * len(right)
         core = product(self.inverse, [right[i] for i in self.rows])
         for j, x in zip(self.columns, core, strict=True):
+            # the core first, then each leaf's turn from its own equation across the arm
             found[j] = x
         for (row, column, over), across in zip(self.leaves, self.across, strict=True):
             rest = right[row]
@@ -309,13 +320,10 @@ class Matrix:
 # regular.
 #
 # Between two places the matrix A changes by D (after a short step as much more as goes into a long one).
-# Where
-# E = A^-1 D has no eigenvalue as great as one, for which |E E| tells, no matrix on the way A + t D is
-# singular
-# (Banach's lemma; Golub and Van Loan, Matrix Computations, 4th ed., 2013, section 2.3.4). So the curve runs
-# on over
-# the drive's value without a limit or a change point; and the place found is on it where Newton's steps
-# shrink at once.
+# Where E = A^-1 D has no eigenvalue as great as one, for which |E E| tells, no matrix on the way A + t D is
+# singular (Banach's lemma; Golub and Van Loan, Matrix Computations, 4th ed., 2013, section 2.3.4). So the
+# curve runs on over the drive's value without a limit or a change point; and the place found is on it where
+# Newton's steps shrink at once.
 
 CHANGE = 0.4
 """Greatest change of a matrix from one place to the next, in itself: 0.4 of what could make it singular."""
@@ -326,7 +334,7 @@ FARTHEST = 0.3
 WRONG = 0.01
 """By how much a foretold place may be wrong, likewise."""
 SHRINKING, FAINT = 0.1, 1e-9
-"""What part of a step the next one with the same matrix may be, and a step below which nothing is asked."""
+"""What part of a step the next one with the same matrix may be, and a step below which nothing is checked."""
 LAST = 1e-9
 """Greatest last step: by the square of it, but for rounding, a place is wrong, and so are its derivatives."""
 
@@ -341,6 +349,7 @@ def slack_of(
     """
     one, two, three = (_greatest(step) for step in steps)
     parts = [
+        # each part is 1 where nothing of the allowance is used and falls below 0 where it is used up
         (CHANGE - _relative_change(names, matrix)) * (1.0 / CHANGE),
         (FARTHEST - _greatest(ahead)) * (1.0 / FARTHEST),
         (WRONG - one) * (1.0 / WRONG),
@@ -360,13 +369,14 @@ def _relative_change(names: Names, matrix: Matrix) -> Operand:
     # where all numbers of a row are small its equation is no better known than its terms
     own = [plus(total(row), size) for row, size in zip(sizes(matrix.core), matrix.terms, strict=True)]
     condition = [scalar_product(row, own) for row in sizes(matrix.inverse)]
-    # as if the step were the longest: so it does not matter which samples are asked for; none before the first
+    # as if the step were the longest: so it does not matter which samples are requested; none before the first
     share = m.where(m.equal(variable(FIRST), 1.0), 0.0, variable(SHARE))
     return plus(times(share, m.sqrt(_greatest(twice))), times(CONDITION, _greatest(condition)))
 
 
 def _greatest(values: Sequence[Operand]) -> Operand:
     """The greatest size; NaN where one is."""
+    # `max` of nodes lets NaN win, so that a step without numbers is not certain
     return functools.reduce(m.max, [m.abs(x) for x in values])
 
 
@@ -409,16 +419,22 @@ class _Stepping:
         chain, names = self.chain, self.names
         start, along = names.posture, variable(STEP)
         first, second = (list(map(variable, names.derivatives(order))) for order in (1, 2))
+        # x s + y s^2 / 2, with first and second derivatives of the place before
         ahead: list[Operand] = [(x + y * (along * 0.5)) * along for x, y in zip(first, second, strict=True)]
         foretold = move_posture(chain, start, ahead, far=True)
+        # a matrix at the foretold place; it is kept for a second step, which shows whether steps shrink
         matrix = self._matrix(foretold)
         one = matrix.solved(self._gaps(foretold, matrix.arms))
         near = move_posture(chain, foretold, one)
         two = matrix.solved(self._gaps(near, matrix.arms))
         nearer = move_posture(chain, near, two)
+        # the third step has the matrix of where it starts, so that what is left is of the square of a small
+        # number
         matrix = self._matrix(nearer)
         three = matrix.solved(self._gaps(nearer, matrix.arms))
         found = move_posture(chain, nearer, three)
+        # derivatives first near the place, then righted at the place found: one pass of each suffices, as
+        # they are linear
         rates, bends = self._rates(nearer, matrix, self.rests, self.rests)
         rates, bends = self._rates(found, matrix, rates, bends)
         state = self._state(found, rates, bends, matrix)
@@ -428,6 +444,7 @@ class _Stepping:
         if self.differentiable:
             standing = self._standing(whole, rates, bends, matrix)
             whole, rates, bends = self._by_implication(whole, rates, bends, matrix)
+        # the motion is zero at the place itself: jets bring derivatives alone
         motion = [Jet((0.0, x, y)) for x, y in zip(rates, bends, strict=True)]
         return NewtonStep(chain.positions(self.known, whole, motion), state, slack, standing)
 
@@ -474,6 +491,7 @@ class _Stepping:
         self, found: Posture, rates: Sequence[Operand], bends: Sequence[Operand], matrix: Matrix
     ) -> dict[str, Node]:
         names = [*numbers_of(self.names.labels), *self.names.derivatives(1), *self.names.derivatives(2)]
+        # second Taylor coefficients are half of second derivatives
         values = [*numbers_of(found), *rates, *(2.0 * x for x in bends)]
         state = dict(zip(names, map(as_node, values), strict=True))
         for (i, j), x in matrix.changing:
@@ -485,6 +503,7 @@ class _Stepping:
     def _standing(
         self, found: Posture, rates: Sequence[Operand], bends: Sequence[Operand], matrix: Matrix
     ) -> dict[str, Node]:
+        # constants and plain variables do not depend on the iteration: only computed nodes are given
         nodes = [*numbers_of(found), *rates, *bends, *matrix.numbers]
         given = [x for x in nodes if isinstance(x, Node) and x.arguments]
         return {f"group {self.names.group} standing {k}": x for k, x in enumerate(dict.fromkeys(given))}
@@ -492,7 +511,7 @@ class _Stepping:
     def _by_implication(
         self, found: Posture, rates: Sequence[Operand], bends: Sequence[Operand], matrix: Matrix
     ) -> tuple[Posture, list[Operand], list[Operand]]:
-        """The same numbers by a last step of Newton's from where they stand, which moves with the dimensions."""
+        """Posture and coefficients after one more step of Newton's method: equal values, which depend on dimensions."""
         at = self.chain.positions(self.values, found, self.rests)
         gaps = [minus(0.0, x) for x in self.chain.equations(m, at, matrix.arms)]
         posture = move_posture(self.chain, found, matrix.solved(gaps))

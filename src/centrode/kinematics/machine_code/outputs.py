@@ -40,6 +40,7 @@ def nodes_of(plan: Traced) -> dict[str, Nodes]:
     solved = plan.solved
     found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
     if not plan.steps:
+        # the arc tangent of these is taken afterwards, on NumPy
         angles: Nodes = solved.angles.copy()
         for k, link in enumerate(solved.layout.angles):
             if link in plan.turning:
@@ -98,6 +99,7 @@ class Writer:
             own = {str(node.detail) in self.places} if node.operation == VARIABLE else set()
             kinds[node] = frozenset(own).union(*(kinds[x] for x in node.arguments))
             # what depends on places alone, or on mechanisms alone, is computed on NumPy
+            # a function of both a place and a mechanism is left to the kernel, which rounds it otherwise
             if node.operation in FUNCTIONS and len(kinds[node]) > 1:
                 return False
         return True
@@ -111,9 +113,10 @@ class Writer:
         return np.empty((len(self.flat), lanes, len(self.places[PARAMETER])))
 
     def same_room(self, lanes: int) -> Array:
-        """The same memory at every call, which is faster: what stood there is gone."""
+        """Memory (numbers, lanes, n) that every call uses again, which is faster: the last call's numbers are lost."""
         shape = (len(self.flat), lanes, len(self.places[PARAMETER]))
         size = math.prod(shape)
+        # it grows and never shrinks: the longest batch comes first as a rule
         if not self.memory or self.memory[0].size < size:
             self.memory[:] = [np.empty(size)]
         return self.memory[0][:size].reshape(shape)
@@ -134,7 +137,7 @@ class Writer:
         return found
 
     def placed(self, room: Array) -> dict[str, Array]:
-        """The same as arrays with the shapes of the nodes."""
+        """What is written by name, as views of the room with the shapes of a `Solved`: (..., lanes, samples, ...)."""
         return {
             name: _shape_numbers(name, stream, self.outputs[name].shape)
             for name, stream in self.streams(room).items()
@@ -157,6 +160,7 @@ def streams_of(name: str, array: Array) -> Array:
 def solved_of(plan: Solved, found: Mapping[str, Array], status: npt.NDArray[np.int8], **whole: Any) -> Solved:
     """The motion of a plan of one sample with what was written; `whole` are its parts that are no arrays."""
     points = found["all_points"]
+    # the frame's points come first among all points
     frame = plan.all_points.shape[3] - plan.points.shape[3]
     return replace(
         plan,

@@ -118,6 +118,7 @@ class _OfLanes(EvaluationPolicy):
         known = flatten_positions(needed_positions(equations, at), shape)
         system = GroupSystem(equations, around.kinematics.take(self.lanes).numbers, known, len(self.lanes))
         found = newton(system, states[self.lanes])
+        # NaN goes on into all that stands on the group, so that the mechanism is not clear
         state = np.where(found.found[:, None], found.state, np.nan)
         add_in_shape(system.at(m, known, state), equations, shape, at)
 
@@ -142,8 +143,8 @@ class PathLeg:
     Attributes
     ----------
     inputs : name -> (places,)
-    places : of those that are asked for, where they stand here
-    asked : and where they stand in what is asked for
+    places : (k,), numbers of the samples among the places of this leg
+    asked : (k,), numbers of the same samples in the whole motion
     """
 
     inputs: Mapping[str, Array]
@@ -171,9 +172,10 @@ class Way:
 
 
 def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
-    """The way past all that is asked for, name -> (samples,)."""
+    """The way past all that is requested, name -> (samples,)."""
     off = inputs[PARAMETER] - path.initial
     order = np.argsort(off, kind="stable")
+    # both legs lead away from the initial position, where the state is known
     ahead, behind = order[off[order] >= 0.0], order[off[order] < 0.0][::-1]
     longest = NODES * path.step
     return Way((_leg(path.initial, longest, inputs, ahead), _leg(path.initial, -longest, inputs, behind)))
@@ -187,6 +189,8 @@ def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Pla
     found[PARAMETER] = parameter
     found[STEP][1:] = np.diff(parameter)
     with np.errstate(divide="ignore"):
+        # differences of the matrix are scaled as if every step were the longest; those of very short steps
+        # are rounding alone
         share = longest / found[STEP]
     found[SHARE][:] = np.where(np.abs(share) < MOST_SHARE, share, 0.0)
     found[FIRST][0] = 1.0
@@ -195,10 +199,11 @@ def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Pla
 
 
 def _fill_places(initial: float, longest: float, asked: Array) -> tuple[Array, Places]:
-    """Places with no longer steps than that, and which of them are those asked for."""
+    """Places with no longer steps than that, and which of them are those requested."""
     if not len(asked):
         return np.array([initial]), np.zeros(0, dtype=np.intp)
     stops = np.concatenate([[initial], asked])
+    # a stretch of just so many longest steps does not get one more by rounding
     counts = np.maximum(1, np.ceil(np.diff(stops) / longest * (1.0 - 1e-9)).astype(np.intp))
     parts = [
         start + (stop - start) * np.arange(1, count + 1) / count if count > 1 else [stop]
@@ -243,6 +248,8 @@ class Walk:
         for step in self.traced.steps.values():
             found |= step.state
         for name, angle in self._angles.items():
+            # at the initial position the angle before is that of the description's own dimensions, from which
+            # those of a mechanism may differ by more than in a step
             most = m.where(m.equal(variable(FIRST), 1.0), np.pi - AWAY, MOST)
             slacks.append(as_node(most - m.abs(angle - variable(name))))
             found[name] = angle
@@ -288,6 +295,7 @@ class Walking:
 
     @cached_property
     def scan(self) -> Scan:
+        # places between samples move the state along and leave what is reduced as it is
         """The scan of either leg."""
         at_sample = m.equal(variable(SAMPLE), 1.0)
         kept = {
@@ -316,6 +324,7 @@ class Walking:
         """Write outputs at the samples into `out` (outputs, lanes, samples); returns what is left at the end."""
         lanes, each = out.shape[1], out.itemsize * len(self.outputs)
         longest = max(leg.steps for leg in way.legs)
+        # as many mechanisms as fill the buffer with their longest leg, but enough to fill vectors and threads
         together = min(lanes, max(LEAST_LANES * threads, BUFFER // (each * longest)))
         steps = min(longest, max(1, BUFFER // (each * together)))
         room = np.empty(len(self.outputs) * together * steps)
@@ -337,6 +346,8 @@ class Walking:
     def _begun(self, values: Values, before: Values) -> dict[str, Array]:
         """All states in the initial position; what is kept goes on from where it stood before."""
         lanes = len(next(iter(values.values())))
+        # the second leg begins in the initial position again; the slack and what is reduced go on from the
+        # first
         start = self.walk.start | dict(self.reduction.start)
         kept = self._end_states(before)
         return {

@@ -65,7 +65,7 @@ MOST_FREE = 9
 
 
 class Untraceable(Exception):
-    """The plan does something that expressions cannot say; `reason` is told to the user."""
+    """The plan does something that expressions cannot say; `reason` is shown to the user."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
@@ -107,6 +107,7 @@ class Deciding(EvaluationPolicy):
         return divisor
 
     def continue_angle(self, group: int, key: str, angle: Number) -> Number:
+        # turns are counted from place to place, and without a walk there is no place before
         if not self.chains:
             raise Untraceable(mark("gears or wheels whose turns are counted"))
         value = plain(angle)
@@ -126,6 +127,8 @@ class Deciding(EvaluationPolicy):
 def refuse_untraceable(ready: Ready, span: SampleGrid) -> None:
     """Raise Untraceable for what is known before the plan is run."""
     kinematics = ready.kinematics
+    # refused here is what a straight line of operations cannot say, or what would cost more to compile than
+    # it saves
     for group in ready.structure.groups:
         if isinstance(group, Newton):
             if kinematics.path.by_time:
@@ -210,6 +213,7 @@ def trace_motion(
     refuse_untraceable(ready, span)
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, ORDERS - 1)
+    # phases of gears belong to the initial position of the description, as in `of_batch`
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
     chains = chains_of(ready, kinematics.numbers)
     hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable)
@@ -260,6 +264,7 @@ def _angles(
     found = np.empty((ORDERS, len(layout.angles)), dtype=object)
     turning: dict[str, tuple[Operand, Operand]] = {}
     for k, link in enumerate(layout.angles):
+        # on some layouts the plan counts the turns itself
         if layout.runs_on and link in at.angles:
             found[:, k] = [_derivative(at.angles[link], order) for order in range(ORDERS)]
             continue
@@ -271,6 +276,7 @@ def _angles(
         turning[link] = cosine[0], sine[0]
         found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
         for order in (1, 2):
+            # with c c + s s = 1 the angle's derivatives are c s' - s c' and c s'' - s c''
             found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
     return found, turning
 
@@ -321,6 +327,7 @@ def _worst(kinematics: Kinematics, at: Positions, scale: Operand) -> Operand:
     for _kept, size, angular in each_residual(kinematics, EXPRESSIONS, at):
         found[angular] = EXPRESSIONS.max(found[angular], size) if angular in found else size
     if False in found:
+        # one division by the scale for all lengths, see above
         found[False] = found[False] / scale
     least: Operand = 0.0
     return functools.reduce(EXPRESSIONS.max, found.values(), least)

@@ -65,6 +65,7 @@ class Varied:
 
 def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
     """The numbers of a batch as variables; those that are a varied value itself are called by its path."""
+    # identity of arrays, not equality: values that happen to be equal vary on their own
     known = {id(value): path for path, value in values.items()}
     names: list[str] = []
 
@@ -114,6 +115,7 @@ def grid_of_variables(span: SampleGrid) -> TracedGrid:
     accelerates = span.accelerates
 
     def row(name: str, values: Array) -> Any:
+        # what is the same everywhere stays a number, so that zeros among them drop out of the plan
         return values[:1] if (values == values[0]).all() else box_array([variable(name)])
 
     second = row(SECOND_RATE, span.second_rate) if accelerates else np.zeros(1)
@@ -133,8 +135,7 @@ def times_of(span: SampleGrid) -> dict[str, Array]:
 # Several drives in a traced plan: their values and rates are variables of a place on the path.
 #
 # A law is not traced: what it gives at the places is computed by the arrays, once for all mechanisms.
-# Derivatives that
-# are the same everywhere stay numbers, so that plans skip their zeros as the arrays do.
+# Derivatives that are the same everywhere stay numbers, so that plans skip their zeros as the arrays do.
 
 Namespace: TypeAlias = Any
 
@@ -206,7 +207,7 @@ def _name(drive: str, k: int) -> str:
     return f"drive {drive}, {k}"
 
 
-# Turns of angles as expressions: told by a centre that may run on with the drive, or by the place before.
+# Turns of angles as expressions: found from a centre that may run on with the drive, or by the place before.
 
 TURN = 2.0 * math.pi
 WHOLE = 1.5 * 2.0**52
@@ -219,6 +220,7 @@ AWAY = 0.2
 
 def whole_turns(near: Number, angle: Number) -> Number:
     """The turns to add to an angle to come as close as may be to another, over any algebra."""
+    # rounding to even of a sum beside 2^52: the operations and so the bits are the same on every executor
     return ((near - angle) * (1.0 / TURN) + WHOLE) - WHOLE
 
 
@@ -293,6 +295,7 @@ class Pass:
         parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
         inputs = np.stack([self.places[name] for name in scan.inputs]) if scan.inputs else None
         lanes = len(next(iter(values.values())))
+        # every lane starts alike
         start = np.repeat([[value] for value in self.reduction.start.values()], lanes, axis=1)
         run = runner(scan, kernels, threads=threads)
         state = run(parameters, inputs, start, steps=None if scan.inputs else steps).state

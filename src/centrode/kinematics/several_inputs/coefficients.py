@@ -40,13 +40,10 @@ from centrode.structure.constraints import Positions
 # Partial derivatives by each drive: the motion differentiated along directions in the space of the drives.
 #
 # Along a direction the jets of the closed forms give exact first and second derivatives. Mixed terms follow
-# by
-# polarisation, D_ij = (D(e_i + e_j) - D(e_i) - D(e_j))/2 with D the second derivative along a direction,
-# which is
-# exact up to rounding. Next to change points there are no power series: there the motion is smooth along its
-# own path
-# only, while partial derivatives of the group, the second ones at least, grow without bound as towards a
-# limit.
+# by polarisation, D_ij = (D(e_i + e_j) - D(e_i) - D(e_j))/2 with D the second derivative along a direction,
+# which is exact up to rounding. Next to change points there are no power series: there the motion is smooth
+# along its own path only, while partial derivatives of the group, the second ones at least, grow without
+# bound as towards a limit.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -74,12 +71,15 @@ def partials(solved: Solved) -> Partials:
     drives = [one.drive for one in path.driven]
     if not path.by_time:
         return Partials(solved, {drives[0].id: 1.0}, {(0, 0): solved})
+    # the direction's length is the size of the drive's own unit, so that derivatives of all drives are alike
+    # in size
     units = {drive.id: _power_of_two(unit_of(drive, path.scale)) for drive in drives}
     continuation = _branched_plan(solved)
     singular = np.zeros(solved.status.shape, dtype=bool)
     columns, turning = {}, {}
     for i, first in enumerate(units):
         for j, second in enumerate(list(units)[i:], start=i):
+            # along e_i + e_j, or along e_i where i = j: polarisation needs no others
             moving = {name: units[name] for name in (first, second)}
             columns[i, j], turning[i, j], lost = _along(continuation, solved, moving)
             singular |= lost
@@ -92,6 +92,7 @@ def partials(solved: Solved) -> Partials:
 
 def _power_of_two(unit: float) -> float:
     # so that lengths of directions are divided out without rounding
+    # the power of two below the unit
     return float(2.0 ** (frexp(unit)[1] - 1))
 
 
@@ -106,6 +107,7 @@ def _branched_plan(solved: Solved) -> BranchedPlan:
 class _Straight(SampleJudging):
     """Judges as for a motion, without power series."""
 
+    # a series runs along the motion's own path, and says nothing of other directions
     def after(self, group: int, at: Positions) -> None:
         for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
             np.logical_or(total, found, out=total)
@@ -119,6 +121,7 @@ def _along(
     kinematics, parameter = continuation.kinematics, solved.span.parameter[None, :]
     values = kinematics.path.drive_values(ARRAYS, parameter)
     drives = {
+        # the drives that move have the direction's length as slope and no bend; others are numbers
         name: Jet((np.broadcast_to(value, parameter.shape), moving[name], 0.0)) if name in moving else value
         for name, value in values.items()
     }
@@ -134,6 +137,7 @@ def _along(
                 fill_number(angles[:, k], at.angles[link])
             else:
                 rotor = columns[:, layout.rotor(link)]
+                # c s' - s c' for both orders, and 0 for the value, which is not used
                 angles[:, k] = rotor[0, 0] * rotor[:, 1] - rotor[0, 1] * rotor[:, 0]
         whole = np.isfinite(columns.sum(axis=(0, 1)))
     return columns, angles, hooks.zero | ~whole
@@ -194,7 +198,7 @@ def kinematic_coefficients(
 
 
 def coefficients_of(solved: Solved) -> xr.Dataset:
-    """The same for a motion solved before."""
+    """Partial derivatives by each drive at the samples of a solved motion; see `kinematic_coefficients`."""
     if solved.status.size > most_samples(solved):
         raise InputError(
             _("samples"),
@@ -235,6 +239,7 @@ def _tensors(found: Partials, number: int) -> tuple[Array, Array]:
         second[i, i] = orders[i, i][2][0] / (unit * unit)
     for i, j in product(range(len(units)), repeat=2):
         if i < j:
+            # D(e_i + e_j) = D_ii + 2 D_ij + D_jj
             mixed = orders[i, j][2][0] - orders[i, i][2][0] - orders[j, j][2][0]
             second[i, j] = second[j, i] = mixed / (2.0 * units[i] * units[j])
     return np.moveaxis(first, 0, 1), np.moveaxis(second, (0, 1), (1, 2))

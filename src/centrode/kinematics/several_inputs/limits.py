@@ -45,6 +45,7 @@ def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
 def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
     """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg"); not too far away."""
     found = ready.parameter.drive(drive.id).read(value, where)
+    # as for samples: the mesh of nodes between both has to stay small
     way = abs(found - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
     if way > tau * MAX_TURNS:
         raise InputError(
@@ -97,6 +98,7 @@ def starting_at(ready: Ready, path: Path) -> BranchedPlan:
     target: dict[str, float] = {path.driven[0].drive.id: path.initial, **path.held}
     kinematics = replace(ready.kinematics, path=path)
     start = ready.assembled
+    # where the signs tell, the position follows from values alone, and no way is walked
     if _needs_a_way(ready) and target != initial_values(ready):
         start = _brought(ready, target)
     smooth = ready.mechanism.assembly.continuation == "smooth"
@@ -134,7 +136,9 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     start = initial_values(ready)
     ways = {name: target[name] - value for name, value in start.items()}
     driven = tuple(
-        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
+        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id])
+        for one in old.driven
+        # all drives arrive at time 1
     )
     fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
     pace = TimeScale.of(lambda times: np.full(len(times), fastest))
@@ -144,6 +148,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     first = ready.assembled
     branches = branches_at_start(path, first.signs, first.angles, smooth)
     continuation = BranchedPlan(kinematics, branches, first.positions, kinematics.numbers)
+    # a limit on the way would leave the branch
     EventScan(continuation, mesh_of(path, np.ones(1))).run()
     if branches.reach(0)[1] < 1.0:
         raise InputError(
@@ -151,6 +156,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
             _("on the straight way there from the initial position the mechanism locks"),
             _("hold values nearer to the initial ones, or let the description begin elsewhere"),
         )
+    # positions at the end of the way, with the turns counted on it
     arriving = _Arriving(continuation, np.ones((1, 1)))
     positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).map_numbers(_as_float)
     signs = {group: float(branches.sign(group, np.ones(1))[0, 0]) for group in branches.signs}
@@ -284,12 +290,13 @@ def has_one_drive(mechanism: Mechanism) -> bool:
 
 
 def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: float) -> Limits:
-    """The same for a mechanism made ready before."""
+    """Limits of a drive about its value `about` [rad or m], the values of the others held; see `limits`."""
     path = held_path(prepared, drive, about, held)
     continuation = starting_at(prepared, path)
     angular = path.driven[0].drive.kind == "angle"
     extent = 2.0 * pi * TURNS if angular else SEARCH * path.unit
     EventScan(continuation, mesh_of(path, np.array([about - extent, about + extent]))).run()
+    # after the search, as it needs the events
     check_closed(continuation)
     low, high = continuation.branches.reach(0)
     if path.driven[0].drive.kind == "distance":
@@ -313,5 +320,6 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
 
 def _groups(prepared: Ready, events: list[Event], value: float) -> str:
     """Names of the groups that lock at a value."""
+    # several groups may lock at one value: to the last bit the same event
     which = dict.fromkeys(event.group for event in events if event.kind == "limit" and event.at == value)
     return ", ".join(name_of(prepared.structure.groups[group]) for group in which)

@@ -70,6 +70,7 @@ class Lines:
         free = self.closed[:, :-1] & self.closed[:, 1:]
         line, value, _group = self.limits
         cell = cells_of(nodes, value)
+        # a limit at a node, but for rounding, is the end of a passage and not within one
         margin = AT_A_NODE * np.spacing(np.max(np.abs(nodes)))
         inside = (nodes[cell] + margin < value) & (value < nodes[cell + 1] - margin)
         free[line[inside], cell[inside]] = False
@@ -79,6 +80,7 @@ class Lines:
         """Smallest radicand of all groups, each over its greatest; NaN where none is known."""
         least = np.full(self.closed.shape, np.nan)
         for values in self.margins.values():
+            # over the greatest on the grid: radicands of different groups have different units
             with np.errstate(all="ignore"):
                 greatest = float(np.nanmax(np.abs(values), initial=0.0))
                 least = np.fmin(least, values / greatest if greatest > 0.0 else values)
@@ -113,7 +115,12 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
     branches = branches_at_start(
-        path, ready.assembled.signs, ready.assembled.angles, smooth=False, lanes=lanes
+        # signs stay: the region is that of one assembly, and change points do not lead out of it
+        path,
+        ready.assembled.signs,
+        ready.assembled.angles,
+        smooth=False,
+        lanes=lanes,
     )
     kinematics = replace(ready.kinematics, path=path)
     continuation = BranchedPlan(kinematics, branches, ready.assembled.positions, kinematics.numbers)
@@ -160,6 +167,7 @@ def _measure_nodes(continuation: BranchedPlan, layout: PlanLayout, nodes: Array,
     with np.errstate(all="ignore"):
         at = kinematics.positions(JETS, Jet.variable(nodes[None, :], ORDERS - 1), judging)
         fill_columns(kinematics, layout, at, columns)
+    # groups at infinity close nowhere
     judging.opened |= ~np.isfinite(columns[0]).all(axis=0)
     return judging
 
@@ -173,12 +181,14 @@ def reached_from(
     """
     reached = np.zeros(closed.shape, dtype=bool)
     reached[seed] = closed[seed]
+    # until nothing is added: each round sweeps forwards and backwards along both drives
     while True:
         before = int(reached.sum())
         for free, here, closes, comes_round in (
             (first, reached, closed, rounds[0]),
             (second.T, reached.T, closed.T, rounds[1]),
         ):
+            # the first and the last line are one
             if comes_round:
                 ends = here[0] | here[-1]
                 here[0], here[-1] = ends & closes[0], ends & closes[-1]
@@ -216,6 +226,7 @@ def grid_nodes(
     drive = named_drive(prepared.mechanism, name, "ranges")
     if ranges is not None and name in ranges:
         low, high = sorted(value_of(prepared, drive, value, f"range {name}") for value in ranges[name])
+    # about the initial value, so that it stands in the middle
     elif drive.kind == "angle":
         low, high = start[name] - np.pi, start[name] + np.pi
     else:
@@ -223,6 +234,7 @@ def grid_nodes(
     _check_range(drive, start[name], low, high, unit_of(drive, prepared.kinematics.path.scale))
     nodes = np.linspace(low, high, samples)
     nearest = node_of(nodes, start[name])
+    # the initial value is a node exactly, as the search begins there
     if abs(nodes[nearest] - start[name]) > SAME * (high - low):
         return np.union1d(nodes, [start[name]])
     nodes[nearest] = start[name]
@@ -274,6 +286,7 @@ def _between_limits(prepared: Ready, name: str, values: Mapping[str, float]) -> 
         )
     beyond = BESIDE * (high - low)
     cylinder = named_drive(prepared.mechanism, name, "ranges").kind == "distance"
+    # a cylinder's range begins above zero
     return (max(low - beyond, 1e-3 * high) if cylinder else low - beyond), high + beyond
 
 
@@ -435,9 +448,11 @@ def _border(
     for k, found in enumerate(lines):
         line, value, group = found.limits
         across = nodes[1 - k][line]
+        # points are in the order of the drives, whichever runs along the line
         places.append(np.stack([value, across] if k == 0 else [across, value], axis=-1))
         cell = cells_of(nodes[k], value)
         grid = reached.T if k == 0 else reached
+        # a limit bounds the region if a node beside it is reached
         touching.append(grid[line, cell] | grid[line, cell + 1])
         groups.append(group)
     with speaking("en"):

@@ -42,6 +42,7 @@ def folder() -> Path | None:
 
 def name_of(*parts: str) -> str:
     """Name of the entry that depends on some texts, and on nothing else."""
+    # the length goes first, so that no two lists of texts run together to the same bytes
     digest = hashlib.sha256()
     for part in parts:
         digest.update(f"{len(part)}:{part}".encode())
@@ -55,6 +56,7 @@ def read_entry(name: str) -> bytes | None:
         return None
     try:
         with _open_entry(place, f"{name}{SUFFIX}") as file:
+            # one byte more than allowed, so that what is too long is not taken for whole
             content = file.read(GREATEST + 1)
     except OSError:
         return None

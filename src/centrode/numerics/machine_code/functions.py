@@ -20,7 +20,7 @@ from centrode.numerics.operations import CONSTANT
 # Sine, cosine and the angle of a vector on vectors of doubles: the greatest errors stand in docs/engine.md.
 #
 # The argument is brought to |r| <= pi/4 by Cody and Waite's reduction: r = x - k pi/2 with pi/2 in several
-# parts, kept as r + low. Beyond `REDUCED` the C library is asked, lane by lane.
+# parts, kept as r + low. Beyond `REDUCED` the C library is called, lane by lane.
 
 REDUCED = 1e5
 """Greatest magnitude that is reduced here: k stays below 2^17, so that its products with parts are exact."""
@@ -32,6 +32,8 @@ SMALLEST = 5e-324
 
 def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
     """Sine and cosine of x; below 1 ULP from the true value for |x| <= 1e5, the C library's beyond."""
+    # beside 2^52 the last place is worth 1: the sum is rounded to a whole number of quarter turns, ties to
+    # even, and the same number stands in its lowest bits
     turns = code.add(code.multiply(x, code.constant(2.0 / math.pi)), code.constant(ROUNDER))
     k = code.subtract(turns, code.constant(ROUNDER))
     r, low = _reduced_by_fma(code, x, k) if code.has_fma else _reduce_by_short_parts(code, x, k)
@@ -40,11 +42,13 @@ def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
     odd = _is_odd(code, quarter)
     near = (
         _flip_sign(code, code.select(odd, cosine, sine), quarter),
+        # cos x = sin(x + quarter turn): one quarter further
         _flip_sign(code, code.select(odd, sine, cosine), code.whole("add", quarter, 1)),
     )
-    # a zero keeps its sign
+    # r of -0 comes out of the sums as +0 a zero keeps its sign
     at_zero = code.compare("oeq", x, code.constant(0.0))
     near = code.select(at_zero, x, near[0]), near[1]
+    # k would need more bits than a product with the first part has left
     beyond = code.compare("ogt", code.intrinsic("fabs", x), code.constant(REDUCED))
     far = by_library_where(code, beyond, ("sin", "cos"), (x,), near)
     return far[0], far[1]
@@ -63,7 +67,7 @@ def _reduced_by_fma(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
 
 
 def _reduce_by_short_parts(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
-    """The same where the machine rounds products: parts so short that products with k are exact."""
+    """The rest x - k pi/2 as a sum of two, without FMA: parts of pi/2 so short that products with k are exact."""
     r, low = x, code.constant(0.0)
     for part in QUARTER_TURN_SHORT:
         r, lost = _difference(code, r, code.multiply(k, code.constant(part)))
@@ -119,19 +123,24 @@ def angle(code: Code, y: Value, x: Value) -> Value:
     """
     ax, ay = code.intrinsic("fabs", x), code.intrinsic("fabs", y)
     steep = code.compare("ogt", ay, ax)
+    # of the two the lesser over the greater: the quotient is at most 1 and nothing overflows
     least, most = code.select(steep, ax, ay), code.select(steep, ay, ax)
     # a steeper vector is turned back by pi/4, and one that is infinite both ways
+    # least > most SLOPE, written with the difference: of two infinite ones that is NaN, and with `ugt` they
+    # are turned
     bound = code.multiply(code.subtract(most, least), code.constant(SLOPE / (1.0 - SLOPE)))
     turned = code.compare("ugt", least, bound)
     t = _arctangent(code, _slope(code, least, most, turned))
     left = _is_negative(code, x)
-    # in the upper half plane the angle is +-t from a multiple of pi/4
+    # in the upper half plane the angle is +-t from a multiple of pi/4 multiples of a quarter of pi from which
+    # t counts: 4 or 0 on the axis of x, 2 on that of y, 3 and 1 between
     of_axis = code.select(steep, code.constant(2.0), _either(code, left, 4.0, 0.0))
     eighths = code.select(turned, _either(code, left, 3.0, 1.0), of_axis)
     backwards = code.logical("xor", steep, left)
     towards = code.select(backwards, code.negate(t), t)
     # what pi/4 lacks is at most a third of the last place
     whole = code.multiply_add(eighths, code.constant(math.pi / 4.0), towards)
+    # with the sign of y, that of a zero too: C's rule for the lower half plane
     return code.intrinsic("copysign", whole, y)
 
 
@@ -141,8 +150,11 @@ def _slope(code: Code, least: Value, most: Value, turned: Value) -> Value:
     back = code.subtract(least, most)
     # the difference of infinite ones counts as zero
     back = code.select(code.compare("olt", back, zero), back, zero)
+    # across / along is tan(t - pi/4) = (least - most) / (most + least) where the vector is turned back
     across = code.select(turned, back, least)
     along = code.select(turned, code.add(most, least), most)
+    # 0 / 0 would be NaN: of two zeros the slope is 0. The least number changes no other quotient, and NaN
+    # stays, being no less than it
     along = code.select(code.compare("ogt", tiny, along), tiny, along)
     return code.divide(across, along)
 
@@ -164,6 +176,7 @@ def _arctangent(code: Code, x: Value) -> Value:
 
 ARITHMETIC = {"add": "fadd", "subtract": "fsub", "multiply": "fmul", "divide": "fdiv"}
 COMPARISONS = {"less": "olt", "less_equal": "ole", "equal": "oeq", "not_equal": "une"}
+# bit 1 of k says third or fourth quarter; moved to the sign's place it flips the sign by one `xor`
 LOGIC = {"both": "and", "either": "or"}
 MAY_FUSE = "contract "
 
@@ -220,6 +233,7 @@ class Operating:
         if node not in self._turned:
             x = self._widen(self.value(node))
             sine, cosine = sine_and_cosine(self.code.of_doubles(), x)
+            # the pair is kept: a formula that takes the sine of an angle takes its cosine too
             self._turned[node] = self._narrow(sine), self._narrow(cosine)
         return self._turned[node]
 

@@ -31,7 +31,7 @@ from centrode.numerics.scans import Array, Call, Scan, Scanned, call_of
 
 NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
 REMEMBERED = 256
-"""Kernels kept in memory; the one that was longest not asked for goes first."""
+"""Kernels kept in memory; the one that was longest not requested goes first."""
 PARTS = 4
 """Parts of the work for each thread, so that none waits long for another."""
 
@@ -72,6 +72,7 @@ class Kernel:
         if not call.lanes or not call.steps:
             return Scanned(call.outputs, call.state)
         width = self.shape.vector.width
+        # a kernel reads and writes whole vectors: fewer lanes are filled up outside the caller's arrays
         if call.lanes < width:
             return _without_padding(self._run(_pad_lanes(call, width), 1), call)
         return self._run(call, threads)
@@ -94,6 +95,8 @@ class Kernel:
         length = call.steps if inside else call.lanes // width
         count = min(threads * PARTS, length)
         bounds = [i * length // count for i in range(count + 1)]
+        # parts are whole vectors but for the last: none is narrower than a vector, and lanes of two parts do
+        # not overlap
         if not inside:
             bounds = [bound * width for bound in bounds[:-1]] + [call.lanes]
         for first, last in pairwise(bounds):
@@ -139,6 +142,8 @@ def kernel_of(
         raise ValueError("a scan with a state takes its steps inside")
     shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed)
     key = (scan.key, shape, machine)
+    # compiling is done without the lock: two threads may compile the same kernel, which costs time and
+    # nothing else
     with _one_at_a_time:
         if key in _remembered:
             _remembered.move_to_end(key)
@@ -185,10 +190,12 @@ def address(array: Array) -> int:
     row = array[(0,) * (array.ndim - 1)]
     if row.flags.writeable:
         return ctypes.addressof(ctypes.c_char.from_buffer(row))
+    # read-only arrays give no buffer that can be written to
     return int(array.__array_interface__["data"][0])
 
 
 @lru_cache(maxsize=4)
+# the process is part of the key: after a fork threads do not exist, though the pool would be remembered
 def _pool_of(threads: int, process: int) -> ThreadPoolExecutor:
     """Threads that wait for the next call: to begin them takes as long as a short kernel. A fork has none of them."""
     return ThreadPoolExecutor(threads, "kernel")
@@ -197,6 +204,7 @@ def _pool_of(threads: int, process: int) -> ThreadPoolExecutor:
 def _pad_lanes(call: Call, width: int) -> Call:
     """Fewer lanes than a vector has: the last one is repeated."""
 
+    # repeated numbers send no lane to the C library that the call would not send there itself
     def pad(rows: Array) -> Array:
         return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, width - call.lanes)), mode="edge"))
 
@@ -234,6 +242,7 @@ class Stream:
                 f"expected ({len(kernel.scan.parameters)}, lanes) values, got {self.parameters.shape}"
             )
         self.lanes = self.parameters.shape[1]
+        # fewer lanes than a vector have to be filled up at every call, which `run` does
         self._alone = threads == 1 and self.lanes >= kernel.shape.vector.width
         self._below = kernel.tables.of_lanes.below(self.parameters)
         self._of_lanes = (address(self._below), self._below.strides[0] // kernel.number.itemsize)
@@ -262,7 +271,7 @@ class Stream:
         return out
 
     def _check(self, rows: npt.NDArray[Any], out: Array) -> None:
-        """Machine code writes where it is told to: nothing else looks at sizes."""
+        """Check shapes, as machine code writes to addresses and knows no sizes."""
         scan, number = self.kernel.scan, self.kernel.number
         if rows.ndim != 2 or len(rows) != len(scan.inputs) or rows.strides[1] != number.itemsize:
             raise ValueError(f"expected ({len(scan.inputs)}, n) values, row by row, got {rows.shape}")

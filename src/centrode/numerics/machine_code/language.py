@@ -52,6 +52,7 @@ class Vector:
         """A number in every lane."""
         if self.number == "float":
             x = _as_single(x)
+        # LLVM writes a single-precision constant with the bits of the equal double
         bits = struct.unpack("<Q", struct.pack("<d", x))[0]
         return self._everywhere(f"{self.number} 0x{bits:016X}")
 
@@ -109,7 +110,7 @@ class Code:
     has_fma: bool
 
     def of_doubles(self) -> Code:
-        """The same block, on as many doubles."""
+        """Code for the same block and number of lanes, in double precision."""
         return Code(self.block, Vector("double", self.vector.width), self.has_fma)
 
     def constant(self, x: float) -> Value:
@@ -165,11 +166,11 @@ class Code:
         return self.block.put(f"select {v.truth} {condition}, {v.name} {a}, {v.name} {b}")
 
     def bits_of(self, a: Value) -> Value:
-        """The same bits as whole numbers."""
+        """The bits of numbers, read as whole numbers."""
         return self.block.put(f"bitcast {self.vector.name} {a} to {self.vector.whole}")
 
     def from_bits(self, a: Value) -> Value:
-        """The same bits as numbers."""
+        """The bits of whole numbers, read as numbers."""
         return self.block.put(f"bitcast {self.vector.whole} {a} to {self.vector.name}")
 
     def whole(self, instruction: str, a: Value, constant: int) -> Value:
@@ -180,13 +181,14 @@ class Code:
 
     def polynomial(self, coefficients: Sequence[float], z: Value) -> Value:
         """Value of a polynomial by Horner's rule; the constant term comes first."""
+        # Horner from the highest coefficient: each step is one fused product and sum
         value = self.constant(coefficients[-1])
         for coefficient in reversed(coefficients[:-1]):
             value = self.multiply_add(value, z, self.constant(coefficient))
         return value
 
     def polynomial_in_halves(self, coefficients: Sequence[float], z: Value) -> Value:
-        """The same with even and odd powers apart: of two shorter chains none waits for the other."""
+        """Value of a polynomial, even and odd powers apart: two chains of half the length run side by side."""
         squared = self.multiply(z, z)
         even, odd = (self.polynomial(coefficients[k::2], squared) for k in (0, 1))
         return self.multiply_add(odd, z, even)
@@ -219,6 +221,7 @@ def by_library_where(
     block, vector = code.block, code.vector
     before, far, after = block.label, block.name("far"), block.name("after")
     truth = f"i{vector.width}"
+    # one comparison of all lanes at once: a vector without a lane beyond skips the calls
     some = block.put(f"icmp ne {truth} {block.put(f'bitcast {vector.truth} {condition} to {truth}')}, 0")
     block.line(f"br i1 {some}, label %{far}, label %{after}, !prof !0")
     block.begin(far)

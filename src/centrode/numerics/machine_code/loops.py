@@ -50,6 +50,7 @@ class ColumnRows:
 
     def read(self, place: Value) -> Value:
         """The vector that begins at a place."""
+        # aligned as one number only: the last block of lanes begins wherever its end demands
         return self.block.put(f"load {self.vector.name}, ptr {place}, align {self.vector.bits // 8}")
 
     def write(self, value: Value, place: Value) -> None:
@@ -59,6 +60,7 @@ class ColumnRows:
     def everywhere(self, place: Value) -> Value:
         """One number in every lane."""
         vector, block = self.vector, self.block
+        # one load and a shuffle: the number of a step is the same for all lanes
         one = block.put(f"load {vector.number}, ptr {place}, align {vector.bits // 8}")
         first = block.put(f"insertelement {vector.name} poison, {vector.number} {one}, i32 0")
         lanes = f"<{vector.width} x i32> zeroinitializer"
@@ -67,6 +69,8 @@ class ColumnRows:
     def stand(self, axis: str) -> None:
         """Where the loop stands: the first lane of a block, moved back at the end."""
         if axis.startswith(LANE):
+            # the last block is moved back until it ends with the lanes: some are computed twice, to the same
+            # bits
             last = self.block.put(f"sub i64 %lanes, {self.vector.width}")
             beyond = self.block.put(f"icmp sgt i64 {axis}, {last}")
             self.at = self.block.put(f"select i1 {beyond}, i64 {last}, i64 {axis}")
@@ -112,8 +116,10 @@ def stages_of(order: Sequence[Node]) -> list[LoopStage]:
     """Nodes in stages: each arc tangent, and what hangs on it, behind all that hangs on none."""
     numbers = _numbers(order)
     count = max(numbers.values(), default=0) + 1
+    # sorted by stage, so that the last stage that takes a node is what stays in the dictionary
     last_use = {x: numbers[node] for node in sorted(order, key=numbers.__getitem__) for x in node.arguments}
     waiting = [x for x in order if x.arguments and last_use.get(x, 0) > numbers[x]]
+    # what waits is written as a number, and a condition is none
     if count == 1 or len(waiting) > MOST_LEFT or any(x.is_condition for x in waiting):
         return [LoopStage(tuple(order), ())]
     found = []
@@ -130,6 +136,7 @@ def _numbers(order: Sequence[Node]) -> dict[Node, int]:
     for node in order:
         number = max((numbers[x] for x in node.arguments if x in numbers), default=0)
         if node.operation in LONG:
+            # each arc tangent begins a stage of its own; what is computed from it follows there
             longs += 1
             number = longs
         numbers[node] = number
@@ -139,11 +146,9 @@ def _numbers(order: Sequence[Node]) -> dict[Node, int]:
 # What may be rounded otherwise than on NumPy: operations that no status depends on.
 #
 # Whether something closes, which branch is taken and which side is chosen hangs on the last bit of radicands,
-# divisors and compared numbers; all that these are computed from stays as it is. Of the rest, products and
-# the
+# divisors and compared numbers; all that these are computed from stays as it is. Of the rest, products and the
 # sums behind them may be rounded once, and quotients by a common divisor become products with its reciprocal
-# (which is infinite for a subnormal divisor: there, and only there, NaN may come out for a quotient of
-# zeros).
+# (which is infinite for a subnormal divisor: there, and only there, NaN may come out for a quotient of zeros).
 
 DECISIVE = {
     "sqrt": slice(None), "log": slice(None), "power": slice(None), "atan2": slice(None),
@@ -156,6 +161,7 @@ DECISIVE = {
 def behind_decisions(graph: Graph) -> frozenset[Node]:
     """Nodes that no decision depends on: a last bit of theirs changes values, never statuses."""
     exact: set[Node] = set()
+    # backwards: whatever is computed towards an exact number has to be exact as well
     for node in reversed(graph.order):
         exact.update(node.arguments if node in exact else _decisive(node))
     return frozenset(node for node in graph.order if node not in exact)
@@ -181,6 +187,8 @@ def with_reciprocals(scan: Scan, inner: Sequence[str]) -> Scan:
         if node.operation != "divide" or node not in free:
             return None
         divisor = node.arguments[1]
+        # a reciprocal that serves one quotient pays only where the inner loop repeats it; of a constant over
+        # what stands still the whole quotient is computed outside that loop
         alone = times[divisor] == 1 and (divisor in changing or node.arguments[0].operation == CONSTANT)
         return None if alone else arguments[0] * (1.0 / arguments[1])
 
@@ -249,6 +257,8 @@ class _Writer:
                 "entry:",
                 *block.lines,
                 "}",
+                # weights say that lanes beyond the own reduction are rare, so that the common way is laid out
+                # straight
                 '!0 = !{!"branch_weights", i32 1, i32 1000000}',
                 "",
             ]
@@ -258,6 +268,8 @@ class _Writer:
         block, inside = self.block, self.shape.lanes_inside
         outer = "%step" if inside else "%lane"
         of_inner = self.scan.parameters if inside else (*self.scan.inputs, *self.scan.state)
+        # the outer loop computes all that does not change inside; outputs among it are written inside all the
+        # same
         early = self._independent_of(of_inner)
         rest = [node for node in self.scan.graph.order if node not in early]
         stages = stages_of(rest) if inside else [LoopStage(tuple(rest), ())]
@@ -265,6 +277,8 @@ class _Writer:
         bases = self._begin_rows()
         block.line("br label %outer")
         block.begin("outer")
+        # phi instructions have to stand first in a block, and what they carry has no name yet: they are put
+        # in afterwards
         head = len(block.lines)
         self.rows.stand(outer)
         self._take(outer)
@@ -299,6 +313,7 @@ class _Writer:
         self.rows.stand(axis)
         self._take(axis)
         places = self._places(bases)
+        # an output that stands still over the inner loop has its number in every lane
         self._write([node for node in places if node in early], places)
         self._compute(nodes, places)
         after = block.label
@@ -325,10 +340,14 @@ class _Writer:
         head = len(block.lines)
         block.line(f"%piece.next = add i64 %first, {PIECE}")
         more = block.put("icmp slt i64 %piece.next, %lanes")
+        # the last piece ends with the lanes
         end = block.put(f"select i1 {more}, i64 %piece.next, i64 %lanes")
         known = dict(self.operating.values)
         for i, stage in enumerate(stages):
+            # vectors of one stage are gone in the next: it knows what the outer loop computed, and reads what
+            # waits
             self.operating = self.operating.with_values(known)
+            # outputs of the outer loop are written once, with the first stage
             done = early if i == 0 else set()
             self._stage(i, stage, end, bases, done, left)
         block.line(f"br i1 {more}, label %piece, label %outer_end")
@@ -384,6 +403,7 @@ class _Writer:
 
     def _compute(self, nodes: list[Node], places: dict[Node, list[Value]] | None = None) -> None:
         """Nodes in order; outputs are written at once: a number that waits to be written takes a register."""
+        # in the graph's order; an output leaves its register as soon as it is known
         for node in nodes:
             self.operating.compute(node)
             if places is not None and node in places:
@@ -411,6 +431,7 @@ class _Writer:
         if bases:
             of_step = self.block.put("mul i64 %step, %output_row")
             index = self.block.put(f"add i64 {of_step}, {self.rows.at}")
+            # one node may be several outputs, each with a place of its own
             for base, node in zip(bases, self.scan.outputs.values(), strict=True):
                 found.setdefault(node, []).append(self.rows.place(base, index))
         return found
@@ -458,11 +479,13 @@ class ConstantTable:
             return rows
         if rows.nbytes > KEPT:
             return self._compute_rows(rows)
+        # the bytes themselves: samples that differ in one bit need another table
         key, last = rows.tobytes() + rows.dtype.char.encode(), self._last
         if last is None or last[0] != key:
             self._last = last = key, self._compute_rows(rows)
         return last[1]
 
+    # laid out as outputs are, so that vectors of a table do not lie across two lines of the cache
     def _compute_rows(self, rows: Array) -> Array:
         whole = room_of(len(rows) + len(self.graph.outputs), 1, rows.shape[1], rows.dtype)[:, 0]
         whole[: len(rows)] = rows
@@ -493,6 +516,9 @@ class Tables:
     @classmethod
     def of(cls, scan: Scan, lanes_inside: bool) -> Tables:
         """The tables of a scan."""
+        # with the lanes inside, steps are turns of the outer loop, which computes anything once a step by
+        # itself; only functions that libraries round differently are taken out there. The other way round for
+        # lanes
         steps, graph = split_graph(scan.graph, scan.inputs, "of step", FUNCTIONS if lanes_inside else None)
         # of one step that hands nothing on nothing is computed twice
         known = scan.parameters if lanes_inside or scan.inputs or scan.state else ()
