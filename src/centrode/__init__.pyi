@@ -44,6 +44,8 @@ from .kinematics.several_inputs.limits import limits as limits
 from .kinematics.several_inputs.limits import Limits as Limits
 from .kinematics.several_inputs.region import reachable_region as reachable_region
 from .kinematics.several_inputs.region import region_results as region_results
+from .analysis.operation import principle_of_operation as principle_of_operation
+from .analysis.operation import PrincipleOfOperation as PrincipleOfOperation
 from .analysis.rotatability.rotatability import rotatability as rotatability
 from .analysis.rotatability.rotatability import Rotatability as Rotatability
 from .analysis.redesign.repair import repair as repair
@@ -210,7 +212,6 @@ from .equations.integration import closed_motion as closed_motion
 from .study.variant_results import variants as variants
 from .study.variant_results import Variants as Variants
 from .study.variant_results import spoken_variants as spoken_variants
-from .study.verbal_description import describe as describe
 
 # Many mechanisms
 from .sweeps.sweep import sweep as sweep

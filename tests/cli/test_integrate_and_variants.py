@@ -297,7 +297,23 @@ def test_describe(centrode: Centrode) -> None:
     )
     assert max(map(len, done.out.splitlines())) <= 100
     whole = " ".join(done.out.split())
-    assert whole.endswith(" ".join(ct.describe(ct.example("slider-between-cranks")).split()))
+    assert whole.endswith(
+        " ".join(ct.summary(ct.principle_of_operation(ct.example("slider-between-cranks"))).split())
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "begins"),
+    [("words.txt", "Slider between"), ("words.tex", "\\documentclass"), ("words.md", "# Slider between")],
+)
+def test_a_description_is_written_as_a_page(centrode: Centrode, folder: Path, name: str, begins: str) -> None:
+    done = centrode("describe", "slider-between-cranks", "--out", name)
+    assert (done.code, done.out) == (0, f"wrote {name}\n")
+    text = (folder / name).read_text(encoding="utf-8")
+    assert text.startswith(begins)
+    assert "its stroke is 1.279 m." in " ".join(text.split())
+    done = centrode("describe", "slider-between-cranks", "--out", "words.pdf")
+    assert done.code == 2 and "use one of .txt, .tex, .md" in done.err
 
 
 @pytest.mark.parametrize("arguments", [("nothing",), ("press.toml",)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import csv
 import dataclasses
+import inspect
 import math
 import re
 from collections.abc import Iterator, Mapping
@@ -80,7 +81,7 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
         subject = "mechanism" if isinstance(description, ct.Mechanism) else "cam"
         for topic in TOPICS:
             if topic.subject == subject and (topic.concerns is None or topic.concerns(description)):
-                takes_samples = topic.command is None or topic.command.samples
+                takes_samples = "samples" in inspect.signature(topic.compute.load()).parameters
                 given: dict[str, Any] = {"samples": 9} if takes_samples else {}
                 # what has to be named is a link; instants have a default of their own
                 given |= {

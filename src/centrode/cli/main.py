@@ -23,7 +23,6 @@ from centrode.cli import output
 from centrode.cli.animate import animate
 from centrode.cli.cam import cam
 from centrode.cli.check import check
-from centrode.cli.describe import describe
 from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
@@ -47,7 +46,6 @@ OWN: tuple[click.Command, ...] = (
     report,
     animate,
     check,
-    describe,
     equations,
     variants,
     cam,

@@ -61,6 +61,11 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
             arguments = _arguments(command, description, given)
         if command.samples:
             arguments["samples"] = samples
+        if command.pages and out is not None:
+            click.echo(
+                _written_page(topic, command, mechanism, description, arguments, out, written["force"])
+            )
+            return
         if command.kinds:
             result, sheet, files = _beside_file(
                 topic, command, mechanism, description, arguments, out, written["force"]
@@ -88,7 +93,7 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
     yield from _made_by([mechanism_argument])
     for option in command.options:
         yield from _of_option(option)
-    if command.kinds:
+    if command.kinds or command.pages:
         file_option = click.option(
             "--out",
             type=click.Path(path_type=Path),
@@ -280,6 +285,24 @@ def _beside_file(
             text = next(text for name, text in english.files.items() if _ending(name) == kind)
             draft.write_text(text, encoding="utf-8", newline="\n")
     return result, sheet, output.wrote(table_files(out))
+
+
+def _written_page(
+    topic: Topic,
+    command: Command,
+    name: str,
+    mechanism: Mechanism,
+    arguments: dict[str, Any],
+    out: Path,
+    force: bool,
+) -> str:
+    """Write what is printed without `--out`, in the reader's language, as a document by the ending of its name."""
+    kind = _kind(out, command.pages)
+    with about(name), Progress() as progress:
+        sheet = topic.view(_result(topic, command, mechanism, arguments, progress))
+    text = render.page_text(sheet, _(mechanism.title) or name, kind, mechanism.display)
+    output.write_file(out, text, force=force)
+    return output.wrote([out])
 
 
 def _kinds_of(sheet: Sheet) -> Iterator[str]:

@@ -242,6 +242,27 @@ def has_masses_or_loads(mechanism: Mechanism) -> bool:
     return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
 
 
+@dataclass(frozen=True)
+class LinkMasses:
+    """Masses that the description gives the links of a mechanism.
+
+    Attributes
+    ----------
+    mechanism : the mechanism
+    masses : of the links that have mass or inertia [kg, m, kg m^2]
+    massless : names of the other links
+    """
+
+    mechanism: Mechanism
+    masses: tuple[Mass, ...]
+    massless: tuple[str, ...]
+
+
+def link_masses(mechanism: Mechanism) -> LinkMasses:
+    """Masses of the links; raises InputError as `masses_of` does."""
+    return LinkMasses(mechanism, masses_of(mechanism), massless_links(mechanism))
+
+
 def massless_links(mechanism: Mechanism) -> tuple[str, ...]:
     """Links without mass and without inertia."""
     heavy = {mass.link for mass in masses_of(mechanism)}

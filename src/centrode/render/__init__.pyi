@@ -6,6 +6,7 @@ from .files import write_record as write_record
 from .files import write_summary as write_summary
 from .files import write_table as write_table
 from .files import write_tables as write_tables
+from .markup import page_text as page_text
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text

@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Sequence
 
 WIDTH = 100
-"""Columns of a listing."""
+"""Columns of a paragraph and of a listing."""
 
 
 def aligned(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:

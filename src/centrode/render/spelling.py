@@ -152,6 +152,8 @@ class PlainSpelling(Spelling):
         factor, unit = self.shown_unit(number)
         digits = self._digits(number.value * factor if factor != 1.0 else number.value, number.digits)
         text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        if unit == "°":
+            text = f"{digits}°"
         if number.degrees_too and unit == "rad":
             return f"{text} ({math.degrees(number.value):.6g} deg)"
         return text

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.quantities import typeset_unit
-from centrode.render.plain_table import aligned, listing
+from centrode.render.plain_table import WIDTH, aligned, listing
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.sheet import (
     Block,
@@ -72,7 +73,7 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
         case Table():
             return table_text(block, spelling)
         case Paragraph(text):
-            return spelling.text(text)
+            return textwrap.fill(spelling.text(text), WIDTH)
         case Items(texts):
             return "\n".join(f"  {spelling.text(item)}" for item in texts)
         case Listing(heading, items):
@@ -85,7 +86,14 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
 
 def table_text(table: Table, spelling: PlainSpelling) -> str:
     """A table of texts below its caption; numbers without units of their own stand flush right."""
-    heads = [_head(column, spelling) for column in table.columns]
+    heads, cells = table_rows(table, spelling)
+    right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
+    caption = spelling.text(table.caption)
+    return (f"{caption}\n" if caption else "") + aligned(cells, heads, right)
+
+
+def table_rows(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Heads and rows of a table as texts."""
     cells = [
         [
             spelling.text(Number(value, column.units[row] if column.units else column.unit, unit_hidden=True))
@@ -95,9 +103,7 @@ def table_text(table: Table, spelling: PlainSpelling) -> str:
         ]
         for column in table.columns
     ]
-    right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
-    caption = spelling.text(table.caption)
-    return (f"{caption}\n" if caption else "") + aligned(list(zip(*cells, strict=True)), heads, right)
+    return [_head(column, spelling) for column in table.columns], list(zip(*cells, strict=True))
 
 
 def _head(column: Column, spelling: PlainSpelling) -> str:

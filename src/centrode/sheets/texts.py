@@ -34,7 +34,8 @@ class Number:
     value : float
         In `unit`.
     unit : str
-        SI unit ("kg m^2", "1" for a plain number); lengths and angles appear in the units of the display.
+        SI unit ("kg m^2", "1" for a plain number); lengths and angles appear in the units of the display. In prose "°"
+        for an angle in degrees for every reader.
     digits : str
         Python's format of the number: ".6g", ".1e", "+.2%"; a document never shows more digits than it is set to, and
         formulas and columns have a rule of their own. Empty: as many digits as the document is set to; "+": so many,
@@ -76,6 +77,10 @@ class Sentence:
     def __init__(self, message: str, /, **values: Text) -> None:
         object.__setattr__(self, "message", message)
         object.__setattr__(self, "values", values)
+
+    def fill(self, **values: Text) -> Sentence:
+        """The same sentence with these texts in its holes: sentences of one kind stand in a table without them."""
+        return Sentence(self.message, **values)
 
 
 @dataclass(frozen=True, init=False)

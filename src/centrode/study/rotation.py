@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from centrode.analysis.operation import first_limits
 from centrode.analysis.rotatability.rotatability import rotatability
 from centrode.locale import _
 from centrode.quantities import display_unit
@@ -48,16 +49,13 @@ def rotation_of(prepared: Ready) -> Rotation:
     found = rotatability(prepared.mechanism)
     if len(found.drives) != 1:
         return Rotation(found.turns_fully)
-    forward = "high" if prepared.kinematics.path.forward > 0 else "low"
-    limits = sorted(found.limits, key=lambda limit: limit.end != forward)
-    if not limits:
+    met = first_limits(found, forward=prepared.kinematics.path.forward > 0)
+    if not met:
         return Rotation(found.turns_fully)
-    first = limits[0].value
-    met = [limit for limit in limits if limit.value == first]
     display = prepared.mechanism.display
     return Rotation(
         found.turns_fully,
-        first,
+        met[0].value,
         found.one.unit,
         _join(limit.group for limit in met),
         _join(_spoken(cause_text(limit.cause), display) for limit in met),

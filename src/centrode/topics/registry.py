@@ -24,6 +24,8 @@ READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
 
+WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
+
 INTEGRATE = Topic(
     name="integrate",
     compute=Lazily("centrode.equations.integration", "integration_results"),
@@ -566,6 +568,31 @@ VARIANTS = Topic(
     subject="mechanisms",
 )
 
+DESCRIBE = Topic(
+    name="describe",
+    compute=Lazily("centrode.analysis.operation", "principle_of_operation"),
+    result=Lazily("centrode.analysis.operation", "PrincipleOfOperation"),
+    view=Lazily("centrode.views.words", "sheet"),
+    command=Command(
+        help=mark("Say in words how a mechanism works."),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("words", mark("How it works")),), instants=False),
+)
+
+GIVEN_MASSES = Topic(
+    name="masses",
+    compute=Lazily("centrode.dynamics.masses", "link_masses"),
+    result=Lazily("centrode.dynamics.masses", "LinkMasses"),
+    view=Lazily("centrode.views.masses_and_loads", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("masses-and-loads", mark("Masses and loads")),), instants=False
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -588,5 +615,7 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     SWEEP,
     VARIANTS,
+    GIVEN_MASSES,
+    DESCRIBE,
 )
 """Every topic."""

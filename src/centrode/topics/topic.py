@@ -122,6 +122,7 @@ class Command:
     folder : what ends the name of the folder that is always written; if empty `--out` names a folder where it is given
     kinds : of the one file that `--out` names in place of a folder ("json", "csv", or that of a further file of the
         sheet); none where it names a folder
+    pages : of the one file that `--out` names, in which the page stands that is printed otherwise ("txt", "tex", "md")
     summary : whether the scalars of the sheet are written as `summary.json`
     pictures, dark : whether it draws, and on a dark ground as well
     animation : (result, file, dark) writes an animation, with `--animate`
@@ -140,6 +141,7 @@ class Command:
     ending: Lazily | None = None
     folder: str = ""
     kinds: tuple[str, ...] = ()
+    pages: tuple[str, ...] = ()
     summary: bool = True
     pictures: bool = True
     dark: bool = False

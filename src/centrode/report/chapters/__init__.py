@@ -27,13 +27,11 @@ from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
-from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
 from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
-from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.spherical_linkages import (
     sphere_data_chapter,
     sphere_equations_chapter,
@@ -70,13 +68,11 @@ OWN: Mapping[str, Kind] = {
         mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
     ),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
-    "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
     "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),

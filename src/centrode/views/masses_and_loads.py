@@ -1,0 +1,208 @@
+"""Masses of the links, loads and the machine, as the description gives them: a chapter of documents."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+
+from centrode.dynamics.state import Centre
+from centrode.model.loads import (
+    AnyLoad,
+    BearingFriction,
+    GuideForce,
+    GuideFriction,
+    HingeDamper,
+    HingeFriction,
+    HingeSpring,
+    LinkWeight,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    PointWeight,
+    SliderFriction,
+    Torque,
+)
+from centrode.model.reading import FRAME
+from centrode.sheets.sheet import Block, Chapter, Column, Fact, FactTable, Paragraph, Section, Sheet, Table
+from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
+from centrode.views.load_names import KINDS, load_text
+
+if TYPE_CHECKING:
+    from centrode.dynamics.masses import LinkMasses
+    from centrode.dynamics.state import Mass
+    from centrode.model.mechanism import Mechanism
+    from centrode.model.settings import Machine, Shaft
+
+AMOUNTS = (
+    ("value", NOTHING),
+    ("stiffness", Symbol("c")),
+    ("damping", Symbol("k")),
+    ("viscous", Sentence("viscous")),
+    ("quadratic", Sentence("quadratic")),
+    ("coefficient", Symbol("f")),
+)
+"""Numbers of a load, by what stands before them."""
+UNKNOWN = Number(math.nan)
+
+
+def sheet(masses: LinkMasses) -> Sheet:
+    """The chapter of what is given."""
+    mechanism = masses.mechanism
+    sections = [Section(Sentence("Masses of the links"), tuple(_masses(masses)))]
+    if mechanism.loads or mechanism.gravity:
+        sections.append(Section(Sentence("Loads"), tuple(_loads(mechanism))))
+    if mechanism.machine is not None:
+        facts = FactTable(tuple(_machine(mechanism.machine)))
+        sections.append(Section(Sentence("Machine"), (facts,)))
+    return Sheet(chapters={"masses-and-loads": Chapter(Sentence("Masses and loads"), tuple(sections))})
+
+
+def _masses(masses: LinkMasses) -> Iterator[Block]:
+    mechanism, found = masses.mechanism, masses.masses
+    if found:
+        inertia = tuple(_inertia(mechanism, one) for one in found)
+        yield Table(
+            (
+                Column("link", tuple(Name(one.link) for one in found), head=Sentence("link")),
+                Column("mass", tuple(_number(one.mass) for one in found), "kg", Sentence("mass")),
+                Column(
+                    "centre",
+                    tuple(_centre(mechanism, one) for one in found),
+                    head=Sentence("centre of mass"),
+                ),
+                Column("inertia", inertia, "kg m^2", Sentence("central inertia")),
+            )
+        )
+    if masses.massless:
+        yield Paragraph(Sentence("Without mass: {links}.", links=_names(masses.massless)))
+
+
+def _inertia(mechanism: Mechanism, one: Mass) -> Text:
+    """In the plane a moment; on the sphere what the description has: moments, or the shape they follow from."""
+    if mechanism.space == "plane":
+        return _number(one.moment_of_inertia)
+    link = mechanism.links[one.link]
+    if link.inertia is None:
+        return Sentence("of its shape") if link.shape else UNKNOWN
+    return _vector(np.atleast_1d(np.asarray(link.inertia, dtype=float)).ravel())
+
+
+def _centre(mechanism: Mechanism, one: Mass) -> Text:
+    """Where a centre of mass lies: in a point, or beside one in the axes of its link."""
+    if not one.weighs:
+        return UNKNOWN
+    own = mechanism.links[one.link].centre
+    if isinstance(own, str):
+        return Name(own)
+    if not isinstance(one.centre, Centre):
+        distance = Number(float(one.centre.distance), "m", unit_fixed=True)
+        return Sentence("{distance} from the centre of the sphere", distance=distance)
+    along, across = float(one.centre.along), float(one.centre.across)
+    if along == across == 0.0:
+        return Name(one.centre.base)
+    return Sentence(
+        "{along} along and {across} across the link from {point}",
+        along=Number(along, "m"),
+        across=Number(across, "m"),
+        point=Name(one.centre.base),
+    )
+
+
+def _loads(mechanism: Mechanism) -> Iterator[Block]:
+    if mechanism.gravity:
+        yield Paragraph(
+            Sentence(
+                "Weights act with g = ({vector}) {unit}.",
+                vector=_vector(mechanism.gravity),
+                unit=Unit("m/s^2"),
+            )
+        )
+    if mechanism.loads:
+        texts = [
+            (load_text(mechanism, one.label), KINDS[one.kind], _acts_on(one), _amount(one))
+            for one in mechanism.loads
+        ]
+        heads = (Sentence("load"), Sentence("kind"), Sentence("acts on"), Sentence("amount (SI)"))
+        names = ("load", "kind", "acts_on", "amount")
+        columns = zip(names, zip(*texts, strict=True), heads, strict=True)
+        yield Table(tuple(Column(name, values, head=head) for name, values, head in columns))
+
+
+def _acts_on(load: AnyLoad) -> Text:
+    """Point, link, guide or two points."""
+    match load:
+        case GuideForce(guide=guide) | GuideFriction(guide=guide) | SliderFriction(guide=guide):
+            return Sentence("guide {name}", name=Name(guide))
+        case PointSpring(points=points) | PointDamper(points=points):
+            return _names(points)
+        case Torque() | HingeSpring() | HingeDamper() | HingeFriction():
+            return _names((load.link,) if load.relative_to == FRAME else (load.link, load.relative_to))
+        case LinkWeight(link=link):
+            return Name(link)
+        case BearingFriction(point=point, link=link):
+            return Name(point if link is None else link)
+        case PointForce(point=point) | PointWeight(point=point):
+            return Name(point)
+        case _:
+            assert_never(load)
+
+
+def _amount(load: AnyLoad) -> Text:
+    """Vector, value and coefficients of a load, in SI; a table by the number of its rows."""
+    parts: list[Text] = []
+    if isinstance(load, PointForce):
+        parts.append(_bracketed(load.vector))
+    for key, before in AMOUNTS:
+        value = getattr(load, key, None)
+        if value is not None:
+            parts.append(_number(value) if before == NOTHING else Joined((before, _number(value)), " = "))
+    if isinstance(load, GuideForce) and load.table is not None:
+        count = Number(len(load.table), digits="d")
+        parts.append(Sentence("indicator diagram of {count} points", count=count))
+    if isinstance(load, PointForce) and load.while_moving is not None:
+        way = _vector(load.while_moving)
+        parts.append(Sentence("while the point moves towards ({way})", way=way))
+    return Joined(parts) if parts else UNKNOWN
+
+
+def _number(value: object) -> Text:
+    """A number of the description in SI, its unit apart; a formula as it was written."""
+    return Name(value) if isinstance(value, str) else Number(float(value), unit_fixed=True)  # type: ignore[arg-type]
+
+
+def _vector(values: Iterable[object]) -> Joined:
+    return Joined(tuple(map(_number, values)), "; ")
+
+
+def _names(names: Iterable[str]) -> Text:
+    return Joined(tuple(map(Name, names)))
+
+
+def _bracketed(values: Iterable[object]) -> Text:
+    return Sentence("({vector})", vector=_vector(values))
+
+
+def _machine(machine: Machine) -> Iterator[Fact]:
+    speed = Number(machine.mean_speed, "rad/s", unit_fixed=True)
+    yield Fact(Sentence("mean speed of the drive"), speed)
+    if machine.fluctuation is not None:
+        yield Fact(Sentence("admissible coefficient of fluctuation"), Number(machine.fluctuation))
+    for number, shaft in enumerate(machine.shafts, start=1):
+        label = (
+            Name(shaft.name) if shaft.name else Sentence("shaft {number}", number=Number(number, digits="d"))
+        )
+        yield Fact(label, _shaft(shaft))
+    if machine.driving is not None:
+        yield Fact(Sentence("course of the driving moment"), Name(machine.driving))
+
+
+def _shaft(shaft: Shaft) -> Text:
+    inertia = Number(shaft.inertia, "kg m^2")
+    if shaft.ratio == 1.0:
+        return Sentence("{inertia}, on the shaft of the drive", inertia=inertia)
+    return Sentence(
+        "{inertia}, {ratio} turns in a turn of the drive", inertia=inertia, ratio=Number(shaft.ratio)
+    )
