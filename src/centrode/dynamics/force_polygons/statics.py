@@ -26,7 +26,7 @@ from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Guide, Mechanism
 from centrode.numerics.operations import PLAIN
 from centrode.structure.constraints import Contact, GearRatio, NoSlip, contact_point
-from centrode.structure.groups import Group, TurnedLink, Turning, links_of, points_of
+from centrode.structure.groups import Group, TurnedLink, Turning
 from centrode.structure.plan import Structure
 from centrode.structure.rank import in_order, match, strong_components
 
@@ -61,8 +61,8 @@ class FreeBodies:
         of_point: dict[str, int] = dict.fromkeys(mechanism.frame.points, -1)
         for number, group in enumerate(structure.groups):
             first = _with_its_point(group, number, of_point, order)
-            order |= {link: first for link in links_of(group) if link not in order}
-            of_point |= {point: number for point in points_of(group) if point not in of_point}
+            order |= {link: first for link in group.links if link not in order}
+            of_point |= {point: number for point in group.points if point not in of_point}
         for name, guide in sliders.items():
             order[name] = max(of_point.get(guide.point, -1), order[guide.on])
         carried = {point for link in mechanism.links.values() for point in link.coordinates}
