@@ -47,7 +47,7 @@ def to_memory(name: str, plan: Plan) -> Row:
         "numpy": functools.partial(run_on_arrays, scan, DRIVE, lanes[:, :FEW], out=out[:, :FEW].copy()),
     }
     with tempfile.TemporaryDirectory() as folder:
-        prepared = kernel.tables.added(call_of(scan, DRIVE, lanes, out=out))
+        prepared = kernel.tables.split_call(call_of(scan, DRIVE, lanes, out=out))
         for rival, there, build in (
             ("gcc", rivals.HAS_GCC, rivals.by_gcc), ("numba", rivals.HAS_NUMBA, rivals.by_numba),
         ):  # fmt: skip

@@ -111,6 +111,8 @@ from .dynamics.balancing.counterweights import Counterweight as Counterweight
 # Cams
 from .cams.cam import cam as cam
 from .cams.cam import cam_routes as cam_routes
+from .cams.cam import roller_path_results as roller_path_results
+from .cams.cam import path_routes_results as path_routes_results
 from .cams.path_series import path_of as path_of
 from .study.cams.results import cam_results as cam_results
 from .cams.followers.motion_results import follower_motion_results as follower_motion_results
@@ -118,17 +120,15 @@ from .cams.followers.motion_results import motion_law_results as motion_law_resu
 from .cams.followers.motion import follower_motion as follower_motion
 from .cams.followers.motion import cam_laws as cam_laws
 from .cams.followers.motion import compare_laws as compare_laws
-from .present import write_cam_csv as write_cam_csv
-from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables
-from .present import cam_path_figure as cam_path_figure
-from .present import cam_curves_figure as cam_curves_figure
-from .present import cam_routes_figure as cam_routes_figure
 from .present import cam_figures as cam_figures
 from .cams.followers.base_circle import follower_cam as follower_cam
 from .cams.followers.base_circle import least_cam as least_cam
 from .cams.followers.manufacture import follower_outlines as follower_outlines
 from .cams.followers.manufacture import cam_points as cam_points
+from .cams.followers.base_radius_results import base_radius_results as base_radius_results
+from .cams.followers.profile_results import follower_profile_results as follower_profile_results
+from .cams.followers.force_results import follower_force_results as follower_force_results
 from .cams.followers.forces import cam_forces as cam_forces
 from .cams.followers.forces import follower_forces as follower_forces
 from .cams.followers.forces import Burden as Burden
@@ -136,9 +136,6 @@ from .cams.followers.forces import least_push as least_push
 from .cams.followers.forces import jump_speed as jump_speed
 from .cams.followers.forces import preload_needed as preload_needed
 from .cams.followers.forces import stiffness_needed as stiffness_needed
-from .study.cams.follower_cam import forces_rows as forces_rows
-from .present import write_cam_forces_csv as write_cam_forces_csv
-from .present import cam_forces_figure as cam_forces_figure
 from .present import animate_cam_body as animate_cam_body
 from .present import animate_follower as animate_follower
 
@@ -155,8 +152,6 @@ from .present import write_outlines_svg as write_outlines_svg
 from .present import write_outlines_dxf as write_outlines_dxf
 from .present import write_cam_outlines as write_cam_outlines
 from .present import profile_figure as profile_figure
-from .present import follower_cam_figure as follower_cam_figure
-from .present import plate_curves_figure as plate_curves_figure
 from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 
@@ -183,10 +178,6 @@ from .present import animate_walking as animate_walking
 
 # Equations in symbols
 from .equations.derivation import equations as equations
-from .present import equations_text as equations_text
-from .present import equations_latex as equations_latex
-from .present import equations_markdown as equations_markdown
-from .present import equations_rows as equations_rows
 
 # Instant centres, centrodes, curvature
 from .analysis.instant_centres.centres import instant_centres as instant_centres
@@ -226,11 +217,13 @@ from .topics.presentation import summary as summary
 from .topics.presentation import tables as tables
 from .topics.presentation import figures as figures
 from .topics.presentation import write as write
+from .topics.presentation import open as open
+from .topics.presentation import Result as Result
 from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
 from .present import write_motion_csv as write_motion_csv
-from .present import write_motion_netcdf as write_motion_netcdf
+from .render.netcdf import write_motion_netcdf as write_motion_netcdf
 from .study.among import motion_among as motion_among
 from .study.among import moving_points as moving_points
 from .present import mechanism_drawing as mechanism_drawing

@@ -18,8 +18,8 @@ from centrode.cams.curvature_laws import (
     TextCurvature,
 )
 from centrode.cams.path_series import convergence, expanded_path, series_path
-from centrode.study.cams.parts import Asked
-from centrode.study.cams.paths import routes_part
+from centrode.render import fact_rows
+from centrode.topics.presentation import sheet_of
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -130,10 +130,11 @@ def test_where_the_curvature_does_not_change_formula_16_has_no_meaning(turns: fl
 def test_the_places_without_a_meaning_are_told() -> None:
     law = {"law": "formula", "formula": "12+2*cos(phi)"}
     cam = ct.Cam(kind="cam", curvature=law, start={"radius": 0.07}, range={"to": math.pi})
-    part = routes_part(cam, Asked(samples=361))
-    (said,) = [text for _label, text in part.rows if "(15)" in text]
+    results = ct.path_routes_results(cam, 361)
+    rows = fact_rows(sheet_of(results).facts, cam.display)
+    (said,) = [text for _label, text in rows if "(15)" in text]
     assert said.endswith("the comparison has no meaning: φ = 0 rad (0 deg), 3.14159 rad (180 deg)")
-    apart = np.abs(part.datasets["cam-routes"].parting.values)
+    apart = np.abs(results.dataset.parting.values)
     assert float(re.findall(r"part by up to (\S+) m;", said)[0]) == float(f"{np.nanmax(apart):.3g}")
     # by its neighbours, not by rounding over rounding
     assert np.nanmax(apart) < 10.0

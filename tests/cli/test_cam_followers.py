@@ -98,8 +98,8 @@ def test_the_profile_is_told(centrode: Centrode, write: Callable[..., str]) -> N
         "undercut                            none",
         "greatest roller                     below 31.3414 mm on this path of its centre",
         "cutter                              radius 6 mm, at most 121.434 mm",
-        "least base radius                   22.0811 mm, decided by the pressure angle at 206.781 deg",
-        "best offset                         5.60656 mm: base radius from 19.2172 mm on",
+        "least base radius  22.0811 mm, decided by the pressure angle at 206.781 deg",
+        "best offset        5.60656 mm: base radius from 19.2172 mm on",
     ):
         assert said in done.out
 

@@ -125,7 +125,7 @@ def test_an_animation_needs_a_size_and_a_folder(centrode: Centrode, folder: Path
     (folder / "open.toml").write_text(FAST.replace('base_radius = "40 mm"\n', ""))
     done = centrode("cam", "open.toml", "--out", "open", "--animate")
     assert done.code == 2
-    assert "the cam has no size: neither base_radius nor bounds are given" in done.err
+    assert "a profile needs the cam's base radius" in done.err
     assert not (folder / "open").exists()
     done = centrode("cam", "valve-cam", "--animate")
     assert done.code == 2

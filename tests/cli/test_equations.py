@@ -65,8 +65,11 @@ def test_documents_are_written_whole(
     [
         (("crank-rocker", "--point", "Q"), "crank-rocker, Q: it is no moving point; one of: A, B"),
         (("crank-rocker", "--point", "O"), "crank-rocker, O: it is no moving point"),
-        (("crank-rocker", "--out", "x.pdf"), '--out: ".pdf" is no kind of file for equations'),
-        (("crank-rocker", "--out", "x"), '--out: "" is no kind of file for equations'),
+        (
+            ("crank-rocker", "--out", "x.pdf"),
+            '--out: ".pdf" is not a kind of file for this; use one of .txt, .tex',
+        ),
+        (("crank-rocker", "--out", "x"), '--out: "" is not a kind of file for this'),
         (("no-such-mechanism",), "no-such-mechanism"),
         (("crank-rocker", "--out", "there.txt"), "there.txt: exists already; say --force"),
     ],

@@ -43,7 +43,7 @@ def same(one: sympy.Expr, other: sympy.Expr) -> bool:
 
 
 def test_lines_are_printed_as_in_the_source(found: Equations) -> None:
-    lines = [line.strip() for line in ct.equations_text(found).splitlines()]
+    lines = [line.strip() for line in ct.summary(found).splitlines()]
     assert [line for line in PRINTED.splitlines() if line not in lines] == []
 
 

@@ -171,7 +171,7 @@ def test_a_whole_turn_of_a_four_bar(arcs: tuple[float, float, float, float], sid
 
 
 def test_the_source_s_equations() -> None:
-    text = ct.equations_text(ct.equations(ct.example("spherical-crank-rocker")))
+    text = ct.summary(ct.equations(ct.example("spherical-crank-rocker")))
     assert "cos BC = sin AB sin φ₁ cos φ₃ + cos AB sin φ₃\n" in text
     assert "sin BC sin γ₂ = sin AB cos φ₁\n" in text
     assert "γ̇₂ = -ω₁ sin AB sin φ₁/(sin BC cos γ₂)\n" in text
@@ -200,8 +200,8 @@ def test_groups_that_are_not_written_are_refused() -> None:
 
 def test_other_axes_are_told() -> None:
     parts = parts_of(0.3, 1.1, 1.0, 1.2, "left")
-    assert "Axes" not in ct.equations_text(ct.equations(ct.Mechanism.model_validate(parts)), ["C"])
+    assert "Axes" not in ct.summary(ct.equations(ct.Mechanism.model_validate(parts), ["C"]))
     parts["frame"]["points"] = {"A": [0.2, 0.1], "D": [1.4, 0.1]}
-    text = ct.equations_text(ct.equations(ct.Mechanism.model_validate(parts)), ["C"])
+    text = ct.summary(ct.equations(ct.Mechanism.model_validate(parts), ["C"]))
     assert "x runs through A, D lies in the half-plane of x and y" in text
     assert "cos BC = " in text and " cos AD" in text

@@ -9,6 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.equations.integration import cauchy_form
+from centrode.topics.presentation import page
 
 EPS = np.finfo(float).eps
 
@@ -197,8 +198,8 @@ def test_names_of_any_alphabet_are_letters() -> None:
     text = TELESCOPE.replace("[links.boom]", '[links."стрела 1_"]').replace('"boom"', '"стрела 1_"')
     mechanism = ct.parse_mechanism(text.replace('"P"', '"B’ x"').replace("K =", '"К1_" ='))
     found = ct.equations(mechanism)
-    assert "B’ x" in ct.equations_text(found)
-    document = ct.equations_latex(found, ["К1_", "B’ x"])
+    assert "B’ x" in ct.summary(found)
+    document = page(ct.equations(mechanism, ["К1_", "B’ x"]), "tex")
     assert r"К1\_" in document
 
 
@@ -206,6 +207,6 @@ def test_drives_without_unknowns_leave_velocities_only() -> None:
     found = ct.equations(ct.example("two-link-arm"))
     assert found.groups == ()
     assert found.rates == {}
-    text = ct.equations_text(found)
+    text = ct.summary(found)
     assert "x_B = l₁ cos φ₁ + l₂ cos(φ₁ + θ₂)" in text
     assert "Constraints" not in text

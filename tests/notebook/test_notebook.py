@@ -14,6 +14,7 @@ from tools.notebook import CELLS, TARGET, executed
 
 import centrode as ct
 from centrode import notebook
+from centrode.topics.registry import TOPICS
 
 HOSTILE = '<script>alert("x")</script>'
 
@@ -84,7 +85,10 @@ def test_ipython_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     shell = types.SimpleNamespace(display_formatter=types.SimpleNamespace(formatters=kinds))
     monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: shell))  # type: ignore[arg-type]
     notebook.register()
-    assert told == [row[:3] for row in notebook.SHOWN]
+    results = {(topic.result.module, topic.result.name) for topic in TOPICS}
+    assert {row[1:] for row in told} == results | {row[1:3] for row in notebook.SHOWN}
+    assert len(told) == len(set(told))
+    assert told[-len(notebook.SHOWN) :] == [row[:3] for row in notebook.SHOWN]
     for _kind, module, name, _function in notebook.SHOWN:
         result: Any = {"Mechanism": ct.Mechanism, "Dataset": xr.Dataset}.get(name)
         if result is not None:

@@ -22,8 +22,8 @@ def scene():
 
 def test_every_curve_of_the_forces_is_drawn():
     cam = ct.load_cam("valve-cam")
-    found = ct.cam_forces(cam, 73)
-    figure = ct.cam_forces_figure(cam, found)
+    results = ct.follower_force_results(cam, 73)
+    found, figure = results.dataset, ct.figures(results)["cam-forces"]
     curves = [axes.lines[0].get_ydata() for axes in figure.axes]
     names = ("follower_push", "contact_force", "cam_torque", "contact_stress")
     assert len(curves) == len(names)
@@ -31,7 +31,7 @@ def test_every_curve_of_the_forces_is_drawn():
         factor = 1e-6 if name == "contact_stress" else 1.0
         assert np.array_equal(curve, factor * found[name].to_numpy())
     swinging = ct.load_cam("indexing-cam")
-    figure = ct.cam_forces_figure(swinging, ct.cam_forces(swinging, 13))
+    figure = ct.figures(ct.follower_force_results(swinging, 13))["cam-forces"]
     assert "Q" in figure.axes[0].get_ylabel()
 
 

@@ -8,9 +8,11 @@ import matplotlib.mathtext
 import pytest
 
 import centrode as ct
-from centrode.present.equations.latex import LatexSpelling, escape
-from centrode.present.equations.page import LONGEST, PageSystem, Relation, sections
-from centrode.present.equations.text import split_at_signs
+from centrode.render.latex import LatexSpelling, escape
+from centrode.render.plain_formulas import split_at_signs
+from centrode.topics.presentation import page
+from centrode.views.equations import LONGEST
+from equation_pages import formulas, rows
 
 WIDTH = 110
 """Columns of a relation that can be broken."""
@@ -25,25 +27,19 @@ SAMPLE = (
 
 @pytest.mark.parametrize("name", SAMPLE)
 def test_every_formula_is_mathematics_to_matplotlib(name: str) -> None:
-    found = ct.equations(ct.example(name))
+    mechanism = ct.example(name)
+    found = ct.equations(mechanism, ct.equations(mechanism).board.moving[:3])
     parser = matplotlib.mathtext.MathTextParser("path")
-    for section in sections(found, LatexSpelling(), found.board.moving[:3]):
-        for entry in section.entries:
-            texts: list[str] = []
-            if isinstance(entry, Relation):
-                texts = list(entry.parts)
-            if isinstance(entry, PageSystem):
-                texts = [*entry.unknowns, *entry.right, *(x for row in entry.matrix for x in row)]
-            for text in texts:
-                # what matplotlib spells otherwise
-                known = text.replace(r"\text{", r"\mathrm{").replace(r"\lvert", "|").replace(r"\rvert", "|")
-                parser.parse(f"${known}$")
+    for text in formulas(found, LatexSpelling()):
+        # what matplotlib spells otherwise
+        known = text.replace(r"\text{", r"\mathrm{").replace(r"\lvert", "|").replace(r"\rvert", "|")
+        parser.parse(f"${known}$")
 
 
 @pytest.mark.parametrize("name", SAMPLE)
 def test_documents_are_balanced(name: str) -> None:
     found = ct.equations(ct.example(name))
-    latex, markdown = ct.equations_latex(found), ct.equations_markdown(found)
+    latex, markdown = page(found, "tex"), page(found, "md")
     for text in (latex, markdown):
         assert text.count("{") - text.count(r"\{") == text.count("}") - text.count(r"\}")
         assert text.count(r"\left(") == text.count(r"\right)")
@@ -58,7 +54,7 @@ def test_documents_are_balanced(name: str) -> None:
 
 @pytest.mark.parametrize("name", SAMPLE)
 def test_lines_of_text_are_broken_at_signs(name: str) -> None:
-    text = ct.equations_text(ct.equations(ct.example(name)))
+    text = ct.summary(ct.equations(ct.example(name)))
     long = [
         line for line in text.splitlines() if len(line) > WIDTH + 24 and not line.lstrip().startswith("|")
     ]
@@ -67,25 +63,25 @@ def test_lines_of_text_are_broken_at_signs(name: str) -> None:
 
 
 def test_rows_hold_every_relation() -> None:
-    found = ct.equations(ct.example("slider-between-cranks"))
-    rows = ct.equations_rows(found, ["A", "C"])
-    assert ("Constraints", "y_C", "l₁ sin φ₁ + l₂ sin φ₂ = C₁") in rows
-    assert ("Symbols", "l₂", "1 m, A-C of link AC") in rows
-    assert ("Velocity of point A", "v_A", "l₁") in rows
-    text = ct.equations_text(found, ["A", "C"])
-    assert all(left in text for _heading, left, _right in rows)
+    found = ct.equations(ct.example("slider-between-cranks"), ["A", "C"])
+    every = rows(found)
+    assert ("Constraints", "y_C", "l₁ sin φ₁ + l₂ sin φ₂ = C₁") in every
+    assert ("Symbols", "l₂", "1 m, A-C of link AC") in every
+    assert ("Velocity of point A", "v_A", "l₁") in every
+    text = ct.summary(found)
+    assert all(left in text for _heading, left, _right in every)
 
 
 def test_only_letters_that_are_used_are_explained() -> None:
     found = ct.equations(ct.example("slider-between-cranks"))
-    symbols = {left for heading, left, _right in ct.equations_rows(found) if heading == "Symbols"}
+    symbols = {left for heading, left, _right in rows(found) if heading == "Symbols"}
     assert symbols == {
         *(f"φ{i}(0)" for i in "₁₂₃₄"), *(f"l{i}" for i in "₁₂₃₄"), *(f"C{i}" for i in "₁₂₃"),
     }  # fmt: skip
 
 
 def test_units_of_the_description_are_shown() -> None:
-    text = ct.equations_text(ct.equations(ct.example("excavator-arm")))
+    text = ct.summary(ct.equations(ct.example("excavator-arm")))
     assert re.search(r"l₃ += 620 mm +G-N of link GN", text)
     assert re.search(r"φ₁\(0\) += 10.3324 deg +angle of link boom", text)
 
@@ -95,8 +91,8 @@ def test_latex_shows_names_as_they_are() -> None:
 
 
 def test_velocities_are_told_in_rates_and_put_in() -> None:
-    found = ct.equations(ct.example("slider-between-cranks"))
-    lines = [line.strip() for line in ct.equations_text(found, ["B"]).splitlines()]
+    found = ct.equations(ct.example("slider-between-cranks"), ["B"])
+    lines = [line.strip() for line in ct.summary(found).splitlines()]
     start = lines.index("Velocity of point B")
     assert lines[start + 1 : start + 6] == [
         "x_B = x_D - l₄ cos φ₄",
@@ -113,15 +109,15 @@ def test_long_formulas_are_left_out_of_the_page_alone() -> None:
     assert group.seconds.formulas is not None
     longest = max(formula.size for formula in group.seconds.formulas)
     assert longest > LONGEST
-    text = ct.equations_text(found)
+    text = ct.summary(found)
     written = [one.second for one, formula in zip(group.unknowns, group.seconds.formulas, strict=True)
                if formula.size <= LONGEST]  # fmt: skip
     assert text.count("as a number, from") == len(group.unknowns) - len(written)
-    assert r"$\varepsilon_{1}$: as a number" in ct.equations_latex(found)
+    assert r"$\varepsilon_{1}$: as a number" in page(found, "tex")
 
 
 def test_groups_too_large_for_determinants_say_so() -> None:
-    text = ct.equations_text(ct.equations(ct.example("scissor-lift-cylinder")))
+    text = ct.summary(ct.equations(ct.example("scissor-lift-cylinder")))
     assert "too many terms to be read" in text
     assert "ω₁: as a number, from the system of group IV(OC, AB, BE, CF, slider A)" in text
 
@@ -162,7 +158,7 @@ sides = { G = "behind", H = "ahead" }
 
 
 def test_a_matrix_that_no_line_holds_is_written_as_equations() -> None:
-    lines = ct.equations_text(ct.equations(ct.parse_mechanism(WIDE))).splitlines()
+    lines = ct.summary(ct.equations(ct.parse_mechanism(WIDE))).splitlines()
     assert max(map(len, lines)) <= WIDTH + 24
     first = lines[lines.index("Velocities: Cramer's rule") + 1]
     assert first.startswith("  l₂ cos(φ₂ - β_G) ω₂ = ")
@@ -180,7 +176,7 @@ def test_lines_are_broken_in_no_angle() -> None:
 
 def test_a_sign_goes_into_sines_of_differences_only() -> None:
     """Q lies beside the axis of its link: its angle is a sum, and sin(-phi - alpha) is nothing that one writes."""
-    rows = ct.equations_rows(ct.equations(ct.example("watt-six-bar")), ["Q"])
-    x = next(right for _heading, left, right in rows if left == "v_Qx")
+    every = rows(ct.equations(ct.example("watt-six-bar"), ["Q"]))
+    x = next(right for _heading, left, right in every if left == "v_Qx")
     assert x.startswith("-ω₃ l_DQ sin(φ₃ + α_DQ) = ")
     assert "(-" not in x

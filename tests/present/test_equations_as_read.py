@@ -11,6 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.equations.derivation import Equations
+from equation_pages import rows
 from mechanisms import EPS
 
 LETTER = r"[^\W\d_₀-₉⁰-⁹²³¹]\u0307?\u0308?(?:[₀-₉]+|_[^\s()+*/=|²³]+)?'*"
@@ -79,11 +80,11 @@ def read(text: str, values: dict[str, float]) -> float:
     return value
 
 
-def symbols(rows: list[tuple[str, str, str]]) -> dict[str, float]:
+def symbols(every: list[tuple[str, str, str]]) -> dict[str, float]:
     """Numbers of the list of symbols; of what moves, in the initial position."""
     units = {"deg": math.pi / 180, "mm": 1e-3}
     found = {}
-    for heading, name, text in rows:
+    for heading, name, text in every:
         if heading == "Symbols":
             number, _comma, _words = text.partition(",")
             size, _space, unit = number.partition(" ")
@@ -91,9 +92,9 @@ def symbols(rows: list[tuple[str, str, str]]) -> dict[str, float]:
     return found
 
 
-def formulas(rows: list[tuple[str, str, str]]) -> Iterator[tuple[str, str]]:
+def formulas(every: list[tuple[str, str, str]]) -> Iterator[tuple[str, str]]:
     """Letter and formula of the normal form and of what explains it, in the order of the page."""
-    for heading, left, right in rows:
+    for heading, left, right in every:
         if heading == "Cauchy normal form":
             name, sign, formula = right.partition(" = ")
             yield (name, formula) if sign and left.startswith("d") else (left, right)
@@ -137,13 +138,13 @@ sides = { B = "ahead" }
 def test_what_is_printed_moves_as_the_mechanism_does(name: str) -> None:
     mechanism = ct.example(name) if name else ct.parse_mechanism(LEVER_AND_GEAR)
     found = ct.equations(mechanism)
-    rows = ct.equations_rows(found)
-    values = symbols(rows)
-    for heading, left, right in rows:
+    every = rows(found)
+    values = symbols(every)
+    for heading, left, right in every:
         if heading == "Given by the drives (SI)":
             values[left] = read(right, {"t": 0.0})
     values["t"] = 0.0
-    for letter, formula in formulas(rows):
+    for letter, formula in formulas(every):
         values[letter] = read(formula, values)
     motion = ct.motion(mechanism, at=[ct.initial_place(mechanism)])
     worst = max(float(np.linalg.cond(np.array(matrix, dtype=float))) for matrix in matrices(found))

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 import centrode as ct
-from centrode.present.cams.profiles import UNDERCUT
+from centrode.render.outline_drawings import PENS
+from centrode.sheets.outlines import LineUse
 
 LIFTER = """
 title = "Lifter $5"
@@ -49,19 +50,19 @@ def cam() -> ct.PlateCam:
 
 
 @pytest.fixture(scope="module")
-def figure(cam: ct.PlateCam) -> Figure:
-    body = ct.follower_cam(cam)
-    return ct.follower_cam_figure(body, ct.follower_outlines(body, 1e-5, 0.006), cam.title, cam.display)
+def figures(cam: ct.PlateCam) -> dict[str, Figure]:
+    return ct.figures(ct.follower_profile_results(cam, 91))
 
 
-def test_profile_roller_and_undercut_are_drawn(cam: ct.PlateCam, figure: Figure) -> None:
-    (axes,) = figure.axes
+def test_profile_roller_and_undercut_are_drawn(cam: ct.PlateCam, figures: dict[str, Figure]) -> None:
+    (axes,) = figures["cam-body"].axes
     body = ct.follower_cam(cam)
     circles = {round(one.radius, 6): one.center for one in axes.patches if isinstance(one, Circle)}
     np.testing.assert_allclose(circles[16.0], (-5.0, math.sqrt(36.0**2 - 25.0)), rtol=1e-12)
     assert circles[20.0] == (0.0, 0.0)
     (cut,) = body.undercuts
-    red = [line.get_xydata() for line in axes.lines if to_hex(line.get_color()).upper() == UNDERCUT]
+    colour = PENS[LineUse.UNDERCUT]["color"]
+    red = [line.get_xydata() for line in axes.lines if to_hex(line.get_color()).upper() == colour]
     ends = 1e3 * body.contact(np.array([cut.start, cut.stop])).place
     np.testing.assert_allclose([red[0][0], red[-1][-1]], ends, atol=1e-9)
     drawn = np.concatenate([np.asarray(line.get_xydata()) for line in axes.lines])
@@ -74,9 +75,8 @@ def test_profile_roller_and_undercut_are_drawn(cam: ct.PlateCam, figure: Figure)
     assert {"profile of the cam", "path of the cutter's centre", "undercut", "follower"} <= set(legend)
 
 
-def test_curves_show_what_is_admissible(cam: ct.PlateCam) -> None:
-    figure = ct.plate_curves_figure(cam, ct.cam_profile(cam, 91))
-    pressure, bend = figure.axes
+def test_curves_show_what_is_admissible(figures: dict[str, Figure]) -> None:
+    pressure, bend = figures["cam-curvature"].axes
     levels = {round(float(np.asarray(line.get_ydata())[0]), 9) for line in pressure.lines}
     assert {60.0, -60.0} <= levels
     shown = np.asarray(bend.lines[0].get_ydata())
@@ -92,7 +92,6 @@ def test_every_follower_is_drawn() -> None:
     ).replace("25 mm", "4 deg")
     arm = LIFTER.replace('offset = "-5 mm"', 'kind = "oscillating"\narm = "60 mm"\npivot_distance = "70 mm"')
     for text in (flat, swinging, arm.replace("25 mm", "12 deg")):
-        body = ct.follower_cam(ct.parse_cam(text))
-        found = ct.follower_cam_figure(body, ct.follower_outlines(body, 1e-5))
+        found = ct.figures(ct.follower_profile_results(ct.parse_cam(text)))["cam-body"]
         found.draw_without_rendering()
-        assert found.axes[0].get_xlabel() == "x, m"
+        assert found.axes[0].get_xlabel() == "x, mm"

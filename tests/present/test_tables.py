@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 import xarray
 
+import centrode as ct
 from centrode import present
 from centrode.errors import Status
+from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset
 
 
 def read(path: Path) -> tuple[list[str], list[list[str]]]:
@@ -122,10 +124,18 @@ def test_netcdf_reads_back_equal(make, tmp_path):
     for name, options in (("worked", {"locked": True}), ("slotted", {}), ("press", {"samples": 1})):
         _mechanism, dataset = make(name, **options)
         path = tmp_path / f"{name}.nc"
-        present.write_motion_netcdf(dataset, path)
+        ct.write_motion_netcdf(dataset, path)
         back = xarray.load_dataset(path, engine="scipy")
         kept = dataset.drop_dims([dim for dim, size in dataset.sizes.items() if size == 0])
+        # variables without entries are in an attribute
+        absent = back.attrs.pop(WITHOUT_ENTRIES, None)
+        assert (absent is None) == (set(kept.variables) == set(dataset.variables))
         xarray.testing.assert_identical(back, kept)
+        again = read_dataset(path)
+        xarray.testing.assert_identical(again.drop_dims(set(again.sizes) - set(kept.sizes)), kept)
+        assert {variable: again[variable].dims for variable in again.variables} == {
+            variable: dataset[variable].dims for variable in dataset.variables
+        }
         assert {str(back[variable].dtype) for variable in back.data_vars} <= {"int8", "float64", "object"}
         assert all(str(variable).isascii() for variable in back.variables)
 
@@ -133,7 +143,7 @@ def test_netcdf_reads_back_equal(make, tmp_path):
 def test_netcdf_repeats_its_bytes(make, tmp_path):
     _mechanism, dataset = make("worked")
     for path in ("a.nc", "b.nc"):
-        present.write_motion_netcdf(dataset, tmp_path / path)
+        ct.write_motion_netcdf(dataset, tmp_path / path)
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 

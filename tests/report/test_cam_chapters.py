@@ -10,10 +10,10 @@ import pytest
 
 import centrode as ct
 from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBlock, Moving, TableBlock
+from centrode.render.document.chapters import document_chapter
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters import curvature_cams as cams
-from centrode.report.chapters.curvature_cams import part_of
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
+from centrode.topics.presentation import sheet_of
 
 PRINTED = Path(__file__).parents[1] / "reference" / "cam-curvature-table.csv"
 CAM = ("data", "motion", "path", "routes", "profile", "walking", "contact")
@@ -61,14 +61,12 @@ def test_chapters_of_linkages_are_none_of_cams(wheel: ReportStudy) -> None:
     assert [key for key in sorted(others) if CHAPTERS[key].make(wheel) is not None] == []
 
 
-def test_a_wrong_path_is_found(monkeypatch: pytest.MonkeyPatch, wheel: ReportStudy) -> None:
-    part = part_of(wheel, "path")
-    assert part is not None
-    data = part.datasets["cam-path"].copy(deep=True)
+def test_a_wrong_path_is_found(wheel: ReportStudy) -> None:
+    results = ct.roller_path_results(wheel.cam)
+    data = results.dataset.copy(deep=True)
     data["pressure_sine"] = data["pressure_sine"] * (1.0 + 1e-9)
-    wrong = replace(part, datasets={"cam-path": data})
-    monkeypatch.setattr(cams, "part_of", lambda study, name: wrong)
-    assert [one.holds for one in blocks_of(cams.cam_path_chapter(wheel), CheckBlock)] == [False]
+    chapter = document_chapter("path", sheet_of(replace(results, dataset=data)), wheel.numbers)
+    assert [one.holds for one in blocks_of(chapter, CheckBlock)] == [False]
 
 
 def test_a_cam_that_stalls_says_so() -> None:

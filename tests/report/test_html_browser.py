@@ -13,12 +13,13 @@ from fontTools.ttLib import TTFont
 
 import centrode as ct
 from centrode.locale import speaking
-from centrode.present.equations.page import PageSystem, Relation, sections
-from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document import blocks
+from centrode.render.document.chapters import document_chapter
+from centrode.render.document.numbers import Numbers
 from centrode.report.html.page import FONT, HERE, html_page
 from centrode.report.player_cams import moving_wheel
 from centrode.report.player_linkages import moving_of
+from centrode.views.equations import sheet
 
 from .browser import Seen, browser, frames, opened, until
 from .made import HOSTILE, moving, report
@@ -72,20 +73,13 @@ def formulas(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with speaking("uk"):
         chapters = []
         for name in ("six-bar-press", "third-class-triad"):
-            found = sections(ct.equations(ct.example(name)), TypstSpelling(), ())
-            parts = tuple(blocks.SectionBlocks(one.heading, tuple(_blocks(one.entries))) for one in found)
-            chapters.append(blocks.ChapterBlocks(name, name, parts))
+            equations = ct.equations(ct.example(name), ())
+            numbers = Numbers(equations.mechanism.display)
+            for key in ("equations", "derivation"):
+                chapters.append(document_chapter(key, sheet(equations), numbers))
         file = tmp_path_factory.mktemp("pages") / "formulas.html"
         file.write_bytes(html_page(blocks.Report("Formulas", "", "uk", tuple(chapters))))
     return file
-
-
-def _blocks(entries: tuple[Any, ...]) -> Iterator[blocks.Block]:
-    for one in entries:
-        if isinstance(one, Relation):
-            yield blocks.FormulaBlock((one.parts,))
-        elif isinstance(one, PageSystem):
-            yield blocks.SystemBlock(one.matrix, one.unknowns, one.right)
 
 
 def silent(seen: Seen, file: Path) -> None:

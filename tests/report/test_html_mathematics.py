@@ -11,9 +11,9 @@ import pytest
 
 import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
-from centrode.present.equations.page import PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.report.html.mathematics import formulas_of, fragments_of
+from equation_pages import Relation, entries
 
 EXAMPLES = ["slider-between-cranks", "slider-between-cranks-locked", "six-bar-press", "third-class-triad"]
 WORDS = re.compile(r"[^\W_]")
@@ -39,29 +39,23 @@ def text_of_element(element: Xml.Element) -> str:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_letters_are_those_of_the_text(name: str) -> None:
-    found = ct.equations(ct.example(name))
-    typeset = sections(found, TypstSpelling(), ())
-    plain = sections(found, FormulaSpelling(), ())
+    found = ct.equations(ct.example(name), ())
+    typeset = entries(found, TypstSpelling())
+    plain = entries(found, FormulaSpelling())
     compared = 0
-    for one, other in zip(typeset, plain, strict=True):
-        for entry, same in zip(one.entries, other.entries, strict=True):
-            if isinstance(entry, Relation) and isinstance(same, Relation):
-                pairs = list(zip(entry.parts, same.parts, strict=True))
-            elif isinstance(entry, PageSystem) and isinstance(same, PageSystem):
-                pairs = [
-                    pair
-                    for row, line in zip(entry.matrix, same.matrix, strict=True)
-                    for pair in zip(row, line, strict=True)
-                ]
-            else:
-                continue
-            formulas = formulas_of(piece for part, _text in pairs for piece in fragments_of(part))
-            for part, text in pairs:
-                compared += 1
-                read_there = Counter("".join(read(piece) for piece in formulas.pieces(part)))
-                # where text has (...)/b, paper may have 1/b in front
-                ones = Counter("1" * (part.count("frac(1, ") - text.count("1/")))
-                assert read_there == Counter(letters(text)) + ones, (part, text)
+    for entry, same in zip(typeset, plain, strict=True):
+        parts, texts = (
+            one.parts if isinstance(one, Relation) else [x for row in one.matrix for x in row]
+            for one in (entry, same)
+        )
+        pairs = list(zip(parts, texts, strict=True))
+        formulas = formulas_of(piece for part, _text in pairs for piece in fragments_of(part))
+        for part, text in pairs:
+            compared += 1
+            read_there = Counter("".join(read(piece) for piece in formulas.pieces(part)))
+            # where text has (...)/b, paper may have 1/b in front
+            ones = Counter("1" * (part.count("frac(1, ") - text.count("1/")))
+            assert read_there == Counter(letters(text)) + ones, (part, text)
     assert compared > 10
 
 

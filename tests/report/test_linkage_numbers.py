@@ -12,7 +12,6 @@ import centrode as ct
 from centrode.equations import instants
 from centrode.equations.instants import instant_of, rates_compared
 from centrode.locale import speaking
-from centrode.present.equations.page import PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document.blocks import (
     ChapterBlocks,
@@ -23,6 +22,7 @@ from centrode.render.document.blocks import (
 )
 from centrode.report.document import report
 from centrode.report.study import ReportOptions
+from equation_pages import Relation, System, entries
 from report.typst_reading import TypstReader
 
 EXAMPLES = (
@@ -101,11 +101,9 @@ def test_formulas_are_those_of_the_equations() -> None:
     for name in ("slider-between-cranks", "six-bar-press", "oscillating-cylinder"):
         mechanism = ct.example(name)
         equations = ct.equations(mechanism)
-        page = sections(equations, TypstSpelling(), equations.sliding)
-        relations = [e.parts for s in page for e in s.entries if isinstance(e, Relation)]
-        systems = [
-            (e.matrix, e.unknowns, e.right) for s in page for e in s.entries if isinstance(e, PageSystem)
-        ]
+        page = list(entries(equations, TypstSpelling()))
+        relations = [entry.parts for entry in page if isinstance(entry, Relation)]
+        systems = [tuple(entry) for entry in page if isinstance(entry, System)]
         own = [chapter(key, mechanism) for key in ("equations", "derivation")]
         symbolic = [
             line
@@ -117,10 +115,7 @@ def test_formulas_are_those_of_the_equations() -> None:
             for line in block.lines
         ]
         assert symbolic == relations
-        assert len(relations) + len(systems) == sum(
-            isinstance(e, (Relation, PageSystem)) for s in sections(equations, TypstSpelling(), equations.sliding)
-            for e in s.entries
-        )  # fmt: skip
+        assert len(relations) + len(systems) == len(page)
         told = [
             (b.matrix, b.unknowns, b.right)
             for part in own

@@ -11,10 +11,10 @@ from fontTools.ttLib import TTFont
 
 import centrode as ct
 from centrode.locale import speaking
-from centrode.present.equations.page import Relation, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.report.html.mathematics import formulas_of
 from centrode.report.html.page import FONT, HERE
+from equation_pages import Relation, entries
 
 EXAMPLES = ["six-bar-press", "spherical-crank-rocker", "third-class-triad"]
 
@@ -54,9 +54,8 @@ def test_it_has_every_letter_of_names_and_words(font: TTFont, language: str) -> 
 def test_it_has_every_letter_of_formulas(font: TTFont, name: str, language: str) -> None:
     known = font.getBestCmap()
     with speaking(language):
-        page = sections(ct.equations(ct.example(name)), TypstSpelling(), ())
-        relations = [one for part in page for one in part.entries if isinstance(one, Relation)]
-        spelled = [part for one in relations for part in one.parts]
+        page = entries(ct.equations(ct.example(name), ()), TypstSpelling())
+        spelled = [part for one in page if isinstance(one, Relation) for part in one.parts]
         formulas = formulas_of(spelled)
     text = "".join("".join(Xml.fromstring(formulas.displayed(one)).itertext()) for one in spelled)
     missing = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import mpmath
@@ -14,8 +14,8 @@ import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.locale import speaking
-from centrode.present.equations.page import PageSection, PageSystem, Relation, sections
 from centrode.present.equations.typst import TypstSpelling, decimal, quote, word
+from equation_pages import formulas
 
 from .typst_reading import read
 
@@ -89,25 +89,17 @@ class Noting(TypstSpelling):
         return told
 
 
-def formulas(page: Sequence[PageSection]) -> Iterator[str]:
-    for section in page:
-        for entry in section.entries:
-            if isinstance(entry, Relation):
-                yield from entry.parts
-            elif isinstance(entry, PageSystem):
-                yield from (one for row in entry.matrix for one in row)
-                yield from (*entry.unknowns, *entry.right)
-
-
 @pytest.mark.parametrize("language", ["en", "uk"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_both_spellings_are_the_same_formulas(name: str, language: str) -> None:
-    equations = ct.equations(ct.example(name))
-    points = equations.sliding or equations.mechanism.moving_points[:2]
+    mechanism = ct.example(name)
+    equations = ct.equations(mechanism)
+    if not equations.points:
+        equations = ct.equations(mechanism, mechanism.moving_points[:2])
     noting = Noting()
     with speaking(language):
-        spelled = list(formulas(sections(equations, noting, points)))
-        written = list(formulas(sections(equations, Written(), points)))
+        spelled = list(formulas(equations, noting))
+        written = list(formulas(equations, Written()))
     assert len(spelled) == len(written)
     derivatives = 0
     with mpmath.workdps(DIGITS):

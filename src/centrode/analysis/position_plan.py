@@ -166,18 +166,18 @@ def _extremes(
     if link is None:
         fixed = [guide.id for guide in mechanism.guides if guide.on == FRAME]
         for name in [*reversed(fixed), *reversed(mechanism.link_names)]:
-            found = _stops(mechanism, path, by, name)
-            if found:
-                return name, found
+            stops = _stops(mechanism, path, by, name)
+            if stops:
+                return name, stops
         return "", ()
-    found = _stops(mechanism, path, by, link)
-    if not found:
+    stops = _stops(mechanism, path, by, link)
+    if not stops:
         raise InputError(
             "link",
             _("{link} never stands still: it has no extreme position").format(link=link),
             _("name a rocker or a guide, or leave it out"),
         )
-    return link, found
+    return link, stops
 
 
 def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tuple[float, ...]:

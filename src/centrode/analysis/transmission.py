@@ -149,7 +149,7 @@ def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tup
         if not first <= last:
             # nothing of the span is reached
             return {group: (nan, nan) for _one, group in dyads}
-        course = monitored_function(stretch, [one for one, _group in dyads])
+        course = monitored_function(stretch, [watched for watched, _group in dyads])
         return {group: _extremes(course, k, group) for k, (_one, group) in enumerate(dyads)}
 
 
@@ -212,20 +212,20 @@ def transmission_angles(
     )
     data = dataset_of(solve(prepared, span))
     structure = prepared.structure
-    found, numbered = {}, []
+    by_group, numbered = {}, []
     arcs = ArcAngles(data) if mechanism.space == "sphere" else None
     for number, group in enumerate(structure.groups):
         angle = _angle(data, structure.dimensions, group) if arcs is None else arcs.of(group)
         if angle is not None:
-            found["-".join(group.links or group.points)] = angle
+            by_group["-".join(group.links or group.points)] = angle
             numbered.append(number)
-    if not found:
+    if not by_group:
         raise InputError(
             "[links]",
             _("no group of the mechanism has a transmission angle"),
             _("ask for it where a dyad of two links, or of a link and a guide, is driven"),
         )
-    angles = np.stack(list(found.values()), axis=1)
+    angles = np.stack(list(by_group.values()), axis=1)
     extremes = extreme_transmission_angles(prepared, span)
     least, greatest = np.array([extremes[number] for number in numbered]).T
     variables = {
@@ -239,8 +239,9 @@ def transmission_angles(
         ),
         **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
-    coords = {"group": list(found), **{name: data[name] for name in ("time", "drive_value")}}
-    return xr.Dataset(variables, coords, attrs={"title": mechanism.title})
+    coords = {"group": list(by_group), **{name: data[name] for name in ("time", "drive_value")}}
+    attributes = {"topic": "angles", "title": mechanism.title, "mechanism": data.attrs["mechanism"]}
+    return xr.Dataset(variables, coords, attrs=attributes)
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,12 +25,21 @@ from centrode.cams.path_series import (
     path_of,
     series_path,
 )
-from centrode.cams.roller_path import RollerPath, SymmetricPath, angles_of
-from centrode.errors import Status
+from centrode.cams.roller_path import (
+    RollerPath,
+    SymmetricPath,
+    angles_of,
+    curvature_extremes,
+    pressure_extremes,
+    radius_extremes,
+    stalls_of,
+)
+from centrode.errors import CentrodeError, Status
 from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
 from centrode.model.cam import Cam
-from centrode.model.cam_files import AnyCam, cam_text
+from centrode.model.cam_files import AnyCam, cam_text, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
+from centrode.numerics.search import Extremes
 from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
@@ -263,3 +273,200 @@ def _comparison_facts(cam: Cam, routes: Routes, data: dict[str, Any]) -> dict[st
         "stall": math.nan if steps.stall is None else steps.stall,
         "stall_integrated": math.nan if routes.integrated.stall is None else routes.integrated.stall,
     }
+
+
+# What is known of a path, and of the routes to it, together.
+
+FURTHER = math.tau
+"""Angle [rad] up to which a stall beyond the range is looked for."""
+TURN = 1e-9
+"""By how much [rad] a range may miss a whole turn."""
+
+
+@dataclass(frozen=True)
+class RollerPathResults:
+    """The path of a cam's roller with its extremes, its stall and its ends.
+
+    Attributes
+    ----------
+    cam : Cam
+    path : RollerPath
+    dataset : the labelled path
+    radius, pressure_angle, curvature : extremes along the path [m], [rad], [1/m]
+    stalls : angles [rad] at which the follower stalls, the positive one of a symmetric law; none if it does not
+    stall_beyond : angle [rad] at which the law would make it stall beyond the range; None where it would not
+    gap : by how much [m] the path misses its beginning after a whole turn; None if it is no turn
+    kink : kink [rad] of the path after a whole turn, otherwise of the path and its mirror image at its end; None where
+        the path ends in a stall
+    """
+
+    cam: Cam
+    path: RollerPath
+    dataset: xr.Dataset
+    radius: Extremes
+    pressure_angle: Extremes
+    curvature: Extremes
+    stalls: tuple[float, ...]
+    stall_beyond: float | None
+    gap: float | None
+    kink: float | None
+
+    @property
+    def steepest(self) -> tuple[float, float]:
+        """The greatest pressure angle with its sign, and where it is [rad]."""
+        gamma = self.pressure_angle
+        greatest = gamma.greatest >= -gamma.least
+        return (gamma.greatest, gamma.at_greatest) if greatest else (gamma.least, gamma.at_least)
+
+    @property
+    def drawn_difference(self) -> float:
+        """Greatest share by which the curvature of circles through three samples differs from the law's; NaN of two."""
+        law, drawn = (self.dataset[name].to_numpy() for name in ("law_curvature", "drawn_curvature"))
+        with np.errstate(all="ignore"):
+            return _greatest(drawn / law - 1.0)
+
+    @property
+    def equation_residual(self) -> tuple[float, float]:
+        """What is left of the differential equation of the sine along the path, and its greatest term [1/m]."""
+        names = ("pressure_sine", "pressure_sine_slope", "pressure_sine_second", "pressure_cosine")
+        eta, slope, second, cosine = (self.dataset[name].to_numpy() for name in names)
+        bend, bent = (self.dataset[name].to_numpy() for name in ("law_curvature", "law_curvature_slope"))
+        terms = np.array([bend * second, -bent * slope, bend * eta, bent * cosine])
+        known = terms[:, np.isfinite(terms).all(axis=0)]
+        return float(np.abs(known.sum(axis=0)).max(initial=0.0)), float(np.abs(known).max(initial=0.0))
+
+
+def roller_path_results(cam: AnyCam, samples: int | None = None) -> RollerPathResults:
+    """The path of a cam's roller, with what is known of it.
+
+    Parameters
+    ----------
+    cam : Cam
+    samples : int
+        As of `cam`.
+
+    Raises
+    ------
+    InputError
+        As `path_of`; a cam that is given by its follower's lift.
+    """
+    cam = require_curvature_cam(cam)
+    phi = angles_of(cam, samples)
+    path = path_of(cam)
+    ends = np.array([path.start, path.stop])
+    gamma, radius = path.pressure_angle(ends), path.radius(ends)[0]
+    gap = kink = None
+    if abs(path.stop - path.start - math.tau) < TURN:
+        gap, kink = float(radius[1] - radius[0]), float(gamma[1] - gamma[0])
+    elif path.stall is None:
+        kink = 2.0 * float(gamma[1])
+    return RollerPathResults(
+        cam,
+        path,
+        dataset_of_path(cam, path, phi),
+        radius_extremes(path),
+        pressure_extremes(path),
+        curvature_extremes(path),
+        _stalls(cam, path),
+        stall_beyond(cam) if path.stall is None else None,
+        gap,
+        kink,
+    )
+
+
+def _stalls(cam: Cam, path: RollerPath) -> tuple[float, ...]:
+    """Where the follower stalls [rad]; of a path that is the same on both sides the positive angle."""
+    if path.stall is None:
+        return ()
+    return (path.stall,) if cam.curvature.symmetric else tuple(stalls_of(path))
+
+
+def stall_beyond(cam: Cam) -> float | None:
+    """The angle [rad] at which the law would make the follower stall beyond the range; None where it does not."""
+    if cam.range.stop >= FURTHER:
+        return None
+    longer = cam.model_copy(update={"range": cam.range.model_copy(update={"start": 0.0, "stop": FURTHER})})
+    try:
+        return half_path(longer).stall
+    except CentrodeError:  # the law ends, or is none of a cam, before that
+        return None
+
+
+@dataclass(frozen=True)
+class PathRoutesResults:
+    """The three routes to a cam's path.
+
+    Attributes
+    ----------
+    cam : Cam
+    dataset : the routes over the range
+    at_instants : the same at chosen angles; None where none are chosen
+    """
+
+    cam: Cam
+    dataset: xr.Dataset
+    at_instants: xr.Dataset | None
+
+    @property
+    def series_error(self) -> float:
+        """Greatest error of the radius [m] by the series; NaN where it gives no sample."""
+        return _greatest(self.dataset["series_error"].to_numpy())
+
+    @property
+    def parting(self) -> float:
+        """Greatest difference [m] of the radius by formulas (16) and (15); NaN where the curvature is constant."""
+        return _greatest(self.dataset["parting"].to_numpy())
+
+    @property
+    def without_series(self) -> int:
+        """Number of samples of the path at which the series gives none: its sine is no sine there."""
+        radii = self.dataset["path_radius"].to_numpy()
+        sine = np.abs(self.dataset["pressure_sine"].to_numpy()[0])
+        return int(np.count_nonzero((sine > 1.0) & np.isnan(radii[0]) & np.isfinite(radii[1])))
+
+    @property
+    def flat(self) -> tuple[float, ...]:
+        """Angles [rad] at which the slope of the curvature vanishes, and formula (16) has no meaning."""
+        reached = np.isfinite(self.dataset["path_radius"].to_numpy()[0])
+        flat = np.isnan(self.dataset["parting"].to_numpy()) & reached
+        return tuple(self.dataset["carrier_angle"].to_numpy()[flat].tolist())
+
+    @property
+    def leaves_the_series(self) -> bool:
+        """Whether the range goes beyond the first break of the law, where the series is no longer that of the path."""
+        phi = np.abs(self.dataset["carrier_angle"].to_numpy())
+        facts = self.dataset.attrs
+        return bool(phi.max() > max(-facts["series_from"], facts["series_to"]) * (1 + 1e-12))
+
+
+def path_routes_results(
+    cam: AnyCam,
+    samples: int | None = None,
+    *,
+    terms: int | None = None,
+    instants: Sequence[float] = (),
+) -> PathRoutesResults:
+    """One series, series expanded anew, an integrator, beside each other.
+
+    Parameters
+    ----------
+    cam : Cam
+    samples, terms : int
+        As of `cam_routes`.
+    instants : angles [rad]
+        Those of the description if there are none.
+
+    Raises
+    ------
+    InputError
+        As `cam_routes`; a cam that is given by its follower's lift.
+    """
+    cam = require_curvature_cam(cam)
+    dataset = cam_routes(cam, samples, terms=terms)
+    chosen = tuple(instants) or cam.study.instants
+    return PathRoutesResults(cam, dataset, cam_routes(cam, at=chosen, terms=terms) if chosen else None)
+
+
+def _greatest(values: Array) -> float:
+    sizes = np.abs(values)
+    return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else math.nan

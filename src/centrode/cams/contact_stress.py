@@ -104,7 +104,7 @@ class LineContact:
 
 def contact_modulus(first: ContactMaterial, second: ContactMaterial) -> float:
     """Contact modulus E* [Pa] of two materials: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2."""
-    return 1 / sum((1 - one.poisson**2) / one.elasticity for one in (first, second))
+    return 1 / sum((1 - material.poisson**2) / material.elasticity for material in (first, second))
 
 
 def reduced_elasticity(first: ContactMaterial, second: ContactMaterial) -> float:
@@ -247,8 +247,8 @@ def greatest_along(ends: tuple[float, float], value: Callable[[Array], Array]) -
     phi = np.unique(np.append(np.linspace(*ends, ANGLES), np.clip(0.0, *ends)))
 
     def known(at: Array) -> Array:
-        found = value(at)
-        return np.where(np.isfinite(found), found, np.nan)
+        stresses = value(at)
+        return np.where(np.isfinite(stresses), stresses, np.nan)
 
     places, values = tops(known, phi, most=NEAR)
     if not places.size:

@@ -81,8 +81,8 @@ def derivatives(law: CurvatureLaw, phi: Array, order: int = 0) -> Array:
     inside = (phi >= law.span[0]) & (phi <= law.span[1])
     # laws may be called with NaN and give it, but not with places outside their span
     at = np.where(inside, phi, np.nan)
-    found = [math.factorial(k) * c for k, c in enumerate(law.series(at, order))]
-    return np.where(inside, np.asarray(found), np.nan)
+    rates = [math.factorial(k) * c for k, c in enumerate(law.series(at, order))]
+    return np.where(inside, np.asarray(rates), np.nan)
 
 
 @dataclass(frozen=True)
@@ -289,7 +289,7 @@ class TextCurvature:
         watched = _Watched()
         with np.errstate(all="ignore"):
             self._value(watched, Jet([places]))
-        return np.asarray([np.broadcast_to(one, places.shape) for one in watched.asked]).reshape(
+        return np.asarray([np.broadcast_to(value, places.shape) for value in watched.asked]).reshape(
             -1, len(places)
         )
 
@@ -324,16 +324,16 @@ def drawn_curvature(phi: Array, radius: Array) -> Array:
     It knows nothing of the equations that gave rho. It differs from the curvature of the path in the order of the
     distances squared where these are equal, else in their first order; rounding is divided by the distance squared.
     """
-    found = np.full(len(phi), np.nan)
+    curvature = np.full(len(phi), np.nan)
     if len(phi) < 3:
-        return found
+        return curvature
     x, y = radius * np.sin(phi), radius * np.cos(phi)
     ahead, behind = (x[2:] - x[1:-1], y[2:] - y[1:-1]), (x[1:-1] - x[:-2], y[1:-1] - y[:-2])
     across = np.hypot(x[2:] - x[:-2], y[2:] - y[:-2])
     turned = behind[1] * ahead[0] - behind[0] * ahead[1]  # positive clockwise, as phi is
     with np.errstate(all="ignore"):
-        found[1:-1] = 2.0 * turned / (np.hypot(*ahead) * np.hypot(*behind) * across)
-    return found
+        curvature[1:-1] = 2.0 * turned / (np.hypot(*ahead) * np.hypot(*behind) * across)
+    return curvature
 
 
 # Whether a curvature is one of a cam over a range: known, finite and positive.

@@ -81,13 +81,13 @@ class IntegratedPath(StatePath):
     def state(self, phi: Array) -> tuple[Array, Array, Array]:
         """Radius [m], sin(gamma), cos(gamma) at places inside the path."""
         places = np.atleast_1d(np.asarray(phi, dtype=np.float64))
-        found = np.full((3, *places.shape), np.nan)
+        states = np.full((3, *places.shape), np.nan)
         for leg in self.legs:
             here = (places >= leg.low) & (places <= leg.high)
             if here.any():
                 _angles, growth, gamma = _solution_at(leg, places[here])
-                found[:, here] = leg.scale * np.exp(growth), np.sin(gamma), np.cos(gamma)
-        return tuple(found.reshape(3, *np.shape(phi)))
+                states[:, here] = leg.scale * np.exp(growth), np.sin(gamma), np.cos(gamma)
+        return tuple(states.reshape(3, *np.shape(phi)))
 
 
 def integrated_path(
@@ -179,26 +179,26 @@ def _leg(
 
     arrives.terminal = stalls.terminal = True  # type: ignore[attr-defined]
     first = (place[0], 0.0, place[2])
-    found = _integrate().solve_ivp(
+    solution = _integrate().solve_ivp(
         rates, (0.0, MOST_ARC), first, "DOP853", None, True, (arrives, stalls),
         rtol=tolerance, atol=tolerance, max_step=LONGEST_STEP,
     )  # fmt: skip
     # neither the end nor a stall was reached
-    if found.status != 1:
-        what = _("the integration ends at {angle:.6g} deg").format(angle=math.degrees(found.y[0, -1]))
+    if solution.status != 1:
+        what = _("the integration ends at {angle:.6g} deg").format(angle=math.degrees(solution.y[0, -1]))
         raise InputError("[curvature]", what, _("shorten the range"))
-    stalled = bool(len(found.t_events[1]))
-    last = np.array(found.y_events[1][0] if stalled else found.y_events[0][0])
+    stalled = bool(len(solution.t_events[1]))
+    last = np.array(solution.y_events[1][0] if stalled else solution.y_events[0][0])
     last[1] = place[1] * math.exp(last[1])
     # exactly the end, so that the next leg begins there
     if not stalled:
         last[0] = target
-    angles = np.append(found.y[0, :-1], last[0])
+    angles = np.append(solution.y[0, :-1], last[0])
     # `angles` grow, whichever way the leg was run
     order = slice(None, None, sense)
     low, high = sorted((float(place[0]), float(last[0])))
     return (
-        IntegrationLeg(low, high, place[1], found.t[order], angles[order], found.sol, curvature),
+        IntegrationLeg(low, high, place[1], solution.t[order], angles[order], solution.sol, curvature),
         last,
         stalled,
     )
@@ -206,8 +206,8 @@ def _leg(
 
 def _beyond(law: CurvatureLaw, target: float, sense: int) -> list[float]:
     """Taylor coefficients of the law about an end, from its near side; its value alone where there is no series."""
-    found = [float(c) for c in law.series(target, BEYOND, -sense)]
-    return found if all(math.isfinite(c) for c in found) else found[:1]
+    coefficients = [float(c) for c in law.series(target, BEYOND, -sense)]
+    return coefficients if all(math.isfinite(c) for c in coefficients) else coefficients[:1]
 
 
 def polynomial(coefficients: Sequence[float], x: float) -> float:

@@ -96,8 +96,8 @@ class SeriesPath:
         # formula (15) needs cos(gamma), which follows from the sine by its own series
         upright, curvature = self._upright(eta[:-1]), self._curvature(phi, order)
         slope = Jet(eta).slope()
-        found = (upright - slope) / curvature
-        return np.asarray([found.derivative(k) for k in range(order + 1)])
+        radius = (upright - slope) / curvature
+        return np.asarray([radius.derivative(k) for k in range(order + 1)])
 
     def radius_by_slope(self, phi: Array) -> Array:
         """Rho (n) by formula (16), -(eta'' + eta) / K'; NaN where K' is zero but for its rounding and that of phi."""
@@ -127,14 +127,14 @@ class SeriesPath:
     def _about(self, phi: Array, order: int) -> list[Array]:
         """Taylor coefficients of the polynomial about places."""
         places = inside(self, phi)
-        found = []
+        series = []
         for k in range(order + 1):
             # Horner's rule of the k-th derivative over k!, whose coefficients are binomial
             total = np.zeros_like(places)
             for n in range(self.terms, k - 1, -1):
                 total = total * places + math.comb(n, k) * self.sines[n]
-            found.append(total if k <= self.terms else np.zeros_like(places))
-        return found
+            series.append(total if k <= self.terms else np.zeros_like(places))
+        return series
 
 
 def series_path(
@@ -257,8 +257,10 @@ def convergence(law: CurvatureLaw, rho0: float, gamma0: float = 0.0) -> Converge
         return Convergence(estimate, None)
     # in directions of the upper half plane: singularities come in conjugate pairs
     places = [cmath.rect(SHARE * estimate, t) for t in np.linspace(0, np.pi, DIRECTIONS)]
-    found = [_singularity(law, rho0, gamma0, place) for place in places]
-    best = min((phi for phi in found if phi is not None and _fits(b, abs(phi))), key=abs, default=None)
+    singularities = [_singularity(law, rho0, gamma0, place) for place in places]
+    best = min(
+        (phi for phi in singularities if phi is not None and _fits(b, abs(phi))), key=abs, default=None
+    )
     if best is None:
         return Convergence(estimate, None)
     # once more straight towards it, which is where the fewest digits are lost
@@ -273,10 +275,10 @@ def _cosines(law: CurvatureLaw, rho0: float, gamma0: float) -> Array:
     """The coefficients b_n, as far as they are numbers."""
     with np.errstate(all="ignore"):
         curvature = [float(c) for c in law.series(0.0, TERMS)]
-        found = np.asarray(system_series(rho0, math.sin(gamma0), math.cos(gamma0), curvature)[2])
+        cosines = np.asarray(system_series(rho0, math.sin(gamma0), math.cos(gamma0), curvature)[2])
     # beyond 1e120 products of coefficients overflow soon
-    wrong = np.flatnonzero(~np.isfinite(found) | (np.abs(found) > 1e120))
-    return found[: wrong[0]] if wrong.size else found
+    wrong = np.flatnonzero(~np.isfinite(cosines) | (np.abs(cosines) > 1e120))
+    return cosines[: wrong[0]] if wrong.size else cosines
 
 
 def _by_coefficients(b: Array) -> float:
@@ -383,8 +385,8 @@ def stall_behind(law: CurvatureLaw, place: StallState, sense: int, end: float) -
         # the cosine has passed zero: the root of its series by the arc is the stall
         if there.cosine <= 0:
             stall = _normal([_stall_value(s, _root(series[3], arc)) for s in series])
-            found = stall._replace(sine=math.copysign(1.0, stall.sine), cosine=0.0)
-            return None if sense * (found.phi - end) > 0 else found
+            beyond = stall._replace(sine=math.copysign(1.0, stall.sine), cosine=0.0)
+            return None if sense * (beyond.phi - end) > 0 else beyond
         # behind a break the law is another function; behind a grown cosine there is no stall near
         crossed = any(sense * (here.phi - b) < 0 < sense * (there.phi - b) for b in law.breaks)
         if crossed or sense * (there.phi - end) > 0 or there.cosine > 1.5 * place.cosine:
@@ -506,12 +508,12 @@ class ExpandedPath(StatePath):
         """Radius [m], sin(gamma), cos(gamma) at places inside the path."""
         steps = np.clip(np.searchsorted(self.edges, phi, side="right") - 1, 0, len(self.centres) - 1)
         offset = phi - self.centres[steps]
-        found = np.zeros((3, *np.shape(phi)))
+        states = np.zeros((3, *np.shape(phi)))
         for k in range(self.order, -1, -1):
-            found = found * offset + self.coefficients[:, steps, k]
+            states = states * offset + self.coefficients[:, steps, k]
         for ending in self.endings:
-            _end(found, phi, ending)
-        return found[0], found[1], found[2]
+            _end(states, phi, ending)
+        return states[0], states[1], states[2]
 
 
 def _end(found: Array, phi: Array, ending: Ending) -> None:

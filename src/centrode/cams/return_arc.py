@@ -117,12 +117,12 @@ class ClosedPath:
     def radius(self, phi: Array, order: int = 0) -> Array:
         """Polar radius and its derivatives by phi (order + 1, n) [m/rad^k]."""
         places, arcs = self.locate(phi)
-        found = np.full((order + 1, places.size), np.nan)
+        radii = np.full((order + 1, places.size), np.nan)
         for number, arc in enumerate(self.arcs):
             here = arcs == number
             if here.any():
-                found[:, here] = arc.curve.radius(places[here], order)
-        return found
+                radii[:, here] = arc.curve.radius(places[here], order)
+        return radii
 
     def locate(self, phi: Array) -> tuple[Array, NDArray[np.intp]]:
         """Angles reduced to the turn from `start`, and the number of the arc of each."""
@@ -169,8 +169,8 @@ def breaks_of(path: RollerPath, start: float, stop: float) -> tuple[float, ...]:
     breaks = set(path.law.breaks)
     if isinstance(path, SymmetricPath):
         # a symmetric path has the breaks of its half on both sides, and one in the middle
-        breaks = {0.0, *breaks, *(-one for one in breaks)}
-    return tuple(sorted(one for one in breaks if start < one < stop))
+        breaks = {0.0, *breaks, *(-place for place in breaks)}
+    return tuple(sorted(place for place in breaks if start < place < stop))
 
 
 def working_arc(path: RollerPath, legs: int | None = None, half: float | None = None) -> Arc:
@@ -246,8 +246,8 @@ def _image(working: Arc, start: float, width: float, number: int) -> Arc:
     # an odd image is mirrored about its beginning, an even one is only turned
     by = 2 * start + (number + 1) * width if odd else number * width
     curve = Turned(working.curve, start, working.stop, by, odd)
-    inner = [one for one in working.breaks if start < one < working.stop]
-    images = sorted((by - one if odd else by + one) for one in inner)
+    inner = [place for place in working.breaks if start < place < working.stop]
+    images = sorted((by - place if odd else by + place) for place in inner)
     return Arc("return", curve, first, stop, tuple(images))
 
 
@@ -300,8 +300,8 @@ class ReturnCurve:
         slack = 1e-12
         inside = (given >= self.ends.start - slack) & (given <= self.ends.stop + slack)
         rows = derivatives(self.ends, given, order, len(self.weights))
-        found = np.tensordot(np.array([*self.smoothest, *self.weights]), rows, axes=1)
-        return np.where(inside, found, np.nan)
+        radii = np.tensordot(np.array([*self.smoothest, *self.weights]), rows, axes=1)
+        return np.where(inside, radii, np.nan)
 
     @cached_property
     def smoothest(self) -> Array:
@@ -355,7 +355,7 @@ def _additions(shares: Jet, contact: int, count: int) -> list[Jet]:
     for n in range(1, count):
         # the recurrence (n + 1) P_(n+1) = (2 n + 1) x P_n - n P_(n-1)
         legendre.append((shares * legendre[n] * (2 * n + 1.0) - legendre[n - 1] * float(n)) / (n + 1.0))
-    return [window * one for one in legendre[:count]]
+    return [window * polynomial for polynomial in legendre[:count]]
 
 
 # Bounds of a return arc: its size and its curvature, and by how much a curve keeps them.
@@ -394,7 +394,7 @@ class ArcBounds:
 
     def __post_init__(self) -> None:
         lengths = (self.least_radius, self.greatest_radius, self.least_bend, self.least_hollow)
-        if any(math.isnan(one) or one < 0 for one in lengths) or math.isinf(self.least_radius):
+        if any(math.isnan(length) or length < 0 for length in lengths) or math.isinf(self.least_radius):
             raise InputError("[return]", _("bounds are positive lengths"), _("correct them"))
         if not 0 < self.pressure_angle <= math.pi / 2:
             what = _("a greatest pressure angle lies between 0 and 90 deg")
@@ -435,7 +435,7 @@ class ArcBounds:
         steep = math.tan(self.pressure_angle) if self.pressure_angle < math.pi / 2 else math.inf
         # tan(gamma) = rho'/rho, whose sign and size the pressure angle has
         slant, slanting = rho[1] / rho[0], (moving[:, 1] - moving[:, 0] * rho[1] / rho[0]) / rho[0]
-        found, gradients = [], []
+        margins, gradients = [], []
         for value, gradient, low, high in (
             # a polar radius has to stay positive whatever is requested
             (rho[0], moving[:, 0], max(self.least_radius / scale, 1e-3), self.greatest_radius / scale),
@@ -443,12 +443,12 @@ class ArcBounds:
             (slant, slanting, -steep, steep),
         ):
             if math.isfinite(low):
-                found.append(value - low)
+                margins.append(value - low)
                 gradients.append(gradient.T)
             if math.isfinite(high):
-                found.append(high - value)
+                margins.append(high - value)
                 gradients.append(-gradient.T)
-        return np.concatenate(found), np.concatenate(gradients)
+        return np.concatenate(margins), np.concatenate(gradients)
 
 
 @dataclass(frozen=True)
@@ -475,7 +475,9 @@ class Margins:
     def along(curve: ReturnCurve, bounds: ArcBounds) -> Margins:
         """The extremes of a whole arc."""
         size, bend, slant = sizes(curve), bends(curve), slants(curve)
-        places = tuple(at for one in (size, bend, slant) for at in (one.at_least, one.at_greatest))
+        places = tuple(
+            at for extreme in (size, bend, slant) for at in (extreme.at_least, extreme.at_greatest)
+        )
         steepest = max(-slant.least, slant.greatest)
         # the angle counts without its sign
         return Margins(bounds, (size.least, size.greatest), (bend.least, bend.greatest), steepest, places)
@@ -618,16 +620,16 @@ class ArcSearch:
         for _step in range(STEPS):
             if margins.min() >= 0.0 or size < LEAST_STEP:
                 break
-            found = linprog(
+            solution = linprog(
                 # the unknown at the end is the least margin of the linearised bounds, which is made greatest
                 np.append(np.zeros(MOST), -1.0),
                 np.pad(-slopes, ((0, 0), (0, 1)), constant_values=1.0),
                 margins,
                 bounds=[(-size, size)] * MOST + [(None, MOST_ROOM)],
             )
-            if found.status != 0:
+            if solution.status != 0:
                 break
-            tried, promised = weights + found.x[:-1], float(found.x[-1] - margins.min())
+            tried, promised = weights + solution.x[:-1], float(solution.x[-1] - margins.min())
             there = self.margins(tried)
             gained = float(there[0].min() - margins.min())
             # tangents promised more than came of it: the box was too wide for them
@@ -642,7 +644,7 @@ class ArcSearch:
 
     def smoothest(self, weights: Array) -> Array:
         """From weights that keep the bounds, those with the least sum of squares that do."""
-        found = minimize(
+        solution = minimize(
             lambda x: (float(x @ x), 2.0 * x),
             weights,
             jac=True,
@@ -655,7 +657,7 @@ class ArcSearch:
             options={"maxiter": ITERATIONS, "ftol": 1e-10},
         )
         # the programme may end outside the bounds by its tolerance: then what was feasible stays
-        return np.asarray(found.x) if self.least(found.x) >= 0.0 else weights
+        return np.asarray(solution.x) if self.least(solution.x) >= 0.0 else weights
 
 
 ROUNDS = 8
@@ -714,10 +716,10 @@ def design_return(working: Arc, bounds: ArcBounds | None = None, *, contact: int
     bounds = bounds or ArcBounds()
     ends = _ends(working, contact)
     _ends_keep(ends, bounds)
-    found = ReturnCurve(ends)
+    curve = ReturnCurve(ends)
     # the smoothest curve alone, if it keeps the bounds
-    if not Margins.along(found, bounds).broken():
-        return _close_path(working, found, 0.0)
+    if not Margins.along(curve, bounds).broken():
+        return _close_path(working, curve, 0.0)
     weights, size = _search_weights(ends, bounds)
     return _close_path(working, ReturnCurve(ends, weights), size)
 

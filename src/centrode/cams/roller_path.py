@@ -202,8 +202,8 @@ class StatePath:
             return np.asarray(state[which])[None]
         with np.errstate(all="ignore"):
             # the recursion gives one order more than the law is given to
-            found = system_series(*state, self.law.series(places, order - 1))[which]
-        return np.asarray([math.factorial(k) * c for k, c in enumerate(found)])
+            series = system_series(*state, self.law.series(places, order - 1))[which]
+        return np.asarray([math.factorial(k) * c for k, c in enumerate(series)])
 
 
 def inside(path: RollerPath | StatePath, phi: Array) -> Array:

@@ -99,13 +99,13 @@ class Shoe:
     @cached_property
     def least_bend(self) -> tuple[float, float]:
         """The least radius of curvature [m] of the profile and where [rad]."""
-        found = extremes(
+        bends = extremes(
             self.bend,
             # the radius of curvature p + p'' has its extremes where p' + p''' vanishes
             lambda phi: np.asarray(self.support(phi, 1)[1] + self.support(phi, 3)[3]),
             nodes_of(self.arc.edges),
         )
-        return found.least, found.at_least
+        return bends.least, bends.at_least
 
     def _support(self, phi: Array, order: int) -> Jet:
         angle = Jet([phi, *([np.ones_like(phi)] if order else []), *([0.0 * phi] * (order - 1))])
@@ -119,8 +119,8 @@ class Shoe:
         rho = radius_jet(self.arc.curve, np.zeros(1), TERMS + 1).slope()
         sine = JETS.sin(Jet.variable(np.zeros(1), TERMS))
         # both series begin with a zero: without it the quotient has a value at phi = 0
-        found = quotient(tuple(rho.coefficients[1:]), tuple(c + np.zeros(1) for c in sine.coefficients[1:]))
-        return np.array([float(c[0]) for c in found])
+        share = quotient(tuple(rho.coefficients[1:]), tuple(c + np.zeros(1) for c in sine.coefficients[1:]))
+        return np.array([float(c[0]) for c in share])
 
     @cached_property
     def _near(self) -> float:
@@ -131,7 +131,7 @@ class Shoe:
         last, first = abs(self._share[-1]), abs(self._share[0]) or 1.0
         # the last term over the first is the share left out at the distance where it reaches rounding
         reach = (np.finfo(float).eps * first / last) ** (1.0 / TERMS) if last else NEAR
-        return float(min(NEAR, reach, *(abs(one) for one in self.arc.breaks if one)))
+        return float(min(NEAR, reach, *(abs(place) for place in self.arc.breaks if place)))
 
 
 def shoe(arc: Arc, height: float) -> Shoe:
@@ -170,8 +170,8 @@ def shoe(arc: Arc, height: float) -> Shoe:
         raise InputError(
             "[mover]", what.format(height=1e3 * height, radius=1e3 * radius), _("take a longer shoe post")
         )
-    found = Shoe(arc, height)
-    least, at = found.least_bend
+    candidate = Shoe(arc, height)
+    least, at = candidate.least_bend
     if least <= 0.0:
         # the height enters the radius of curvature as it is: so much more of it takes the cusp away
         what = _(
@@ -179,7 +179,7 @@ def shoe(arc: Arc, height: float) -> Shoe:
         ).format(least=1e3 * least, at=math.degrees(at))
         more = _("make the post of the shoe longer by more than {more:.6g} mm").format(more=-1e3 * least)
         raise MotionError("[mover]", what, more)
-    return found
+    return candidate
 
 
 # The walking wheel: a fixed cam, a carrier of N legs with rollers, shoes that roll on the ground.
@@ -380,7 +380,7 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> WheelMov
             asked=math.degrees(working.stop), half=math.degrees(half)
         )
         raise InputError("[mover] legs", what, _("take a longer working arc or more legs"))
-    breaks = tuple(one for one in working.breaks if -half < one < half)
+    breaks = tuple(place for place in working.breaks if -half < place < half)
     arc = Arc("working", working.curve, -half, half, breaks)
     height = float(working.curve.radius(np.zeros(1))[0, 0]) + post
     return WheelMover(closed, legs, shoe(arc, height), roller)

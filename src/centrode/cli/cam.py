@@ -1,11 +1,10 @@
-"""`centrode cam`: a cam from the curvature of its roller's path."""
+"""`centrode cam`: everything that the topics of cams have about one, by a curvature law or a follower's lift."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,168 +15,255 @@ from centrode.cli.about import about
 from centrode.cli.announcements import announce_samples
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
 from centrode.cli.progress import Progress
-from centrode.cli.tables import asked_spelling, tables_options
+from centrode.cli.tables import tables_options
+from centrode.cli.topic_command import (
+    option_arguments,
+    option_name,
+    option_parameters,
+    parameters_of,
+    write_sheet,
+)
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
-from centrode.topics.presentation import sheets_of_cam
+from centrode.study.cams.results import CamResults
+from centrode.topics.registry import TOPICS
+from centrode.topics.topic import Command, RangeOptions, Topic
 
 if TYPE_CHECKING:
+    from centrode.model.cam_files import AnyCam
     from centrode.sheets.sheet import Sheet
-    from centrode.study.cams.parts import CamPart
-    from centrode.study.cams.results import CamResults
 
-_DXF = find_spec("ezdxf") is not None
+TOPICS_OF_CAMS = tuple(topic for topic in TOPICS if topic.subject == "cam")
 
-
-@click.command(help=mark("Compute a cam by a curvature law or its follower's lift."))
-@click.argument(
+cam_argument = click.argument(
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
 )
-@written_option
-@tables_options
-@samples_option
-@click.option(
-    "--terms",
-    type=int,
-    metavar=mark("N"),
-    help=mark("Cut the power series after a_N; the description's own number, else 20."),
+groove_option = click.option(
+    "--groove", is_flag=True, help=mark("Also the outer wall of a groove that the roller runs in.")
 )
-@click.option("--groove", is_flag=True, help=mark("Also the outer wall of a groove that the roller runs in."))
-@click.option(
-    "--laws", is_flag=True, help=mark("Also other laws of motion for the first rise of the follower.")
-)
-@click.option(
+animate_option = click.option(
     "--animate",
     is_flag=True,
     help=mark("Also write an animation: a walking wheel makes a step, a cam turns under its follower."),
 )
-@no_figures_option
-@dark_option
-def cam(
-    cam: str,
-    out: Path | None,
-    samples: int | None,
-    terms: int | None,
-    groove: bool,
-    laws: bool,
-    animate: bool,
-    no_figures: bool,
-    dark: bool,
-) -> None:
-    """Print what is known of a cam, and write it where asked."""
+
+
+def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given: Any) -> None:
+    """Print what is known of a cam, and write it where a folder is named."""
     description = ct.load_cam(cam)
-    names: list[str] = []
-    _check_options(description, {"--terms": terms is not None, "--groove": groove}, {"--laws": laws})
-    _check_animation(description, out, animate)
+    no_figures, dark = given.pop("no_figures"), given.pop("dark")
+    if given["groove"] and isinstance(description, ct.PlateCam):
+        what = _("this cam is given by its follower's lift and has no curvature law")
+        raise InputError("--groove", what, _("leave it out"))
+    _check_options(description, given)
+    if animate:
+        _check_animation(description, out)
     announce_samples(samples or 0)
+    topics = [topic for topic in TOPICS_OF_CAMS if _applies(topic, description, given)]
+    names: list[str] = []
+    parts = Parts(description, samples, given)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
-        sheets = list(sheets_of_cam(description, samples, ["laws"] if laws else []).values())
         if out is None:
-            results = ct.cam_results(description, samples, terms, groove=groove)
+            sheets = [
+                sheet for _result, sheet in _results(topics, description, samples, given, written=False)
+            ]
+            parts.compute(front=False)
         else:
             with output.output_folder(out) as draft:
-                results = ct.cam_results(description, samples, terms, groove=groove, front=True)
-                _write(results, sheets, draft, progress, groove=groove, figures=not no_figures, dark=dark)
+                found = _results(topics, description, samples, given, written=True)
+                sheets = [sheet for _result, sheet in found]
+                parts.compute(front=True)
+                _write(sheets, parts, draft, progress, description, figures=not no_figures, dark=dark)
                 if animate:
-                    _animate(results, draft, progress, dark=dark)
+                    parts.animate(draft, dark=dark)
+                    _animate(topics, [result for result, _sheet in found], draft, progress, dark=dark)
                 names = output.finish_folder(draft)
     click.echo(_(description.title) or cam)
     for sheet in sheets:
-        click.echo("\n" + render.sheet_text(sheet, description.display))
-    for part in results.parts.values():
-        click.echo("\n" + _text(part))
+        if text := render.sheet_text(sheet, description.display):
+            click.echo("\n" + text)
+    parts.show()
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
-        if {"body", "plate"} & results.objects.keys() and not _DXF:
+        if (any(sheet.outlines for sheet in sheets) or parts.outlined) and not render.writes_dxf():
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
-    if results.failures:
-        raise MotionError(cam, "; ".join(results.failures))
+    failures = [_failure(sheet, description) for sheet in sheets if sheet.failure is not None]
+    failures += parts.results.failures
+    if failures:
+        raise MotionError(cam, "; ".join(failures))
 
 
-def _check_options(
-    cam: ct.Cam | ct.PlateCam, of_curvature: Mapping[str, bool], of_lift: Mapping[str, bool]
-) -> None:
-    """Options that mean nothing for this cam."""
-    plate = isinstance(cam, ct.PlateCam)
-    what = _("this cam is given by a curvature law and has no follower's lift")
-    if plate:
-        what = _("this cam is given by its follower's lift and has no curvature law")
-    for name, given in (of_curvature if plate else of_lift).items():
-        if given:
-            raise InputError(name, what, _("leave it out"))
+def _command() -> click.Command:
+    """The command, with the options of all topics of cams."""
+    made = click.command("cam", help=mark("Compute a cam by a curvature law or its follower's lift."))(run)
+    made.params = parameters_of([cam_argument, written_option, tables_options, samples_option])
+    for topic in TOPICS_OF_CAMS:
+        for option in topic.command.options if topic.command is not None else ():
+            made.params += option_parameters(option)
+    made.params += parameters_of([groove_option, animate_option, no_figures_option, dark_option])
+    return made
 
 
-def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool) -> None:
-    """An animation needs a cam with its roller or its follower, and a folder."""
-    if animate and isinstance(cam, ct.Cam) and cam.roller is None:
+cam = _command()
+
+
+# Parts that are no topics yet.
+
+
+class Parts:
+    """What `cam_results` has of a cam."""
+
+    def __init__(self, cam: AnyCam, samples: int | None, given: Mapping[str, Any]) -> None:
+        self.cam, self.samples, self.groove = cam, samples, bool(given.get("groove"))
+        self.results = CamResults(cam, {})
+
+    def compute(self, *, front: bool) -> None:
+        """Compute all parts."""
+        self.results = ct.cam_results(self.cam, self.samples, groove=self.groove, front=front)
+
+    @property
+    def outlined(self) -> bool:
+        """Whether there are outlines."""
+        return "body" in self.results.objects
+
+    def show(self) -> None:
+        """Print all parts."""
+        for part in self.results.parts.values():
+            text = f"{part.heading}\n\n{render.aligned(part.rows)}"
+            for table in part.tables:
+                numbers = range(1 if table.named else 0, len(table.header))
+                text += f"\n\n{table.heading}\n\n{render.aligned(table.lines, table.header, numbers)}"
+            click.echo("\n" + text)
+
+    def write(self, folder: Path, *, figures: bool, dark: bool) -> None:
+        """Write tables and figures."""
+        cam, objects = self.cam, self.results.objects
+        datasets = {
+            name: data for part in self.results.parts.values() for name, data in part.datasets.items()
+        }
+        ct.write_cam_tables(cam, datasets, folder)
+        for name, data in datasets.items():
+            ct.write_motion_netcdf(data, folder / f"{name}.nc")
+        if "choice" in objects:
+            ct.write_choice(objects["choice"], folder)
+        ct.write_cam_outlines(cam, objects, folder, groove=self.groove, dxf=render.writes_dxf())
+        if figures:
+            drawn = ct.cam_figures(cam, datasets) | ct.cam_body_figures(cam, objects, groove=self.groove)
+            if "choice" in objects:
+                drawn |= ct.choice_figures(objects["choice"])
+            for name, figure in drawn.items():
+                ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)
+
+    def animate(self, folder: Path, *, dark: bool) -> None:
+        """Write the animation."""
+        objects, cam = self.results.objects, self.cam
+        title, display = _(cam.title), cam.display
+        if "wheel" in objects:
+            ct.animate_walking(objects["wheel"], folder / "walking-wheel.gif", title, display, dark=dark)
+        elif "body" in objects and isinstance(cam, ct.Cam) and cam.mover is None:
+            ct.animate_cam_body(objects["body"], folder / "cam.gif", title, display, dark=dark)
+
+
+def _names(command: Command | None) -> Iterator[str]:
+    """Names of the options of a topic."""
+    for option in command.options if command is not None else ():
+        if not isinstance(option, RangeOptions):
+            yield getattr(option, "name", "at")
+
+
+def _applies(topic: Topic, cam: AnyCam, given: Mapping[str, Any]) -> bool:
+    """Whether a topic has something to say about a cam, and is wanted."""
+    if topic.flag and not given[topic.flag]:
+        return False
+    return topic.concerns is None or bool(topic.concerns(cam))
+
+
+def _check_options(cam: AnyCam, given: Mapping[str, Any]) -> None:
+    """Refuse options of topics of another kind of cam."""
+    for topic in TOPICS_OF_CAMS:
+        for name in _names(topic.command):
+            if given[name] and topic.command is not None and topic.command.needs is not None:
+                try:
+                    topic.command.needs(cam)
+                except InputError as reason:
+                    raise InputError(option_name(name), reason.what, _("leave it out")) from None
+
+
+def _check_animation(cam: AnyCam, out: Path | None) -> None:
+    """Refuse an animation of a cam that has no shape, or without a folder."""
+    if isinstance(cam, ct.Cam) and cam.roller is None:
         raise InputError("--animate", _("a profile needs a roller"), _("give [roller] radius"))
-    if animate and out is None:
+    topics = [
+        topic for topic in TOPICS_OF_CAMS if topic.command is not None and topic.command.animation is not None
+    ]
+    if isinstance(cam, ct.PlateCam) and not any(
+        topic.concerns is None or topic.concerns(cam) for topic in topics
+    ):
+        for topic in topics:
+            try:
+                topic.compute(cam)
+            except InputError as reason:
+                raise InputError("--animate", reason.what, reason.repair) from None
+            except MotionError:
+                pass  # the sheets say why there is no such cam
+    if out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
 
 
-def _text(part: CamPart) -> str:
-    """A part as it is printed: heading, rows, tables."""
-    text = f"{part.heading}\n\n{render.aligned(part.rows)}"
-    for table in part.tables:
-        numbers = range(1 if table.named else 0, len(table.header))
-        text += f"\n\n{table.heading}\n\n{render.aligned(table.lines, table.header, numbers)}"
-    return text
+def _results(
+    topics: Sequence[Topic], cam: AnyCam, samples: int | None, given: Mapping[str, Any], *, written: bool
+) -> list[tuple[Any, Sheet]]:
+    """Results of topics with their sheets; what only files hold is computed where they are `written`."""
+    found = []
+    for topic in topics:
+        command = Command("") if topic.command is None else topic.command
+        options = {name: given[name] for name in _names(command) if name != topic.flag}
+        arguments = option_arguments(command, cam, options)
+        if command.samples:
+            arguments["samples"] = samples
+        if command.complete:
+            arguments[command.complete] = written
+        result = topic.compute(cam, **arguments)
+        found.append((result, topic.view(result)))
+    return found
 
 
 def _write(
-    results: CamResults,
     sheets: Sequence[Sheet],
+    parts: Parts,
     folder: Path,
     progress: Progress,
+    cam: AnyCam,
     *,
-    groove: bool,
     figures: bool,
     dark: bool,
 ) -> None:
-    """Write tables, numbers and figures into a folder."""
-    progress.say(_("writing tables"))
-    display = results.cam.display
+    """Write tables, outlines, numbers and figures into a folder."""
     for sheet in sheets:
-        render.write_tables(sheet, folder, display, asked_spelling())
-    datasets = {name: data for part in results.parts.values() for name, data in part.datasets.items()}
-    ct.write_cam_tables(results.cam, datasets, folder)
-    for name, data in datasets.items():
-        ct.write_motion_netcdf(data, folder / f"{name}.nc")
-    if "choice" in results.objects:
-        ct.write_choice(results.objects["choice"], folder)
-    ct.write_cam_outlines(results.cam, results.objects, folder, groove=groove, dxf=_DXF)
-    scalars = {name: one for sheet in sheets for name, one in sheet.scalars.items()} | results.scalars
+        write_sheet(sheet, folder, cam.display, progress, figures=figures, dark=dark)
+    parts.write(folder, figures=figures, dark=dark)
+    scalars = {
+        name: scalar for sheet in sheets for name, scalar in sheet.scalars.items()
+    } | parts.results.scalars
     render.write_summary(scalars, folder / "summary.json")
-    if figures:
-        progress.say(_("drawing"))
-        drawn = {
-            name: one for sheet in sheets for name, one in render.figures_of(sheet.pictures, display).items()
-        }
-        drawn |= ct.cam_figures(results.cam, datasets)
-        drawn |= ct.cam_body_figures(results.cam, results.objects, groove=groove)
-        if "choice" in results.objects:
-            drawn |= ct.choice_figures(results.objects["choice"])
-        for number, (name, figure) in enumerate(drawn.items(), start=1):
-            progress.say(_("drawing {name}").format(name=name), number, len(drawn))
-            ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)
 
 
-def _animate(results: CamResults, folder: Path, progress: Progress, *, dark: bool) -> None:
-    """Write the walking wheel's step, or a turn of the cam under its roller or its follower, into a folder."""
-    objects, cam = results.objects, results.cam
-    name = "walking-wheel.gif" if "wheel" in objects else "cam.gif"
+def _animate(
+    topics: Sequence[Topic], results: Sequence[Any], folder: Path, progress: Progress, *, dark: bool
+) -> None:
+    """Write the animation of the last topic that has one: a wheel that walks goes before the cam that it walks on."""
+    for topic, result in reversed(list(zip(topics, results, strict=True))):
+        command = topic.command
+        if command is not None and command.animation is not None:
+            name = command.animation_file or f"{topic.name}.gif"
+            progress.say(_("drawing {name}").format(name=name))
+            command.animation(result, folder / name, dark)
+            return
 
-    def said(done: int, of: int) -> None:
-        progress.say(_("drawing {name}").format(name=name), done, of)
 
-    title, display = _(cam.title), cam.display
-    if "wheel" in objects:
-        ct.animate_walking(objects["wheel"], folder / name, title, display, dark=dark, said=said)
-    elif "plate" in objects:
-        ct.animate_follower(objects["plate"], folder / name, title, display, dark=dark, said=said)
-    elif "body" in objects and isinstance(cam, ct.Cam) and cam.mover is None:
-        ct.animate_cam_body(objects["body"], folder / name, title, display, dark=dark, said=said)
-    elif isinstance(cam, ct.PlateCam) and not results.failures:
-        what = _("the cam has no size: neither base_radius nor bounds are given")
-        raise InputError("--animate", what, _("give one of them, or leave it out"))
+def _failure(sheet: Sheet, cam: AnyCam) -> str:
+    """Why a cam falls short, and what helps."""
+    assert sheet.failure is not None
+    texts = (sheet.failure.what, sheet.failure.repair)
+    return "; ".join(filter(None, (render.plain_text(text, cam.display) for text in texts)))

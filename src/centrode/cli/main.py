@@ -24,7 +24,6 @@ from centrode.cli.animate import animate
 from centrode.cli.cam import cam
 from centrode.cli.check import check
 from centrode.cli.draw import draw
-from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.report import report
@@ -46,7 +45,6 @@ OWN: tuple[click.Command, ...] = (
     report,
     animate,
     check,
-    equations,
     variants,
     cam,
     sweep,
@@ -62,7 +60,7 @@ COMMANDS: tuple[click.Command, ...] = tuple(
             **{
                 topic.name: topic_command(topic, topic.command)
                 for topic in TOPICS
-                if topic.command is not None
+                if topic.command is not None and topic.subject == "mechanism"
             },
         },
         order.COMMANDS,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, assert_never
 
@@ -58,7 +58,7 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
         _check_instants(command, description, samples, given)
         written = {name: given.pop(name, False) for name in ("force", "no_figures", "dark", "animate")}
         with about(mechanism):
-            arguments = _arguments(command, description, given)
+            arguments = option_arguments(command, description, given)
         if command.samples:
             arguments["samples"] = samples
         if command.pages and out is not None:
@@ -90,9 +90,9 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
 
 def _parameters(command: Command) -> Iterator[click.Parameter]:
     """The argument and the options of a command, in the order of `--help`."""
-    yield from _made_by([mechanism_argument])
+    yield from parameters_of([mechanism_argument])
     for option in command.options:
-        yield from _of_option(option)
+        yield from option_parameters(option)
     if command.kinds or command.pages:
         file_option = click.option(
             "--out",
@@ -100,7 +100,7 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
             metavar=mark("FILE"),
             help=command.file_help or mark("Also write FILE.json or FILE.csv, by the ending of its name."),
         )
-        yield from _made_by(
+        yield from parameters_of(
             [file_option, *([tables_options] if "csv" in command.kinds else []), force_option]
         )
         return
@@ -110,18 +110,18 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
         decorators.append(click.option("--animate", is_flag=True, help=command.animation_help))
     decorators += [no_figures_option] if command.pictures else []
     decorators += [dark_option] if command.dark else []
-    yield from _made_by([*decorators, tables_options])
+    yield from parameters_of([*decorators, tables_options])
 
 
-def _of_option(option: Option) -> Iterator[click.Parameter]:
+def option_parameters(option: Option) -> Iterator[click.Parameter]:
     """An option of a topic as options of its command."""
     match option:
         case ChoiceOption(name, words, text, has_default):
             default = words[0] if has_default else None
-            yield click.Option([_option_name(name)], type=click.Choice(words), default=default, help=text)
+            yield click.Option([option_name(name)], type=click.Choice(words), default=default, help=text)
         case ValueOption(name, metavar, text, kind, several, required):
             yield click.Option(
-                [_option_name(name), name],
+                [option_name(name), name],
                 type=kind,
                 metavar=metavar,
                 help=text,
@@ -129,16 +129,16 @@ def _of_option(option: Option) -> Iterator[click.Parameter]:
                 required=required,
             )
         case FlagOption(name, text):
-            yield click.Option([_option_name(name)], is_flag=True, help=text)
+            yield click.Option([option_name(name)], is_flag=True, help=text)
         case InstantsOption(text, required=required):
             yield click.Option(["--at"], multiple=True, required=required, metavar=mark("VALUE"), help=text)
         case RangeOptions():
-            yield from _made_by([start_option, stop_option, range_option])
+            yield from parameters_of([start_option, stop_option, range_option])
         case _:
             assert_never(option)
 
 
-def _made_by(decorators: list[Any]) -> list[click.Parameter]:
+def parameters_of(decorators: list[Any]) -> list[click.Parameter]:
     """The parameters that decorators of click give a command, in the order of the decorators."""
 
     def nothing() -> None:
@@ -150,7 +150,8 @@ def _made_by(decorators: list[Any]) -> list[click.Parameter]:
     return click.command()(decorated).params
 
 
-def _option_name(name: str) -> str:
+def option_name(name: str) -> str:
+    """An option as it is written."""
     return "--" + name.replace("_", "-")
 
 
@@ -185,7 +186,7 @@ def _check_instants(
         ct.range_value(mechanism, text, "--at")
 
 
-def _arguments(command: Command, mechanism: Mechanism, given: dict[str, Any]) -> dict[str, Any]:
+def option_arguments(command: Command, mechanism: Any, given: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of the computation; those that the user left out are left to it."""
     if command.arguments is not None:
         return dict(command.arguments(given))
@@ -194,7 +195,7 @@ def _arguments(command: Command, mechanism: Mechanism, given: dict[str, Any]) ->
         if isinstance(option, ValueOption) and option.name in arguments:
             value = arguments.pop(option.name)
             if option.read is not None:
-                value = option.read(mechanism, value, _option_name(option.name))
+                value = option.read(mechanism, value, option_name(option.name))
             arguments[option.parameter or option.name] = value
     return arguments
 
@@ -242,7 +243,7 @@ def _beside_folder(
         if command.summary and sheet.scalars:
             render.write_summary(sheet.scalars, draft / "summary.json")
         if command.animation is not None and written["animate"]:
-            animation = f"{topic.name}.gif"
+            animation = command.animation_file or f"{topic.name}.gif"
             progress.say(_("drawing {name}").format(name=animation))
             with about(name):
                 command.animation(result, draft / animation, written["dark"])

@@ -58,30 +58,30 @@ class LinkMotion:
 
 def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]:
     """Every link with mass at one sample of a motion."""
-    found = []
-    for one in masses_of(mechanism):
-        centre = one.planar_centre
+    motions = []
+    for mass in masses_of(mechanism):
+        centre = mass.planar_centre
         first = _vector(here["velocity_coefficient"], centre.base)
         second = _vector(here["acceleration_coefficient"], centre.base)
-        turning = float(here["angular_velocity_coefficient"].sel(link=one.link))
-        bending = float(here["angular_acceleration_coefficient"].sel(link=one.link))
-        angle = float(here["angle"].sel(link=one.link))
+        turning = float(here["angular_velocity_coefficient"].sel(link=mass.link))
+        bending = float(here["angular_acceleration_coefficient"].sel(link=mass.link))
+        angle = float(here["angle"].sel(link=mass.link))
         # the centre's arm in the frame's axes; its derivatives are i phi' and i phi'' - phi'^2 times it
         arm = complex(centre.along, centre.across) * cmath.exp(1j * angle)
-        found.append(
+        motions.append(
             LinkMotion(
-                one.link,
-                float(one.mass),
-                float(one.moment_of_inertia),
+                mass.link,
+                float(mass.mass),
+                float(mass.moment_of_inertia),
                 first + 1j * turning * arm,
                 second + (1j * bending - turning**2) * arm,
                 turning,
                 bending,
             )
         )
-    return found
+    return motions
 
 
 def _vector(values: xr.DataArray, point: str) -> complex:
-    one = values.sel(point=point)
-    return complex(float(one.sel(axis="x")), float(one.sel(axis="y")))
+    components = values.sel(point=point)
+    return complex(float(components.sel(axis="x")), float(components.sel(axis="y")))

@@ -279,13 +279,13 @@ def _joint(
     mechanism: Mechanism, link: str, other: str, axis: str | tuple[float, ...]
 ) -> tuple[str | None, float]:
     """The link whose joint angle is that of one against the other about a point, and which way it counts."""
-    for one, base, sense in ((link, other, 1.0), (other, link, -1.0)):
-        reference = None if one == FRAME else mechanism.links[one].reference
+    for body, base, sense in ((link, other, 1.0), (other, link, -1.0)):
+        reference = None if body == FRAME else mechanism.links[body].reference
         # a reference starts in the first point of its link, which is the axis of the angle
         if (
             reference is not None
             and reference[0] == axis
             and set(reference) <= set(points_of(mechanism, base))
         ):
-            return one, sense
+            return body, sense
     return None, 1.0

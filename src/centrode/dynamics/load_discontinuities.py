@@ -81,8 +81,8 @@ def _passings(coordinate: Coordinate, levels: Array, at: StateAt, nodes: Array, 
 
     def function(x: Array) -> tuple[Array, Array]:
         there = at(x)
-        found = np.broadcast_to(coordinate.value(there), (1, len(x)))[0] - passed
-        return found, np.broadcast_to(coordinate.slope(there).value, (1, len(x)))[0]
+        distances = np.broadcast_to(coordinate.value(there), (1, len(x)))[0] - passed
+        return distances, np.broadcast_to(coordinate.slope(there).value, (1, len(x)))[0]
 
     return np.append(newton_roots(function, nodes[cells], nodes[cells + 1]), nodes[np.isin(value, levels)])
 

@@ -49,7 +49,7 @@ STRAIGHT = 1e-9
 
 def solids_of(mechanism: Mechanism, given: Given, m: Namespace) -> tuple[Mass, ...]:
     """Links of a spherical mechanism that have mass or inertia; raises InputError for what is not complete."""
-    found = []
+    solids = []
     for name, link in mechanism.links.items():
         reader = InertiaReader(name, link, given, mechanism.sphere_radius, m)
         mass, inertia = reader.mass, reader.inertia()
@@ -57,8 +57,8 @@ def solids_of(mechanism: Mechanism, given: Given, m: Namespace) -> tuple[Mass, .
             continue
         # inertia without mass: the centre does not move anything
         centre = Radial(name, (1.0, 0.0, 0.0), 0.0) if is_none(mass) else reader.centre()
-        found.append(Mass(name, mass, centre, inertia))
-    return tuple(found)
+        solids.append(Mass(name, mass, centre, inertia))
+    return tuple(solids)
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ def masses_of(mechanism: Mechanism, given: Given | None = None, m: Namespace = A
     if mechanism.space == "sphere":
         return solids_of(mechanism, given or {}, m)
     still = _links_that_do_not_turn(mechanism)
-    found = []
+    masses = []
     for name, link in mechanism.links.items():
         reader = _MassReader(name, link, given or {})
         mass, inertia = reader.number("mass", link.mass or 0.0), reader.inertia(name in still)
@@ -224,8 +224,8 @@ def masses_of(mechanism: Mechanism, given: Given | None = None, m: Namespace = A
             continue
         first = next(iter(link.coordinates))
         centre = Centre(name, first, 0.0, 0.0) if is_none(mass) else reader.centre()
-        found.append(Mass(name, mass, centre, inertia))
-    return tuple(found)
+        masses.append(Mass(name, mass, centre, inertia))
+    return tuple(masses)
 
 
 def centre_of(
@@ -375,17 +375,17 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 def coordinates_of(state: State, mass: Mass) -> list[tuple[Number, Jet]]:
     """Coordinates whose squared speeds make twice the kinetic energy of a link, each with its factor [kg or kg m^2]."""
-    found = [(mass.mass, x) for x in state.centre(mass.centre)] if mass.weighs else []
+    coordinates = [(mass.mass, x) for x in state.centre(mass.centre)] if mass.weighs else []
     if not mass.resists:
-        return found
+        return coordinates
     if not isinstance(mass.inertia, tuple):
-        return [*found, (mass.inertia, state.angle(mass.link))]
+        return [*coordinates, (mass.inertia, state.angle(mass.link))]
     for part in mass.inertia:
         if isinstance(part, About):
-            found.append((part.moment, state.turned_about(mass.link, part.direction)))
+            coordinates.append((part.moment, state.turned_about(mass.link, part.direction)))
         else:
-            found += [(part.moment, x) for x in state.heading(mass.link, part.direction)]
-    return found
+            coordinates += [(part.moment, x) for x in state.heading(mass.link, part.direction)]
+    return coordinates
 
 
 def shares(state: State, masses: Sequence[Mass], shape: tuple[int, ...]) -> tuple[Array, Array]:

@@ -191,8 +191,8 @@ class Reducer:
 
     def events(self, first: float, last: float) -> list[Event]:
         """Limits and change points between two values of the drive."""
-        found = self._along(np.array([first, last])).continuation.branches.events
-        return [event for event in found if first <= event.at <= last]
+        events = self._along(np.array([first, last])).continuation.branches.events
+        return [event for event in events if first <= event.at <= last]
 
     def _along(self, values: Array) -> MotionOnPath:
         """Places on a stretch of the path with all these values, whose events are known."""
@@ -252,8 +252,8 @@ def reduced_to_several(solved: Solved, burden: MassesAndLoads) -> xr.Dataset:
     refuse_drive_in_formulas(burden)
     _refuse_rings(burden)
     _check_size(solved, burden)
-    found = partials(solved)
-    directions = _Directions.of(found, solved)
+    coefficients = partials(solved)
+    directions = _Directions.of(coefficients, solved)
     matrix, christoffel = _inertia(directions, burden)
     forces = _forces(directions, solved, burden)
     units = solved.ready.parameter.units
@@ -269,14 +269,14 @@ def reduced_to_several(solved: Solved, burden: MassesAndLoads) -> xr.Dataset:
         "generalised_force_part": _variable_of_units(
             "generalised_force_part", ("load", "drive"), forces, units
         ),
-        "status": judgements_of(found.solved, ())["status"],
+        "status": judgements_of(coefficients.solved, ())["status"],
     }
     known = coordinates_of(solved)
     coordinates = {name: known[name] for name in ("time", "drive_value", "drive")}
-    names = labels_of(tuple(found.units))
+    names = labels_of(tuple(coefficients.units))
     coordinates |= {"drive_2": names, "drive_3": names}
     coordinates |= {"link": labels_of(burden.links), "load": labels_of(burden.labels)}
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "reduce"))
 
 
 def refuse_drive_in_formulas(burden: MassesAndLoads) -> None:
@@ -431,9 +431,9 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
         return reduced_to_several(solved, burden)
     reducer = Reducer(solved.ready, burden)
     moving = _motion_of_loads(solved, reducer)
-    found = reduce_state(burden, State.of(solved, moving), solved.status[0])
+    reduction = reduce_state(burden, State.of(solved, moving), solved.status[0])
     first, last = np.min(solved.span.parameter), np.max(solved.span.parameter)
-    variables = _variables(found, solved.ready.parameter.units[0])
+    variables = _variables(reduction, solved.ready.parameter.units[0])
     unit = solved.ready.parameter.units[0]
     variables["drive_rate"] = vocabulary_variable("drive_rate", ("sample",), moving.rate.copy(), unit)
     variables["jumps"] = vocabulary_variable(
@@ -445,7 +445,7 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
     }
     coordinates["drive_value"] = coordinates_of(solved)["drive_value"]
     coordinates |= {"link": labels_of(burden.links), "load": labels_of(burden.labels)}
-    attributes = attributes_of(solved) | {"rate_from": "drive" if _by_drive(solved) else "machine"}
+    attributes = attributes_of(solved, "reduce") | {"rate_from": "drive" if _by_drive(solved) else "machine"}
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -98,13 +98,20 @@ def reduction_results(
     >>> print(results.extremes[0].variable, results.extremes[0].unit)
     reduced_inertia kg m^2
     """
-    reduction = reduce(mechanism, samples, start, stop)
-    at_instants = reduce(mechanism, at=instants) if instants and "reduced_inertia" in reduction else None
+    found = results_of_reduction(mechanism, reduce(mechanism, samples, start, stop))
+    at_instants = (
+        reduce(mechanism, at=instants) if instants and "reduced_inertia" in found.reduction else None
+    )
     links: tuple[tuple[LinkMotion, ...], ...] = ()
     if at_instants is not None and mechanism.space == "plane":
         there = motion(mechanism, at=instants)
         links = tuple(tuple(motions_of_links(mechanism, there.isel(sample=k))) for k in range(len(instants)))
-    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), at_instants, links)
+    return replace(found, instants=at_instants, links=links)
+
+
+def results_of_reduction(mechanism: Mechanism, reduction: xr.Dataset) -> ReductionResults:
+    """A dataset of `reduce` with the extremes of each part."""
+    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), None, ())
 
 
 def _extremes(reduction: xr.Dataset) -> Iterator[PartExtremes]:

@@ -217,13 +217,13 @@ class State:
 
     def attitude(self, link: str) -> Attitude:
         """On the sphere: the axes of a link in those of the frame."""
-        found = self.attitudes.get(link)
-        if found is None:
+        attitude = self.attitudes.get(link)
+        if attitude is None:
             first = 9 * self.layout.links.index(link)
             jets = [_jet(self.columns["attitude"](first + k)) for k in range(9)]
-            found = Attitude(*((jets[k], jets[k + 1], jets[k + 2]) for k in (0, 3, 6)))
-            self.attitudes[link] = found
-        return found
+            attitude = Attitude(*((jets[k], jets[k + 1], jets[k + 2]) for k in (0, 3, 6)))
+            self.attitudes[link] = attitude
+        return attitude
 
     def heading(self, link: str, direction: Vector3) -> Place:
         """On the sphere: a direction of a link's own axes, or of the frame's, as it stands in the frame."""
@@ -236,17 +236,17 @@ class State:
         """On the sphere: angular velocity of a link by the parameter, with its derivative; of first order."""
         if link == FRAME:
             return tuple(Jet((0.0, 0.0)) for _axis in range(3))
-        found = self.known.get(f"spin {link}")
-        if found is None:
+        spin = self.known.get(f"spin {link}")
+        if spin is None:
             # half the sum of a x a' over the axes
             turns = [
                 cross(tuple(x.lower_order() for x in axis), tuple(x.slope() for x in axis))
                 for axis in self.attitude(link)
             ]
-            found = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
-            self.known[f"spin {link}"] = found
-        assert isinstance(found, tuple)
-        return found
+            spin = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
+            self.known[f"spin {link}"] = spin
+        assert isinstance(spin, tuple)
+        return spin
 
     def turned_about(self, link: str, direction: Vector3) -> Jet:
         """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
@@ -288,12 +288,12 @@ class State:
         return x + cosine * along - sine * across, y + sine * along + cosine * across
 
     def _jet(self, kind: str, name: str, names: tuple[str, ...]) -> Jet:
-        found = self.known.get(f"{kind} {name}")
-        if found is None:
-            found = _jet(self.columns[kind](names.index(name)))
-            self.known[f"{kind} {name}"] = found
-        assert isinstance(found, Jet)
-        return found
+        jet = self.known.get(f"{kind} {name}")
+        if jet is None:
+            jet = _jet(self.columns[kind](names.index(name)))
+            self.known[f"{kind} {name}"] = jet
+        assert isinstance(jet, Jet)
+        return jet
 
 
 @dataclass(frozen=True)

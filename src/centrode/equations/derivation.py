@@ -170,7 +170,9 @@ class Equations:
     given : what the drives give
     groups : in the order of the plan, those without unknowns left out
     together : all rates as one system, where they are few
-    sliding : points on guides of the frame; where nothing is unknown, all moving points
+    points : whose velocities are written out: where none are named, those on guides of the frame, and where nothing is
+        unknown, all moving points
+    board : letters with their ranks, places of the points
     """
 
     mechanism: Mechanism
@@ -178,7 +180,7 @@ class Equations:
     given: Given
     groups: tuple[GroupEquations, ...]
     together: GroupSolution | None
-    sliding: tuple[str, ...]
+    points: tuple[str, ...]
     board: SymbolTable | SphereBoard
 
     @property
@@ -213,9 +215,7 @@ class Equations:
 
     def velocity(self, point: str) -> PointVelocity:
         """Velocity of a point as formulas; raises InputError for a name that is no moving point."""
-        if point not in self.board.moving:
-            known = ", ".join(self.board.moving)
-            raise InputError(point, _("it is no moving point"), _("one of: {points}").format(points=known))
+        _check_moving(self.board, point)
         closed = {
             letter: formula.total
             for group in self.groups
@@ -225,20 +225,21 @@ class Equations:
         return velocity_of(point, self.board.points[point], self.board, self.given, closed)
 
 
-def equations(mechanism: Mechanism) -> Equations:
+def equations(mechanism: Mechanism, points: Sequence[str] | None = None) -> Equations:
     """Constraint equations of a mechanism in symbols, differentiated and solved group by group.
+
+    Parameters
+    ----------
+    points : names of points, optional
+        Whose velocities are written out; those on guides of the frame if left out.
 
     Raises
     ------
     InputError
-        The mechanism cannot be driven or does not assemble; or on the sphere other groups than dyads of arcs and
-        circles have to be solved.
+        The mechanism cannot be driven or does not assemble; a point does not move; or on the sphere other groups than
+        dyads of arcs and circles have to be solved.
     """
-    return equations_of(ready(mechanism))
-
-
-def equations_of(made: Ready) -> Equations:
-    """The equations of a mechanism made ready."""
+    made = ready(mechanism)
     board, drafts = assemble_chains(made) if made.mechanism.space == "plane" else laid_on_sphere(made)
     given = given_of(board)
     closed: dict[Letter, Sum] = {}
@@ -249,18 +250,26 @@ def equations_of(made: Ready) -> Equations:
     groups = tuple(
         _group(made, board, draft, given, closed, delta) for draft, delta in zip(drafts, deltas, strict=True)
     )
-    sliding = tuple(dict.fromkeys(g.point for g in made.mechanism.guides if g.on == "frame"))
-    if not groups:
-        sliding = tuple(board.moving)
+    if points is None:
+        sliding = dict.fromkeys(guide.point for guide in mechanism.guides if guide.on == FRAME)
+        points = list(sliding) if groups else board.moving
+    for point in points:
+        _check_moving(board, point)
     return Equations(
         made.mechanism,
         tuple(board.alphabet.meanings.values()),
         given,
         groups,
         _together(board, drafts, given),
-        sliding,
+        tuple(points),
         board,
     )
+
+
+def _check_moving(board: Lettering, point: str) -> None:
+    if point not in board.moving:
+        known = ", ".join(board.moving)
+        raise InputError(point, _("it is no moving point"), _("one of: {points}").format(points=known))
 
 
 def _rates(board: Lettering, draft: Draft, given: Given) -> LinearSystem:

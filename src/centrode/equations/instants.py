@@ -6,23 +6,26 @@ the motion in closed form has.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.equations.derivation import Equations
+from centrode.equations.derivation import Equations, equations
 from centrode.equations.linear import GroupSolution, LinearSystem, Unknown
 from centrode.equations.spelling import SymbolFormula
 from centrode.equations.symbol_table import SymbolLine, SymbolRod, SymbolTable, lines_of, rods_of
 from centrode.equations.symbols import Letter, Sum
-from centrode.errors import InputError
+from centrode.errors import InputError, Status
+from centrode.kinematics.motion import motion
 from centrode.locale import _
-from centrode.model.mechanism import FRAME
+from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
+from centrode.quantities import display_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -136,7 +139,7 @@ class Instant:
             return float(total.value(np, self.values.__getitem__))
 
 
-def instant_of(equations: Equations, motion: xr.Dataset, sample: int, length: float = 1.0) -> Instant:
+def instant_of(equations: Equations, dataset: xr.Dataset, sample: int, length: float = 1.0) -> Instant:
     """The letters at one sample of a motion, whose places are taken as they are; `length` units make a metre.
 
     Raises InputError on the sphere, where the letters have other places.
@@ -146,11 +149,11 @@ def instant_of(equations: Equations, motion: xr.Dataset, sample: int, length: fl
         raise InputError("space", _("letters are told their numbers in the plane only"))
     meanings = board.alphabet.meanings
     units = {letter: length if one.unit == "m" else 1.0 for letter, one in meanings.items()}
-    values = dict(board.alphabet.values) | NumericValues(board, motion, sample).values()
+    values = dict(board.alphabet.values) | NumericValues(board, dataset, sample).values()
     values = {letter: x * units[letter] for letter, x in values.items()}
     for one in equations.given.drives:
         driven = next(by for by in board.ready.kinematics.path.driven if by.drive.id == one.drive)
-        jet = driven.value(JETS, Jet.variable(float(motion["time"][sample]), 2))
+        jet = driven.value(JETS, Jet.variable(float(dataset["time"][sample]), 2))
         orders = [jet.derivative(k) for k in range(3)] if isinstance(jet, Jet) else [jet, 0.0, 0.0]
         letters = (one.letter, one.rate, one.second)
         values |= {each: float(x) * units[one.letter] for each, x in zip(letters, orders, strict=True)}
@@ -186,14 +189,14 @@ class Rate:
         return abs(self.solved - self.closed) <= self.allowed
 
 
-def rates_compared(equations: Equations, instant: Instant, motion: xr.Dataset, sample: int) -> list[Rate]:
+def rates_compared(equations: Equations, instant: Instant, dataset: xr.Dataset, sample: int) -> list[Rate]:
     """Derivatives of angles of links and of slides of guides, by the equations and by the motion in closed form."""
-    found = list(_pairs(equations, instant, motion, sample))
+    found = list(_pairs(equations, instant, dataset, sample))
     condition = max((one.condition for one in instant.velocities), default=1.0)
     first = max((abs(x) for _one, order, *both in found for x in both if order == 1), default=0.0)
     first = max(first, *(abs(instant.values[one.rate]) for one in equations.given.drives))
     second = max((abs(x) for _one, order, *both in found for x in both if order == 2), default=0.0)
-    mended = bool((motion["event_kind"] == CHANGE_POINT).any())
+    mended = bool((dataset["event_kind"] == CHANGE_POINT).any())
     rates = []
     for one, order, solved, closed in found:
         size = first if order == 1 else max(second, first**2)
@@ -204,16 +207,16 @@ def rates_compared(equations: Equations, instant: Instant, motion: xr.Dataset, s
 
 
 def _pairs(
-    equations: Equations, instant: Instant, motion: xr.Dataset, sample: int
+    equations: Equations, instant: Instant, dataset: xr.Dataset, sample: int
 ) -> Iterator[tuple[Unknown, int, float, float]]:
     for one in equations.unknowns:
         kind, _dot, name = one.name.partition(".")
         for order, letter in ((1, one.rate), (2, one.second)):
             word = "velocity" if order == 1 else "acceleration"
-            if kind == "angle" and name in motion["link"].values:
-                own = motion[f"angular_{word}"].sel(link=name)[sample]
-            elif kind == "slide" and name in motion["guide"].values:
-                own = motion[f"slide_{word}"].sel(guide=name)[sample]
+            if kind == "angle" and name in dataset["link"].values:
+                own = dataset[f"angular_{word}"].sel(link=name)[sample]
+            elif kind == "slide" and name in dataset["guide"].values:
+                own = dataset[f"slide_{word}"].sel(guide=name)[sample]
             else:
                 continue
             size = instant.length if kind == "slide" else 1.0
@@ -257,3 +260,116 @@ def _condition(matrix: Array) -> float:
         columns = matrix / np.linalg.norm(matrix, axis=0)
         rows = columns / np.linalg.norm(columns, axis=1)[:, None]
     return float(np.linalg.cond(rows)) if np.isfinite(rows).all() else float("inf")
+
+
+# The equations with the numbers of a motion: the constraints put to the test, the systems solved at instants.
+
+EPS = float(np.finfo(float).eps)
+TESTED = 12
+"""Samples at which the constraints are put to the test."""
+
+
+@dataclass(frozen=True)
+class ConstraintCheck:
+    """How well the places of a motion satisfy the constraints [m, rad].
+
+    Attributes
+    ----------
+    samples : at how many positions
+    greatest : greatest difference of both sides of a constraint
+    allowed : what rounding makes of it
+    """
+
+    samples: int
+    greatest: float
+    allowed: float
+
+
+@dataclass(frozen=True)
+class NumbersAtInstant:
+    """The letters at one instant, and its rates by two routes."""
+
+    instant: Instant
+    rates: tuple[Rate, ...]
+
+
+@dataclass(frozen=True)
+class NumberedEquations(Equations):
+    """The equations of a planar mechanism with the numbers of its motion.
+
+    Attributes
+    ----------
+    check : of the constraints over the motion; None where there are none, or no position is reached
+    motion : at the instants
+    numbers : at each of them, lengths in the unit of the display; None where the mechanism does not get there
+    """
+
+    check: ConstraintCheck | None
+    motion: xr.Dataset
+    numbers: tuple[NumbersAtInstant | None, ...]
+
+
+def equation_results(
+    mechanism: Mechanism, points: Sequence[str] | None = None, instants: Sequence[float] | None = None
+) -> Equations:
+    """The equations of a mechanism, in the plane with their numbers at instants where these are given.
+
+    Parameters
+    ----------
+    points : names of points, optional
+        Whose velocities are written out.
+    instants : values of the drive [rad or m], with a law or several drives times [s], optional
+
+    Raises
+    ------
+    InputError
+        As `equations` and `motion` do.
+    """
+    found = equations(mechanism, points)
+    if instants is None or mechanism.space != "plane":
+        return found
+    own = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
+    length, _unit = display_unit("m", str(mechanism.display.length))
+    places = motion(mechanism, at=list(instants))
+    numbers = tuple(
+        _numbers(found, places, sample, length) if status == Status.OK else None
+        for sample, status in enumerate(places["status"].to_numpy().tolist())
+    )
+    return NumberedEquations(**own, check=_check(found), motion=places, numbers=numbers)
+
+
+def _numbers(found: Equations, places: xr.Dataset, sample: int, length: float) -> NumbersAtInstant:
+    instant = instant_of(found, places, sample, length)
+    return NumbersAtInstant(instant, tuple(rates_compared(found, instant, places, sample)))
+
+
+def _check(found: Equations) -> ConstraintCheck | None:
+    """The constraints with the numbers of the motion put in: both sides agree to rounding."""
+    conditions = [one for group in found.groups for one in group.conditions]
+    if not conditions:
+        return None
+    dataset = motion(found.mechanism)
+    reached = np.flatnonzero(dataset["status"].to_numpy() == Status.OK)
+    if not reached.size:
+        return None
+    chosen = np.unique(reached[np.linspace(0, reached.size - 1, TESTED).astype(int)])
+    greatest, allowed = 0.0, 0.0
+    for sample in chosen.tolist():
+        instant = instant_of(found, dataset, sample)
+        greatest = max(greatest, *(abs(instant.number(one.residual)) for one in conditions))
+        allowed = max(allowed, 64 * EPS * _size(instant))
+    return ConstraintCheck(len(chosen), greatest, allowed)
+
+
+def _size(instant: Instant) -> float:
+    """Size of what is added up in a constraint: lengths times angles, which carry a rounding of their own size."""
+    sizes = [
+        abs(value)
+        for letter, value in instant.values.items()
+        if np.isfinite(value) and not _is_rate(letter.name)
+    ]
+    return max(1.0, *sizes) ** 2
+
+
+def _is_rate(name: str) -> bool:
+    return name.startswith(("omega", "epsilon", "Delta")) or name.endswith(("_dot", "_ddot"))

@@ -652,6 +652,11 @@ def integration_results(
         what = _("fixed steps have no tolerance")
         raise InputError("--tolerance", what, _("add --method adaptive, or ask for more --steps"))
     integration = integrate(mechanism, method, steps, FINE if tolerance is None else tolerance, stop)
+    return results_of_integration(mechanism, integration)
+
+
+def results_of_integration(mechanism: Mechanism, integration: xr.Dataset) -> IntegrationResults:
+    """A dataset of `integrate` with the motion in closed form over the same range."""
     return IntegrationResults(mechanism, integration, closed_motion(mechanism, integration))
 
 
@@ -742,7 +747,8 @@ def _dataset(
         **{name: closed[name] for name in ("event_value", "event_kind", "event_group")},
     }
     coordinates = {**coordinates_of(solved), "constraint": labels_of(form.constraint_names)}
-    attributes = {name: told for name, told in attributes_of(solved).items() if "residual" not in name}
+    attributes = attributes_of(solved, "integrate")
+    attributes = {name: told for name, told in attributes.items() if "residual" not in name}
     attributes |= {
         **told,
         "stop_time": _or_nan(found.stop),

@@ -139,12 +139,12 @@ def place_series(
     """A place as series, one for each axis; `solved` gives the vector whose products with the gradients are known."""
     # every locus hands over its k-th equation, the point's coefficient answers, and each takes it for the
     # next order
-    found = [tuple(place)]
+    series = [tuple(place)]
     for k in range(1, order + 1):
-        found.append(tuple(solved([locus.next(k) for locus in loci])))
+        series.append(tuple(solved([locus.next(k) for locus in loci])))
         for locus in loci:
-            locus.add(found[k], k)
-    return tuple(Jet(axis) for axis in zip(*found, strict=True))
+            locus.add(series[k], k)
+    return tuple(Jet(axis) for axis in zip(*series, strict=True))
 
 
 def bound_acceleration(
@@ -222,10 +222,10 @@ def less(a: Number, b: Number) -> Number:
 
 def total(terms: Iterable[Number]) -> Number:
     """Sum."""
-    found: Number = 0.0
+    summed: Number = 0.0
     for term in terms:
-        found = term if is_literal_zero(found) else found if is_literal_zero(term) else found + term
-    return found
+        summed = term if is_literal_zero(summed) else summed if is_literal_zero(term) else summed + term
+    return summed
 
 
 def dot(a: Place, b: Place) -> Number:

@@ -99,13 +99,13 @@ def phases_before(
             return _phase_of_turning(kinematics, group.link, group.turning, at)
         case Meet():
             turning = None if group.carriage is None else group.turning
-            found = _phase_of_turning(kinematics, group.carriage or "", turning, at)
+            phases = _phase_of_turning(kinematics, group.carriage or "", turning, at)
             # a wheel that something else turns stands with its centre at the line's own point, by definition
             for locus in group.loci:
                 if isinstance(locus, Rolloff):
-                    ahead = with_phases(kinematics, found)
-                    found[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
-            return found
+                    ahead = with_phases(kinematics, phases)
+                    phases[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
+            return phases
         case RigidPoint() | TwoPointLink() | Aim() | Newton():
             return {}
         case _:
@@ -169,11 +169,11 @@ def standing_links(kinematics: Kinematics, group: Newton, at: Positions) -> Newt
 
     def row(equation: tuple[Constraint, int]) -> Array:
         constraint, which = equation
-        found = np.zeros(width)
+        offsets = np.zeros(width)
         for entity, slopes in constraint.rows(kinematics.numbers, guess)[which].items():
             if entity in first:
-                found[first[entity] : first[entity] + entity.unknowns] += slopes
-        return found
+                offsets[first[entity] : first[entity] + entity.unknowns] += slopes
+        return offsets
 
     rows = [row(equation) for equation in kept]
     for constraint in meshing:

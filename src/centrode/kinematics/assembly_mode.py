@@ -337,8 +337,8 @@ RESIDUAL_TOLERANCE = 1e-9
 def check_fit(kinematics: Kinematics, at: Positions) -> float:
     """Worst residual (see `residuals_at`); refuse a position in which a constraint does not hold."""
     structure = kinematics.structure
-    found = residuals_at(structure.constraints, kinematics.numbers, at)
-    residuals = {c.label: (value, c.angular) for c, value in found.items()}
+    misfits = residuals_at(structure.constraints, kinematics.numbers, at)
+    residuals = {c.label: (value, c.angular) for c, value in misfits.items()}
     residuals |= {label: (value, False) for label, value in length_misfits(kinematics, at).items()}
     # of all constraints the worst one is reported
     label = max(residuals, key=lambda name: residuals[name][0])

@@ -85,7 +85,7 @@ class CellPieces:
         return self.take(np.lexsort((self.centre, self.lane)))
 
     @classmethod
-    def joined(cls, *parts: CellPieces) -> CellPieces:
+    def join(cls, *parts: CellPieces) -> CellPieces:
         """The cells of several together."""
         return cls(*(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(cls)))
 
@@ -104,7 +104,7 @@ def towards(lane: Lanes, low: Array, high: Array, place: Array) -> CellPieces:
 
 def divide_cells(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
     """Cells until each is known, or so short that it is one place; those where the guard has no value are left out."""
-    found: list[CellPieces] = []
+    divided: list[CellPieces] = []
     rest = pieces
     while len(rest):
         value, slope, bend = guard(rest.lane, rest.centre, rest.half)
@@ -115,9 +115,9 @@ def divide_cells(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
         # where the law of a drive changes its formula at a change point there are no derivatives
         done = known | ~np.isfinite(slope) | (rest.half <= unit * _finest(rest.lane, there & ~known))
         every = CellPieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
-        found.append(every.take(there & done))
+        divided.append(every.take(there & done))
         rest = parts_of(every.take(there & ~done))
-    return CellPieces.joined(*found) if found else pieces
+    return CellPieces.join(*divided) if divided else pieces
 
 
 def _finest(lane: Lanes, unknown: Mask) -> Array | float:

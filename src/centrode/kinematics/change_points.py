@@ -214,13 +214,13 @@ def _sum_series(series: Array, x: Array, order: int) -> list[Array]:
 
     The terms are added one by one: a matrix product rounds differently for different numbers of samples.
     """
-    found = [np.zeros(x.shape, dtype=x.dtype) for _ in range(order + 1)]
+    sums = [np.zeros(x.shape, dtype=x.dtype) for _ in range(order + 1)]
     # one more power: the Taylor coefficients of p x + c follow from those of p
     for k in range(series.shape[1] - 1, -1, -1):
         for j in range(order, 0, -1):
-            found[j] = found[j] * x + found[j - 1]
-        found[0] = found[0] * x + series[:, k]
-    return found
+            sums[j] = sums[j] * x + sums[j - 1]
+        sums[0] = sums[0] * x + series[:, k]
+    return sums
 
 
 def _put_entries(old: Number, shape: tuple[int, ...], index: Index, values: Array) -> Array:
@@ -366,8 +366,8 @@ class BranchedPlan:
         series: ChangePointSeries | None = None
         trying = np.arange(count)
         while len(trying):
-            found, whole = self._around(group, replace(windows.of(trying), radius=radius[trying]))
-            series = found.put(series, trying[whole], whole, count)
+            around, whole = self._around(group, replace(windows.of(trying), radius=radius[trying]))
+            series = around.put(series, trying[whole], whole, count)
             best[trying[whole]] = radius[trying[whole]]
             growing[trying[whole]] = True
             # a circle that holds a singularity ends the growing of one that held none before
@@ -510,10 +510,10 @@ class Circling(Unmended):
         steps = np.round(-np.diff(along.real, axis=1) / TURN)
         whole = np.round((first - along[:, 0].real) / TURN)[:, None] + np.zeros(along.shape)
         whole[:, 1:] += np.cumsum(steps, axis=1)
-        found = along + TURN * whole
+        unwrapped = along + TURN * whole
         # at the real end it must be the motion's own angle with its turns
-        self.followed &= np.abs(found[:, -1].real - last) < 0.5 * TURN
-        return found.reshape(-1)
+        self.followed &= np.abs(unwrapped[:, -1].real - last) < 0.5 * TURN
+        return unwrapped.reshape(-1)
 
     def _by_circles(self, number: Number) -> Any:
         return np.broadcast_to(number, self.parameter.shape).reshape(-1, len(HALF_CIRCLE))

@@ -452,15 +452,15 @@ def _locus(
     rotor: Vector | None,
 ) -> Any:
     """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
-    found = _of_point(locus, m, numbers, at, rotor)
+    curve = _of_point(locus, m, numbers, at, rotor)
     # without a carriage the point is unknown itself
     if rotor is None:
-        return found
+        return curve
     # the locus of the point, shifted by its arm, is that of the carriage's origin
     arm = arms.get(locus.point, (0.0, 0.0))
-    if isinstance(found, PlaneCircle):
-        return PlaneCircle(subtract(found.centre, arm), found.radius)
-    return Line(subtract(found.through, arm), found.direction)
+    if isinstance(curve, PlaneCircle):
+        return PlaneCircle(subtract(curve.centre, arm), curve.radius)
+    return Line(subtract(curve.through, arm), curve.direction)
 
 
 def _of_point(locus: Locus, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None) -> Any:

@@ -81,20 +81,20 @@ def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]
     cells = Cells(half, ARRAYS)
     # laws are any formulas: their second derivative is looked at in the middle and at the ends of each cell
     looks = [Path.drive_values(path, JETS, Jet.variable(at + shift * half, 2)) for shift in (0.0, -1.0, 1.0)]
-    found: dict[str, Number] = {}
+    values: dict[str, Number] = {}
     for drive, here in looks[0].items():
         if not isinstance(here, Jet):
-            found[drive] = here
+            values[drive] = here
             continue
         value, slope = here.coefficients[:2]
         seconds = [look[drive].derivative(2) for look in looks]
         if all(np.ndim(x) == 0 and x == 0.0 for x in seconds):
-            found[drive] = Bent(value, slope, 0.0, cells)
+            values[drive] = Bent(value, slope, 0.0, cells)
         else:
-            found[drive] = Bent(
+            values[drive] = Bent(
                 value, slope, ROOM * np.max(np.abs(np.broadcast_arrays(*seconds)), axis=0), cells
             )
-    return found
+    return values
 
 
 def bent_frame(kinematics: Kinematics, at: Array, half: Array | float) -> Positions:
@@ -155,12 +155,12 @@ def _bends(series: Array, windows: Windows, chosen: Lanes, along: Array, half: A
     """Bends over cells about places in windows, by the terms of the series; those of closed forms beyond it."""
     # the farthest place of the cell counts, in radii of the circle
     share = (np.abs(along - windows.centre) + half) / windows.radius
-    found = np.zeros(len(chosen))
+    bound = np.zeros(len(chosen))
     for k in range(series.shape[1] - 1, 1, -1):
         # the second derivative of each term at the edge of the cell, in absolute value, by Horner's rule
-        found = found * share + k * (k - 1.0) * np.abs(series[chosen, k])
+        bound = bound * share + k * (k - 1.0) * np.abs(series[chosen, k])
     # near the circle the remainder of the series is unknown: there the bound of the closed form is kept
-    return np.where(share <= INSIDE, found / windows.radius**2, closed)
+    return np.where(share <= INSIDE, bound / windows.radius**2, closed)
 
 
 # Radicands and divisors of groups at single places of the path, one mechanism for each, over any algebra.
@@ -326,10 +326,10 @@ class Zeros:
             np.concatenate([ends[1], more[1]]),
             np.concatenate([ends[2], more[2]]),
         )
-        found = (minima, others)
+        zeros = (minima, others)
         touched = (
-            np.concatenate([each.lane[each.touches] for each in found]),
-            np.concatenate([each.at[each.touches] for each in found]),
+            np.concatenate([each.lane[each.touches] for each in zeros]),
+            np.concatenate([each.at[each.touches] for each in zeros]),
         )
         return (lanes, self.guards.roots(group, lanes, low, high)), touched
 
@@ -346,15 +346,17 @@ class Zeros:
         And change points about which a group before turns fast: most happens next to them.
         """
         kinds = ("limit",) if self.branches.smooth else ("limit", "change point")
-        found = [e for e in self.branches.events if e.group < group and e.kind in kinds]
+        events = [e for e in self.branches.events if e.group < group and e.kind in kinds]
         quick = [self._quick(before) for before in range(group)]
         lanes = np.concatenate(
-            [np.array([e.lane for e in found], dtype=np.intp), *(each[0] for each in quick)]
+            [np.array([e.lane for e in events], dtype=np.intp), *(each[0] for each in quick)]
         )
-        at = np.concatenate([np.array([e.at for e in found], dtype=np.float64), *(each[1] for each in quick)])
+        at = np.concatenate(
+            [np.array([e.at for e in events], dtype=np.float64), *(each[1] for each in quick)]
+        )
         walls, blind = np.zeros(len(at), dtype=bool), np.zeros(len(at), dtype=bool)
-        walls[: len(found)] = [e.kind == "limit" for e in found]
-        blind[: len(found)] = True
+        walls[: len(events)] = [e.kind == "limit" for e in events]
+        blind[: len(events)] = True
         inside = (self.mesh[0] <= at) & (at <= self.mesh[-1])
         at = at[inside]
         return _Stops(lanes[inside], at, self._nodes_at(at), walls[inside], blind[inside])
@@ -407,17 +409,17 @@ class Zeros:
         plain = rough.copy()
         plain[lanes, nodes] = False
         rows, cells = np.nonzero(plain)
-        parts = CellPieces.joined(
+        parts = CellPieces.join(
             parts_of(CellPieces.of(rows, self.mesh[cells], half[cells])), towards(lanes, low, high, at)
         )
-        found = divide_cells(parts, lambda *cell: self.guards.bend_bound(group, *cell), self.branches.unit)
+        divided = divide_cells(parts, lambda *cell: self.guards.bend_bound(group, *cell), self.branches.unit)
         # nodes beside rough cells close the chain: their signs are known
         beside = np.zeros(rough.shape, dtype=bool)
         beside[:, 1:] |= rough[:, :-1]
         beside[:, :-1] |= rough[:, 1:]
         rows, cells = np.nonzero(beside & ~rough & np.isfinite(value))
-        return CellPieces.joined(
-            found, CellPieces.of(rows, self.mesh[cells], half[cells], value[rows, cells], nodes=True)
+        return CellPieces.join(
+            divided, CellPieces.of(rows, self.mesh[cells], half[cells], value[rows, cells], nodes=True)
         )
 
     def _sign_cells(
@@ -439,7 +441,7 @@ class Zeros:
         cores = CellPieces.of(minima.lane, minima.at, self._finest, minima.least)
         walls = CellPieces.of(stops.lane, stops.at, self._finest, np.inf).take(stops.walls)
         cores = cores.take(np.isfinite(minima.least))
-        return CellPieces.joined(replace(pieces, value=value), cores, walls).sort_by_path()
+        return CellPieces.join(replace(pieces, value=value), cores, walls).sort_by_path()
 
     def _unforeseen(self, group: int, pieces: CellPieces, minima: _Minima) -> _Minima:
         """The least sizes between cells of one sign, where no node foretold one.
@@ -536,8 +538,8 @@ class EventScan:
         bend = self._bend_on_mesh(divisor)
         if bend is None:
             lanes, cells = sign_changes(value)
-            found = self.guards.roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
-            places = [(lanes, found), self._beside_limits(group, value)]
+            poles = self.guards.roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
+            places = [(lanes, poles), self._beside_limits(group, value)]
         else:
             places = list(self.zeros.found(group, value, slope, bend, largest_of(value)))
         limits = [
@@ -559,7 +561,7 @@ class EventScan:
         return None if isinstance(jet, Jet) else np.zeros(shape)
 
     def _events(self, group: int, value: Array, slope: Array) -> list[Event]:
-        found: list[Event] = []
+        events: list[Event] = []
         settled = np.zeros((value.shape[0], value.shape[1] - 1), dtype=bool)
         lanes, cells = low_minima(self.mesh, value, slope)
         if len(lanes):
@@ -568,7 +570,7 @@ class EventScan:
             # where a group before this one goes to infinity, the radicand's error exceeds the radicand itself
             certain = SAFETY * bound <= self.branches.largest[group][lanes]
             touches = certain & (np.abs(least) <= SAFETY * bound)
-            found += [
+            events += [
                 Event("change point", group, int(lane), float(x))
                 for lane, x in zip(lanes[touches], at[touches], strict=True)
             ]
@@ -582,14 +584,14 @@ class EventScan:
             ):
                 chosen = dips & (edge > 0.0)
                 roots = self.guards.roots(group, lanes[chosen], first[chosen], last[chosen])
-                found += self._limits(group, lanes[chosen], roots)
+                events += self._limits(group, lanes[chosen], roots)
             settled[lanes[dips], cells[dips]] = True
         # what a minimum explained is not explained again
         lanes, cells = sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self.guards.roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
         beside = self._beside_limits(group, value)
-        return found + self._limits(group, lanes[rest], roots) + self._limits(group, *beside)
+        return events + self._limits(group, lanes[rest], roots) + self._limits(group, *beside)
 
     def _beside_limits(self, group: int, value: Array) -> tuple[Lanes, Array]:
         """Lanes and places of limits in the part of a cell that is left of it where an earlier group stops.

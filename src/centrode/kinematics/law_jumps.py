@@ -96,10 +96,10 @@ def first_jump(law: Law, first: float, last: float, least: float) -> Jump | None
         # a pole grows towards the place: it has no value there, and is no jump
         grows = (close > 2.0 * wide + least).any(axis=0)
     absent = ~np.isfinite(here) | ~np.isfinite(close).all(axis=0) | (jumps & grows)
-    found = np.flatnonzero(jumps | absent)
-    if not len(found):
+    jumping = np.flatnonzero(jumps | absent)
+    if not len(jumping):
         return None
-    k = found[np.argmin(places[found])]
+    k = jumping[np.argmin(places[jumping])]
     # next to zero the time is rounding of the range, and zero is what is meant
     time = places[k] if abs(places[k]) > NEAR * width else 0.0
     return Jump(float(time), float(near[0][k]), np.nan if absent[k] else float(near[1][k]))
@@ -107,7 +107,7 @@ def first_jump(law: Law, first: float, last: float, least: float) -> Jump | None
 
 def _suspects(law: TextLaw, mesh: Array) -> Array:
     """Times at which a number whose zeros matter changes its sign, or turns round towards zero."""
-    found = [np.empty(0)]
+    suspects = [np.empty(0)]
     for number, jet in enumerate(_watched_jets(law, mesh, 1)):
         value, slope = (np.broadcast_to(jet.derivative(k), mesh.shape) for k in (0, 1))
         with np.errstate(all="ignore"):
@@ -118,11 +118,11 @@ def _suspects(law: TextLaw, mesh: Array) -> Array:
         nodes = mesh
         if len(cells):
             turns = _turns(law, number, mesh[cells], mesh[cells + 1])
-            found.append(turns)
+            suspects.append(turns)
             # the turning place is a node as well: on both sides signs are compared with it
             nodes = np.unique(np.append(mesh, turns))
-        found.append(_changes(law, number, nodes))
-    return np.concatenate(found)
+        suspects.append(_changes(law, number, nodes))
+    return np.concatenate(suspects)
 
 
 def _turns(law: TextLaw, number: int, low: Array, high: Array) -> Array:

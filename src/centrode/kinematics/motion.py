@@ -49,7 +49,9 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     variables |= judgements_of(solved, front) | _contacts(solved, front)
     if not batch:
         variables |= _events(solved)
-    data = xr.Dataset(variables, coords=coordinates_of(solved), attrs=attributes_of(solved))
+    data = xr.Dataset(
+        variables, coords=coordinates_of(solved), attrs=attributes_of(solved, None if batch else "run")
+    )
     for path, values in (vary or {}).items():
         data = data.assign_coords({path: (BATCH, np.asarray(values, dtype=np.float64))})
     return data
@@ -77,15 +79,15 @@ def _lanes(array: Any, batch: tuple[str, ...]) -> Any:
 def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Values and derivatives by time, by the chain rule from those by the path's parameter."""
     span, unit = solved.span, _length_unit(solved)
-    found: dict[str, Variable] = {}
+    variables: dict[str, Variable] = {}
     for kind in kinds_of(solved):
         for order in range(3):
             values = by_time(kind.orders, order, span)
             if values is None:
                 continue
             name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
-            found[name] = vocabulary_variable(name, dimensions, _lanes(values, front), length_unit=unit)
-    return found
+            variables[name] = vocabulary_variable(name, dimensions, _lanes(values, front), length_unit=unit)
+    return variables
 
 
 def by_time(orders: Orders, order: int, span: SampleGrid) -> Array | None:
@@ -120,27 +122,27 @@ def kinds_of(solved: Solved) -> list[VariableKind]:
     points = ("position", "velocity", "acceleration")
     slides = ("slide", "slide_velocity", "slide_acceleration")
     turning = ("angle", "angular_velocity", "angular_acceleration")
-    found = [VariableKind(points, "", ("point", "axis"), orders(solved.all_points))]
+    kinds = [VariableKind(points, "", ("point", "axis"), orders(solved.all_points))]
     if solved.spins is None:
-        found.append(VariableKind(turning, "angular_", ("link",), orders(solved.angles)))
+        kinds.append(VariableKind(turning, "angular_", ("link",), orders(solved.angles)))
     else:
         spins = (None, solved.spins[0], solved.spins[1])
-        found.append(VariableKind(turning, "angular_", ("link", "axis"), spins))
+        kinds.append(VariableKind(turning, "angular_", ("link", "axis"), spins))
         joints = ("joint_angle", "joint_velocity", "joint_acceleration")
-        found.append(VariableKind(joints, "joint_", ("joint",), orders(solved.angles)))
-    return [*found, VariableKind(slides, "slide_", ("guide",), orders(solved.slides))]
+        kinds.append(VariableKind(joints, "joint_", ("joint",), orders(solved.angles)))
+    return [*kinds, VariableKind(slides, "slide_", ("guide",), orders(solved.slides))]
 
 
 def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Kinematic coefficients: derivatives by the drive's value."""
     unit = solved.ready.parameter.units[0]
-    found = {}
+    variables = {}
     for order, word in ((1, "velocity"), (2, "acceleration")):
         for kind in kinds_of(solved):
             name, dimensions = f"{kind.prefix}{word}_coefficient", (*front, "sample", *kind.dimensions)
             values = _lanes(kind.orders[order], front)
-            found[name] = vocabulary_variable(name, dimensions, values, unit, _length_unit(solved))
-    return found
+            variables[name] = vocabulary_variable(name, dimensions, values, unit, _length_unit(solved))
+    return variables
 
 
 def _length_unit(solved: Solved) -> str:
@@ -218,12 +220,13 @@ def labels_of(names: tuple[str, ...]) -> Any:
     return pd.Index(names, dtype=object)
 
 
-def attributes_of(solved: Solved) -> dict[str, Any]:
-    """What a result says of itself."""
+def attributes_of(solved: Solved, topic: str | None = None) -> dict[str, Any]:
+    """What a result says of itself: the topic of the registry that shows it, its mechanism as text, how exact it is."""
     mechanism = solved.ready.mechanism
     with speaking("en"):
         worst = solved.worst_constraint.label
     return {
+        **({} if topic is None else {"topic": topic}),
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,
@@ -297,8 +300,8 @@ def _solve_range(
 ) -> Solved:
     if numbers is None:
         return solve(ready, span, progress=progress)
-    found: Solved = _many().solve_many(ready, span, numbers, lanes, progress)
-    return found
+    solved: Solved = _many().solve_many(ready, span, numbers, lanes, progress)
+    return solved
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

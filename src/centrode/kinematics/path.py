@@ -94,7 +94,7 @@ class TimeScale:
 
     def nodes(self, low: float, high: float) -> Array:
         """Mesh nodes from the last one below `low` to the first one above `high`."""
-        found = []
+        stretches = []
         # a tenth of a unit on both sides: nodes of the next stretch may be those just beyond the ends
         for k in self._stretches(self._advance(low, -0.1), self._advance(high, 0.1)):
             first, last = _ends(k, self.base)
@@ -104,8 +104,8 @@ class TimeScale:
             least = max(0, int(np.floor((low - first) / step)) - 2)
             most = int(np.ceil((min(high, last) - first) / step)) + 2
             nodes = first + (np.arange(least, most + 1, dtype=np.float64) + OFF_GRID) * step
-            found.append(nodes[nodes < last])
-        return np.concatenate(found)
+            stretches.append(nodes[nodes < last])
+        return np.concatenate(stretches)
 
     def _advance(self, time: float, units: float) -> float:
         here = self._stretch(time)
@@ -247,17 +247,17 @@ class Path:
         """Values of all drives at a parameter, over any algebra."""
         if not self.by_time:
             return {self.driven[0].drive.id: parameter, **self.held}
-        return {one.drive.id: one.value(m, parameter) for one in self.driven}
+        return {driven.drive.id: driven.value(m, parameter) for driven in self.driven}
 
     def impossible(self, parameter: Any) -> Any:
         """Where a cylinder would be shorter than zero: the mechanism is open there, whatever its formulas say."""
-        found = np.zeros(np.shape(parameter), dtype=bool)
-        if any(one.drive.kind == "distance" for one in self.driven):
+        negative = np.zeros(np.shape(parameter), dtype=bool)
+        if any(driven.drive.kind == "distance" for driven in self.driven):
             values = self.drive_values(ARRAYS, parameter)
-            for one in self.driven:
-                if one.drive.kind == "distance":
-                    found |= values[one.drive.id] <= 0.0
-        return found
+            for driven in self.driven:
+                if driven.drive.kind == "distance":
+                    negative |= values[driven.drive.id] <= 0.0
+        return negative
 
 
 def path_of(mechanism: Mechanism, scale: float) -> Path:
@@ -294,10 +294,10 @@ def _fastest(driven: tuple[DrivenBy, ...], scale: float, times: Array) -> Array:
     """The greatest rate of several drives at times, in their units per second."""
     fastest = np.zeros(len(times))
     with np.errstate(all="ignore"):
-        for one in driven:
-            value = one.value(JETS, Jet.variable(times, 1))
+        for each in driven:
+            value = each.value(JETS, Jet.variable(times, 1))
             if isinstance(value, Jet):
-                fastest = np.fmax(fastest, np.abs(value.derivative(1)) / unit_of(one.drive, scale))
+                fastest = np.fmax(fastest, np.abs(value.derivative(1)) / unit_of(each.drive, scale))
     return fastest
 
 
@@ -448,26 +448,26 @@ def grid_at(path: Path, places: Array) -> SampleGrid:
 
 def _check_extent(path: Path, span: SampleGrid) -> None:
     """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
-    for one in path.driven:
-        jump = _jump(path, one, span.time)
+    for driven in path.driven:
+        jump = _jump(path, driven, span.time)
         # a jump to a finite value is reported before missing values: it says more of what to correct
         if jump is not None and np.isfinite(jump.after):
             what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
             raise InputError(
-                f"[[drives]] {one.drive.id}",
+                f"[[drives]] {driven.drive.id}",
                 what.format(time=jump.time, before=jump.before, after=jump.after),
                 _("no drive can jump: join the parts by a ramp or by segments, or ask for another range"),
             )
-        if not all(np.isfinite(part).all() for part in _derivatives(one, span.time)):
+        if not all(np.isfinite(part).all() for part in _derivatives(driven, span.time)):
             raise InputError(
-                f"[[drives]] {one.drive.id}",
+                f"[[drives]] {driven.drive.id}",
                 _("its law has no finite value with two derivatives everywhere in the range"),
                 _("correct the law, or ask for another range"),
             )
         # a jump to no value is reported last, as the samples themselves may have hit it
         if jump is not None:
             raise InputError(
-                f"[[drives]] {one.drive.id}",
+                f"[[drives]] {driven.drive.id}",
                 _("its law has no finite value at t = {time:.9g} s").format(time=jump.time),
                 _("correct the law, or ask for another range"),
                 # lengths count in units, so that 500 turns of the mesh are the same work for a displacement
@@ -502,11 +502,11 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
 
 def _at_values(path: Path, values: Array) -> SampleGrid:
     # with one drive at constant speed times follow from the values, and the law is not asked
-    one, speed = path.driven[0], path.parameter.constant_speed
+    driven, speed = path.driven[0], path.parameter.constant_speed
     if not speed:
-        raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
+        raise InputError(f"[[drives]] {driven.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
     ones = np.ones(len(values))
-    return SampleGrid(path.parameter.times(values, one.start), values, speed * ones, 0.0 * ones)
+    return SampleGrid(path.parameter.times(values, driven.start), values, speed * ones, 0.0 * ones)
 
 
 def _range(
@@ -541,7 +541,7 @@ def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
 
 
 def _even_times(path: Path, samples: int, start: float | None, stop: float | None) -> SampleGrid:
-    spans = [one.law.span for one in path.driven if one.law.span is not None]
+    spans = [driven.law.span for driven in path.driven if driven.law.span is not None]
     # where every law has a value: the latest beginning and the earliest end
     first = start if start is not None else max((span[0] for span in spans), default=0.0)
     last = stop if stop is not None else min((span[1] for span in spans), default=None)
@@ -557,9 +557,13 @@ def _at_times(path: Path, time: Array) -> SampleGrid:
 
 
 def _one_turn(path: Path) -> float:
-    periods = [one.law.period for one in path.driven if isinstance(one.law, ShaftLaw)]
+    periods = [driven.law.period for driven in path.driven if isinstance(driven.law, ShaftLaw)]
     # the slowest drive makes one whole turn
-    speeds = [abs(one.drive.speed) for one in path.driven if one.drive.kind == "angle" and one.drive.speed]
+    speeds = [
+        abs(driven.drive.speed)
+        for driven in path.driven
+        if driven.drive.kind == "angle" and driven.drive.speed
+    ]
     if periods and not speeds:
         return max(periods)
     if not speeds:

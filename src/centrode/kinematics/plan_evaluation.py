@@ -328,11 +328,11 @@ class Branches:
             if event.group == group and event.kind == "change point":
                 # padded with NaN, which lies between no two numbers: one comparison serves all lanes
                 per_lane[event.lane].append(self._behind_start(event.at))
-        width = max((len(found) for found in per_lane), default=0)
+        width = max((len(of_lane) for of_lane in per_lane), default=0)
         if width:
             table = np.full((self.lanes, width), np.nan)
-            for lane, found in enumerate(per_lane):
-                table[lane, : len(found)] = found
+            for lane, of_lane in enumerate(per_lane):
+                table[lane, : len(of_lane)] = of_lane
             self.crossings[group] = table
 
     def _behind_start(self, at: float) -> float:
@@ -361,13 +361,13 @@ class Branches:
 
     def reaches(self) -> Array:
         """Nearest limits of every mechanism: shape (lanes, 2)."""
-        found = np.full((self.lanes, 2), (-np.inf, np.inf))
+        reaches = np.full((self.lanes, 2), (-np.inf, np.inf))
         for event in self.events:
             if event.kind == "limit":
                 side = 0 if self._is_below(event) else 1
                 nearer = max if side == 0 else min
-                found[event.lane, side] = nearer(float(found[event.lane, side]), event.at)
-        return found
+                reaches[event.lane, side] = nearer(float(reaches[event.lane, side]), event.at)
+        return reaches
 
     def _is_below(self, limit: Event) -> bool:
         """Whether a limit bounds the reach from below; one at the start itself bounds the side that does not close."""
@@ -451,14 +451,14 @@ class PlanLayout:
 
     def numbers(self, m: Namespace, dimensions: Dimensions, at: Positions) -> list[Number]:
         """The numbers of all columns at positions, over any algebra."""
-        found = [x for point in self.points for x in at.points[point]]
-        found += [x for link in self.links for x in self.space.attitude(at.poses[link])]
+        numbers = [x for point in self.points for x in at.points[point]]
+        numbers += [x for link in self.links for x in self.space.attitude(at.poses[link])]
         for guide, point in zip(self.guides, self.guided, strict=True):
-            found.append(slide_of(m, dimensions, at, guide, point))
+            numbers.append(slide_of(m, dimensions, at, guide, point))
         # in the plane a link's attitude is the rotor of its angle; on the sphere three axes do not tell it
         if not self._own:
-            found += [x for link in self.angles for x in rotor_of_angle(m, dimensions, at, link)]
-        return found
+            numbers += [x for link in self.angles for x in rotor_of_angle(m, dimensions, at, link)]
+        return numbers
 
 
 def layout_of(kinematics: Kinematics) -> PlanLayout:

@@ -146,8 +146,8 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
 def _check_redundant(kinematics: Kinematics, at: Positions) -> None:
     """A redundant constraint must also hold elsewhere, or the mechanism does not move at all."""
     redundant = kinematics.structure.redundant
-    found = {c.label: value for c, value in residuals_at(redundant, kinematics.numbers, at).items()}
-    for label, value in (found | length_misfits(kinematics, at)).items():
+    residuals = {c.label: value for c, value in residuals_at(redundant, kinematics.numbers, at).items()}
+    for label, value in (residuals | length_misfits(kinematics, at)).items():
         if value > RESIDUAL_TOLERANCE:
             raise InputError(
                 label,

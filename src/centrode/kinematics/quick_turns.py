@@ -80,7 +80,7 @@ class QuickTurns:
             hooks = self.continuation.hooks(ARRAYS, self._parameter, self._lanes)
             return kinematics.positions(ARRAYS, self._parameter, hooks), kinematics.numbers
 
-    def measured(self, angle: Callable[[Dimensions, Positions], Number]) -> list[TurnedStretch]:
+    def measure(self, angle: Callable[[Dimensions, Positions], Number]) -> list[TurnedStretch]:
         """How an angle turns on the stretches, by what gives it in (-pi, pi] from dimensions and positions."""
         if not self.stretches:
             return []
@@ -143,11 +143,11 @@ def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> li
             before = pieces.pop()
             first, last, inner = before[0], max(last, before[1]), before[2] + inner
         pieces.append((first, last, inner))
-    found = []
+    stretches = []
     # nodes of the mesh are kept, as turns are put in between them
     for first, last, inner in pieces:
         nodes = mesh[first : last + 1]
         between = [x for x in inner if nodes[0] < x < nodes[-1]]
         places = np.unique(np.concatenate([nodes, between]))
-        found.append(ParameterStretch(lane, places, first, np.searchsorted(places, nodes)))
-    return found
+        stretches.append(ParameterStretch(lane, places, first, np.searchsorted(places, nodes)))
+    return stretches

@@ -141,10 +141,10 @@ class SampleJudging(Smooth):
 
     def after(self, group: int, at: Positions) -> None:
         mended = self.continuation.mend(group, at, self.parameter, self.lanes)
-        for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
+        for total, mask in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
             for index in mended:
-                found[index] = False  # there the motion goes on smoothly
-            np.logical_or(total, found, out=total)
+                mask[index] = False  # there the motion goes on smoothly
+            np.logical_or(total, mask, out=total)
 
     def _at_zero(self, group: int, value: Array) -> Mask | None:
         """Where a radicand is zero within its rounding error; None if nowhere."""
@@ -269,7 +269,7 @@ class ResultArrays:
         return np.moveaxis(points.reshape(ORDERS, -1, self.layout.axes, *self.status.shape), (1, 2), (3, 4))
 
     @property
-    def turned(self) -> Array:
+    def all_angles(self) -> Array:
         """Angles (3, lanes, n, angles)."""
         return np.moveaxis(self.angles, 1, 3)
 
@@ -310,7 +310,7 @@ class UnwoundAngle:
     ) -> NodeTurns:
         """Turns along the mesh of what a rotor shows; `initial` [rad] is its angle in the initial position."""
         start = int(np.argmin(np.abs(self.mesh - self.ready.kinematics.path.initial)))
-        quick = self.quick.measured(lambda numbers, at: _angle_of(rotor(numbers, at)))
+        quick = self.quick.measure(lambda numbers, at: _angle_of(rotor(numbers, at)))
         return node_turns(rotor(self.numbers, self.on_mesh), initial, start, len(self.mesh), quick)
 
     def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:
@@ -375,12 +375,12 @@ def contacts_at(kinematics: Kinematics, at: Positions, samples: Samples) -> Arra
     """Contact points (lanes, n, rolling wheels, 2) [m] in description order; NaN where there is no position."""
     wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
     # in the order of the description, as its constraints are
-    found = np.empty((*samples.status.shape, len(wheels), 2))
+    contacts = np.empty((*samples.status.shape, len(wheels), 2))
     for k, contact in enumerate(wheels):
         for axis, x in enumerate(contact_point(contact, ARRAYS, kinematics.numbers, at)):
-            found[..., k, axis] = x
-    found[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
-    return found
+            contacts[..., k, axis] = x
+    contacts[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
+    return contacts
 
 
 # How well every constraint holds at every sample, redundant constraints and the unit length of axes included.
@@ -416,10 +416,10 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     greatest: dict[Kept, float] = {}
     with np.errstate(all="ignore"):
         for kept, size, angular in each_residual(kinematics, ARRAYS, at):
-            found = size / (1.0 if angular else kinematics.numbers.scale)
+            relative = size / (1.0 if angular else kinematics.numbers.scale)
             # maximum lets NaN win: a constraint without a value leaves the sample without a residual
-            worst = np.maximum(worst, found)
-            greatest[kept] = float(np.nanmax(found, initial=0.0))
+            worst = np.maximum(worst, relative)
+            greatest[kept] = float(np.nanmax(relative, initial=0.0))
     if samples.status.any():
         worst[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
     return worst, max(greatest, key=greatest.__getitem__)

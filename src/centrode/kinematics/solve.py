@@ -119,7 +119,7 @@ def solve(
         _join_branches([part.branches for part in parts]),
         points,
         points[:, :, :, len(kinematics.numbers.frame) :],
-        room.turned,
+        room.all_angles,
         room.slides,
         room.spins,
         room.attitudes,
@@ -214,9 +214,9 @@ class _Part:
 def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples: Samples) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
     places = MotionOnPath.along(ready, kinematics, span.parameter, samples.status.shape[0])
-    found = places.fill(span.parameter, samples)
-    contacts = contacts_at(kinematics, found.at, samples)
-    return _Part(places.continuation.branches, found.residual, found.worst_constraint, contacts)
+    outcome = places.fill(span.parameter, samples)
+    contacts = contacts_at(kinematics, outcome.at, samples)
+    return _Part(places.continuation.branches, outcome.residual, outcome.worst_constraint, contacts)
 
 
 def _join_branches(parts: Sequence[Branches]) -> Branches:

@@ -173,12 +173,12 @@ class _Onward(JetFunctions):
     def sign(self, x: Number) -> Number:
         if not isinstance(x, Jet):
             return self.base.sign(x)
-        found: Number = 0.0
+        sense: Number = 0.0
         for coefficient in x.coefficients:
             # once a sign is found its square is 1, and later coefficients are left out: no branch on a value
             # of an array
-            found = found + (1.0 - found * found) * self.base.sign(coefficient)
-        return found
+            sense = sense + (1.0 - sense * sense) * self.base.sign(coefficient)
+        return sense
 
     def abs(self, x: Number) -> Number:
         return x * self.sign(x) if isinstance(x, Jet) else self.base.abs(x)

@@ -48,7 +48,7 @@ class Piece:
     square: float = 0.0
     unit: float = 1.0
 
-    def mirrored(self) -> Piece:
+    def mirror(self) -> Piece:
         """The piece of 1 - s(1 - u): the other half of a curve that is symmetric about its middle."""
         # 1 - s(1 - u): odd powers keep their sign, even ones and the square change it
         powers = tuple(c if k % 2 else -c for k, c in enumerate(self.powers, 1))
@@ -56,7 +56,7 @@ class Piece:
             self, origin=1.0 - self.origin, value=1.0 - self.value, powers=powers, square=-self.square
         )
 
-    def placed(self, start: float, unit: float, before: float, after: float) -> Piece:
+    def place(self, start: float, unit: float, before: float, after: float) -> Piece:
         """The piece of a curve that runs from (start, before) to (start + unit, after), not from (0, 0) to (1, 1)."""
         rise = after - before
         return Piece(
@@ -168,7 +168,7 @@ def _symmetric(*half: tuple[float, Piece]) -> RiseCurve:
     """The curve with s(u) + s(1 - u) = 1 from the pieces of its first half, each with its end."""
     ends = [end for end, _piece in half]
     pieces = [piece for _end, piece in half]
-    other = [piece.mirrored() for piece in reversed(pieces)]
+    other = [piece.mirror() for piece in reversed(pieces)]
     breaks = (0.0, *ends, *(1.0 - end for end in reversed(ends[:-1])), 1.0)
     return RiseCurve(breaks, (*pieces, *other))
 

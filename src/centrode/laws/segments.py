@@ -51,12 +51,12 @@ def polynomial(conditions: Sequence[Condition]) -> list[tuple[float, Piece]]:
     powers, divisor = _powers(nodes, series)
     ends = [(a + b) / 2 for (a, _a), (b, _b) in pairwise(conditions)] + [conditions[-1][0]]
     unit = conditions[-1][0] - conditions[0][0]
-    found = []
+    pieces = []
     for end, node, (time, _given) in zip(ends, nodes, conditions, strict=True):
         # whole numbers up to here: each coefficient is rounded once
         rounded = _coefficients_in_units(_about(powers, node), int(Fraction(unit) * ticks), divisor)
-        found.append((end, Piece(time, rounded[0], tuple(rounded[1:]), unit=unit)))
-    return found
+        pieces.append((end, Piece(time, rounded[0], tuple(rounded[1:]), unit=unit)))
+    return pieces
 
 
 def _series(given: tuple[float, ...], ticks: int) -> list[Fraction]:
@@ -158,15 +158,15 @@ def b_spline(conditions: Sequence[Condition], degree: int) -> list[tuple[float, 
     if not all(map(math.isfinite, coefficients)):
         what = _("a spline with these conditions is beyond what can be computed with")
         raise InputError("", what, _("give smaller rates, or a shorter time"))
-    found = []
+    pieces = []
     for place, end, taylor in _stretches(knots, coefficients, degree):
         # what is given at the ends is put in as it is: sums of basis functions would round it
         given = {0.0: rates[0], 1.0: rates[-1]}.get(place, [])
         taylor[: len(given)] = [rate / math.factorial(k) for k, rate in enumerate(given)][: degree + 1]
         origin = last if place == 1.0 else first + place * unit
-        found.append((first + end * unit, Piece(origin, taylor[0], tuple(taylor[1:]), unit=unit)))
+        pieces.append((first + end * unit, Piece(origin, taylor[0], tuple(taylor[1:]), unit=unit)))
     # the last stretch holds up to its end: the two polynomials about its ends are one
-    return [*found[:-1], (last, found[-1][1])]
+    return [*pieces[:-1], (last, pieces[-1][1])]
 
 
 def _knots(places: Numbers, rates: list[Numbers], degree: int) -> Numbers:
@@ -213,7 +213,7 @@ def _at_end(rates: Numbers, knots: Numbers, degree: int) -> Numbers:
     splines are differences of those above them.
     """
     column = [rates[0]]
-    found = [rates[0]]
+    known = [rates[0]]
     for order in range(1, len(rates)):
         derived = [rates[order]]
         for k in range(order):
@@ -222,8 +222,8 @@ def _at_end(rates: Numbers, knots: Numbers, degree: int) -> Numbers:
             step = (knots[degree + 1 + k] - knots[low + k + 1]) / (degree - low)
             derived.append(column[low] + derived[-1] * step)
         column = derived[::-1]
-        found.append(column[0])
-    return found
+        known.append(column[0])
+    return known
 
 
 def _solve_banded(rows: list[dict[int, float]], sides: Numbers) -> Numbers:
@@ -271,7 +271,7 @@ def _stretches(knots: Numbers, coefficients: Numbers, degree: int) -> list[tuple
         # knots differ by one less from derivative to derivative
         steps = [knots[order + k + width] - knots[order + k] for k in range(len(above) - 1)]
         derived.append([width * (b - a) / step for (a, b), step in zip(pairwise(above), steps, strict=True)])
-    found = []
+    stretches = []
     for number, (low, high) in enumerate(pairwise(edges)):
         span = degree + number
         middle = low + (high - low) / 2
@@ -286,8 +286,8 @@ def _stretches(knots: Numbers, coefficients: Numbers, degree: int) -> list[tuple
                 local = row[number : number + degree - order + 1]
                 rate = math.fsum(b * c for b, c in zip(basis, local, strict=True))
                 taylor.append(rate / math.factorial(order))
-            found.append((origin, end, taylor))
-    return found
+            stretches.append((origin, end, taylor))
+    return stretches
 
 
 DWELL = "dwell"
@@ -370,12 +370,12 @@ class LawSegment:
         """Formulas of the segment, each with the time [s] of its end; `before` is the law's value at `start` [s]."""
         if self.curve in THROUGH_POINTS:
             asked = self._conditions(before)
-            found = polynomial(asked) if self.curve == POLYNOMIAL else b_spline(asked, self.degree)
-            return [(start + end, replace(piece, origin=start + piece.origin)) for end, piece in found]
+            formulas = polynomial(asked) if self.curve == POLYNOMIAL else b_spline(asked, self.degree)
+            return [(start + end, replace(piece, origin=start + piece.origin)) for end, piece in formulas]
         after = before if self.to is None else self.to
         curve = CURVES["uniform" if self.curve == DWELL else self.curve]
         ends = [start + end * self.time for end in curve.breaks[1:]]
-        placed = [piece.placed(start, self.time, before, after) for piece in curve.pieces]
+        placed = [piece.place(start, self.time, before, after) for piece in curve.pieces]
         return list(zip(ends, placed, strict=True))
 
     def _conditions(self, before: float) -> list[Condition]:

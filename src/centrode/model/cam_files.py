@@ -76,6 +76,11 @@ def require_curvature_cam(cam: AnyCam) -> Cam:
     raise InputError("", what, _("its lift is that of follower_motion"))
 
 
+def has_curvature_law(cam: AnyCam) -> bool:
+    """Whether the curvature of its roller's path gives the cam."""
+    return isinstance(cam, Cam)
+
+
 def has_follower(cam: AnyCam) -> bool:
     """Whether a follower's lift gives the cam."""
     return isinstance(cam, PlateCam)

@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 import html
-import io
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-
+from centrode import render
 from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.present.displayed_units import shown_as
-from centrode.present.equations.latex import equations_markdown
-from centrode.present.figure_files import METADATA
 from centrode.present.figures import read_scene
 from centrode.present.pictures import mechanism_figure
-from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.study.summary import check_rows
+from centrode.topics.presentation import display_of, is_result, page, sheet_of
 
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.equations.derivation import Equations
     from centrode.model.mechanism import Mechanism
     from centrode.study.check import MechanismCheck
 
-__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html"]
+__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html", "result_html"]
 
 SAMPLES = 73
 
@@ -41,25 +37,45 @@ def mechanism_html(mechanism: Mechanism) -> str:
         drawing = f"<p>{html.escape(str(failure))}</p>"
     rows = [(name, *_link(mechanism, name)) for name in mechanism.links]
     heads = (_("link"), _("points"), _("length"))
-    return drawing + _table(heads, rows)
+    return drawing + render.rows_html(heads, rows)
 
 
 def check_html(checked: MechanismCheck) -> str:
     """A structure as a table: mobility, redundant constraints, loops, groups, initial position."""
     title = html.escape(_(checked.title))
-    return (f"<h4>{title}</h4>" if title else "") + _table((), check_rows(checked))
+    return (f"<h4>{title}</h4>" if title else "") + render.rows_html((), check_rows(checked))
+
+
+def result_html(result: Any) -> str:
+    """A result of a topic as its first picture, its facts and its tables; a motion as a drawing over its dataset.
+
+    A dataset that names no topic is shown as xarray shows it.
+    """
+    is_dataset = hasattr(result, "_repr_html_")
+    own: str = result._repr_html_() if is_dataset else ""
+    if is_dataset and not is_result(result):
+        return own
+    try:
+        return render.sheet_html(sheet_of(result), display_of(result)) + own
+    except (CentrodeError, LookupError, ValueError):  # parts of a dataset may lack what a picture needs
+        return own
 
 
 def motion_html(dataset: xarray.Dataset) -> str:
-    """A motion as a drawing over xarray's own view of it; any other dataset as xarray shows it."""
-    own: str = dataset._repr_html_()
+    """A motion as a drawing over xarray's own view of it; any other dataset as the result that it is."""
     if not _is_motion(dataset):
-        return own
+        return result_html(dataset)
+    own: str = dataset._repr_html_()
     try:
         mechanism = parse_mechanism(dataset.attrs["mechanism"])
         return _drawing(mechanism, dataset) + own
     except (CentrodeError, LookupError, ValueError):  # parts of a motion may lack what a drawing needs
         return own
+
+
+def equations_markdown(equations: Equations) -> str:
+    """The equations of a mechanism as Markdown, their formulas as LaTeX between dollar signs."""
+    return page(equations, "md")
 
 
 def _is_motion(dataset: xarray.Dataset) -> bool:
@@ -76,13 +92,7 @@ def _is_motion(dataset: xarray.Dataset) -> bool:
 def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:
     """The mechanism over fading pictures of its motion, as SVG within a page."""
     with house_style():
-        figure = mechanism_figure(read_scene(mechanism, dataset), dataset, [])
-        spell_decimals(figure)
-        canvas: Any = FigureCanvasSVG(figure)
-        drawn = io.BytesIO()
-        canvas.print_svg(drawn, metadata=METADATA["svg"])
-    text = drawn.getvalue().decode()
-    return f"<div style='max-width: 36em'>{text[text.index('<svg') :]}</div>"
+        return render.figure_html(mechanism_figure(read_scene(mechanism, dataset), dataset, []))
 
 
 def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:
@@ -92,13 +102,3 @@ def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:
         return ", ".join(link.coordinates), ""
     factor, unit = shown_as("m" if mechanism.space == "plane" else "rad", mechanism.display)
     return ", ".join(link.coordinates), f"{factor * link.length:.6g} {unit}"
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Rows as a table, whatever stands in them shown as it is."""
-    heads = "".join(f"<th style='text-align: left'>{html.escape(cell)}</th>" for cell in head)
-    lines = [
-        "<tr>" + "".join(f"<td style='text-align: left'>{html.escape(cell)}</td>" for cell in row) + "</tr>"
-        for row in rows
-    ]
-    return f"<table>{f'<tr>{heads}</tr>' if heads else ''}{''.join(lines)}</table>"

@@ -245,8 +245,8 @@ def _rewritten(operation: str, nodes: tuple[Node, ...]) -> Node | None:
     if operation in FOLDED and all(x.operation == CONSTANT for x in nodes):
         return constant(FOLDED[operation](*(x.detail for x in nodes)))
     rule = _RULES.get(operation)
-    found: Node | None = rule(*nodes) if rule else None
-    return found
+    simpler: Node | None = rule(*nodes) if rule else None
+    return simpler
 
 
 def _opposite_of(x: Node) -> Node | None:

@@ -61,20 +61,20 @@ class Graph:
 
 def topological_order(roots: Iterable[Node]) -> list[Node]:
     """The nodes that roots consist of, arguments first; without recursion, so that depth does not matter."""
-    found: dict[Node, None] = {}
+    ordered: dict[Node, None] = {}
     # a stack gives back the last first: reversed, nodes come in the order of a recursion from the first
     # output on
     stack = [(node, False) for node in reversed(list(roots))]
     while stack:
         node, arguments_done = stack.pop()
-        if node in found:
+        if node in ordered:
             continue
         if arguments_done or not node.arguments:
-            found[node] = None
+            ordered[node] = None
             continue
         stack.append((node, True))
         stack.extend((x, False) for x in reversed(node.arguments))
-    return list(found)
+    return list(ordered)
 
 
 def rebuilt(
@@ -169,11 +169,11 @@ def _dependent_nodes(order: Sequence[Node], variables: Sequence[Node]) -> set[No
 
 def _nodes_below_selections(order: Sequence[Node]) -> set[Node]:
     """Nodes below a selection: their derivative may have to vanish although a factor of it is NaN."""
-    found: set[Node] = set()
+    below: set[Node] = set()
     for node in reversed(order):
-        if node in found or node.operation in _SELECTIONS:
-            found.update(node.arguments)
-    return found
+        if node in below or node.operation in _SELECTIONS:
+            below.update(node.arguments)
+    return below
 
 
 def _collect(by: dict[Node, Operand], node: Node, part: Operand) -> None:

@@ -266,9 +266,11 @@ def greatest_with_gradient(name: str, value: Node, by: Sequence[Node]) -> Reduct
 
 def together(*reductions: Reduction) -> Reduction:
     """Several reductions in one pass."""
-    state = {name: node for one in reductions for name, node in one.state.items()}
-    start = {name: value for one in reductions for name, value in one.start.items()}
-    return Reduction(state, start, {name: node for one in reductions for name, node in one.at_end.items()})
+    state = {name: node for reduction in reductions for name, node in reduction.state.items()}
+    start = {name: value for reduction in reductions for name, value in reduction.start.items()}
+    return Reduction(
+        state, start, {name: node for reduction in reductions for name, node in reduction.at_end.items()}
+    )
 
 
 def end_of(reduction: Reduction, parameters: Sequence[str]) -> Scan:
@@ -324,20 +326,22 @@ def evaluate(
     # how many nodes still wait for each result; an output waits until the end
     left = Counter(x for node in graph.order for x in node.arguments)
     left.update(graph.outputs.values())
-    found: dict[Any, Number] = {}
+    values_of_nodes: dict[Any, Number] = {}
     with np.errstate(all="ignore"):
         for node in graph.order:
             if node.operation == VARIABLE:
-                found[node] = np.asarray(values[str(node.detail)], number)
+                values_of_nodes[node] = np.asarray(values[str(node.detail)], number)
             elif node.operation == CONSTANT:
-                found[node] = np.asarray(node.detail, number)[()]
+                values_of_nodes[node] = np.asarray(node.detail, number)[()]
             else:
-                found[node] = FUNCTIONS[node.operation](*(found[x] for x in node.arguments))
+                values_of_nodes[node] = FUNCTIONS[node.operation](
+                    *(values_of_nodes[x] for x in node.arguments)
+                )
             for x in node.arguments:
                 left[x] -= 1
                 if not left[x]:
-                    del found[x]  # memory stays that of the widest place of the graph
-    return {name: found[node] for name, node in graph.outputs.items()}
+                    del values_of_nodes[x]  # memory stays that of the widest place of the graph
+    return {name: values_of_nodes[node] for name, node in graph.outputs.items()}
 
 
 def run_on_arrays(
@@ -356,11 +360,11 @@ def run_on_arrays(
         return Scanned(call.outputs, call.state)
     rows = call.state
     for k in range(call.steps):
-        found = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
+        results = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
         for i, name in enumerate(scan.outputs):
-            call.outputs[i, k] = found[name]
+            call.outputs[i, k] = results[name]
         rows = np.array(
-            [np.broadcast_to(found[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
+            [np.broadcast_to(results[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
         )
     return Scanned(call.outputs, rows)
 
@@ -371,9 +375,9 @@ def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> None:
     size = max(1, CHUNK // max(1, call.lanes))
     for first in range(0, call.steps, size):
         some = slice(first, first + size)
-        found = evaluate(scan.graph, _values(scan, call, some, call.state), number)
+        results = evaluate(scan.graph, _values(scan, call, some, call.state), number)
         for i, name in enumerate(scan.outputs):
-            call.outputs[i, some] = found[name]
+            call.outputs[i, some] = results[name]
 
 
 def _values(scan: Scan, call: Call, steps: slice, state: Array) -> dict[str, Array]:

@@ -62,10 +62,10 @@ def sign_changes(value: Array) -> tuple[Lanes, Lanes]:
     rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
     some = value[rows]
     with np.errstate(all="ignore"):
-        found, cells = np.nonzero(
+        lanes, cells = np.nonzero(
             np.sign(np.where(np.isfinite(some), some, np.nan))[:, :-1] * np.sign(some[:, 1:]) < 0.0
         )
-    return rows[found], cells
+    return rows[lanes], cells
 
 
 def crossing_brackets(nodes: Array, values: Array) -> tuple[Array, Array]:
@@ -167,12 +167,12 @@ def interpolated_roots(function: Function, low: Array, high: Array) -> Array:
         if not active.any():
             break
         place = np.where(active, x + share * (other - x), x)
-        found = np.where(active, function(place), value)
+        middle = np.where(active, function(place), value)
         # the third place is the one that leaves the bracket, the second the far end of what is left
-        same = np.sign(found) == np.sign(value)
+        same = np.sign(middle) == np.sign(value)
         third, value_third = np.where(same, x, other), np.where(same, value, value_other)
         other, value_other = np.where(same, other, x), np.where(same, value_other, value)
-        x, value = place, found
+        x, value = place, middle
         nearest = np.where(np.abs(value) < np.abs(value_other), x, other)
         best = np.where(active, np.where(np.isnan(value), np.nan, nearest), best)
         apart = np.abs(other - x)
@@ -288,10 +288,10 @@ def maxima_between(function: Function, low: Array, high: Array) -> tuple[Array, 
         cuts = low[:, None] + shares * (high - low)[:, None]
         # the last cut may miss the end by rounding, and extremes like to lie there
         cuts[:, -1] = high
-        found = np.asarray(function(cuts), dtype=np.float64)
-        found = np.where(np.isnan(found), -np.inf, found)
-        best = np.argmax(found, axis=1)
-        top = found[rows, best]
+        values = np.asarray(function(cuts), dtype=np.float64)
+        values = np.where(np.isnan(values), -np.inf, values)
+        best = np.argmax(values, axis=1)
+        top = values[rows, best]
         # strictly: of equal values the first one is kept
         better = top > value
         place, value = np.where(better, cuts[rows, best], place), np.where(better, top, value)
@@ -299,7 +299,7 @@ def maxima_between(function: Function, low: Array, high: Array) -> tuple[Array, 
         # what is still above the best cut is less than its fall to the cuts beside it; beside an edge beyond which
         # nothing is known that fall has no bound, and the stretch is cut down to rounding
         with np.errstate(invalid="ignore"):
-            beside = np.minimum(found[rows, before], found[rows, after])
+            beside = np.minimum(values[rows, before], values[rows, after])
             level = np.isinf(top) | (beside >= top - LEVEL * np.abs(top))
         low, high = cuts[rows, before], cuts[rows, after]
         if level.all():
@@ -344,17 +344,17 @@ def tops(
         before, after = np.roll(known, 1), np.roll(known, -1)
     else:
         before, after = np.append(-np.inf, known[:-1]), np.append(known[1:], -np.inf)
-    found = np.flatnonzero((known >= before) & (known >= after) & (known > -np.inf))
+    peaks = np.flatnonzero((known >= before) & (known >= after) & (known > -np.inf))
     if near is not None:
         size = np.max(np.abs(known), where=np.isfinite(known), initial=0.0)
-        found = found[known[found] >= known.max() - near * size]
-    found = found[np.argsort(-known[found], kind="stable")][:most]
+        peaks = peaks[known[peaks] >= known.max() - near * size]
+    peaks = peaks[np.argsort(-known[peaks], kind="stable")][:most]
     if period:
         step = abs(nodes[1] - nodes[0])
-        low, high = nodes[found] - step, nodes[found] + step
+        low, high = nodes[peaks] - step, nodes[peaks] + step
     else:
-        low, high = nodes[np.maximum(found - 1, 0)], nodes[np.minimum(found + 1, len(nodes) - 1)]
+        low, high = nodes[np.maximum(peaks - 1, 0)], nodes[np.minimum(peaks + 1, len(nodes) - 1)]
     places, heights = maxima_between(lambda x: np.reshape(function(x.reshape(-1)), x.shape), low, high)
     # the node itself is no cut where its neighbours are not equally far from it
-    at_node = known[found] >= heights
-    return np.where(at_node, nodes[found], places), np.where(at_node, known[found], heights)
+    at_node = known[peaks] >= heights
+    return np.where(at_node, nodes[peaks], places), np.where(at_node, known[peaks], heights)

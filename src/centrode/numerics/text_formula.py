@@ -196,7 +196,7 @@ class _FormulaReader:
                 continue
             callee = node.func if isinstance(node, ast.Call) else None
             inner = ast.iter_child_nodes(node)
-            left += [one for one in inner if isinstance(one, ast.expr) and one is not callee]
+            left += [part for part in inner if isinstance(part, ast.expr) and part is not callee]
 
     def literal(self, node: ast.Constant) -> float:
         value = node.value

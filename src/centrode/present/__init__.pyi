@@ -3,7 +3,6 @@
 # Tables
 from .tables import motion_table as motion_table
 from .tables import write_motion_csv as write_motion_csv
-from .tables import write_motion_netcdf as write_motion_netcdf
 from .workbooks import workbook_of_csv as workbook_of_csv
 from .workbooks import write_motion_xlsx as write_motion_xlsx
 from .spelled_tables import spell_with_comma as spell_with_comma
@@ -18,10 +17,6 @@ from .linkage_scene import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
 
 # Equations
-from .equations.text import equations_rows as equations_rows
-from .equations.text import equations_text as equations_text
-from .equations.latex import equations_latex as equations_latex
-from .equations.latex import equations_markdown as equations_markdown
 
 # Forces
 
@@ -31,22 +26,13 @@ from .cams.choice import choice_figures as choice_figures
 from .cams.choice import trade_off_figure as trade_off_figure
 from .cams.tables import write_choice as write_choice
 from .cams.curves import contact_figure as contact_figure
-from .cams.curves import cam_curves_figure as cam_curves_figure
 from .cams.curves import cam_figures as cam_figures
-from .cams.curves import cam_path_figure as cam_path_figure
-from .cams.curves import cam_routes_figure as cam_routes_figure
-from .cams.curves import cam_forces_figure as cam_forces_figure
 from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
 from .cams.outline_files import write_cam_outlines as write_cam_outlines
 from .cams.outlines import write_outlines_svg as write_outlines_svg
-from .cams.curves import plate_curves_figure as plate_curves_figure
-from .cams.profiles import follower_cam_figure as follower_cam_figure
 from .cams.profiles import profile_figure as profile_figure
 from .cams.tables import write_profile_csv as write_profile_csv
 from .cams.tables import write_cam_contact_csv as write_cam_contact_csv
-from .cams.tables import write_cam_csv as write_cam_csv
-from .cams.tables import write_cam_forces_csv as write_cam_forces_csv
-from .cams.tables import write_cam_routes_csv as write_cam_routes_csv
 from .cams.tables import write_cam_tables as write_cam_tables
 from .cams.walking_wheel import walking_figure as walking_figure
 

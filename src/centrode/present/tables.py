@@ -82,16 +82,6 @@ def field(value: float | str) -> str:
     return "" if value != value else repr(value)
 
 
-def write_motion_netcdf(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a motion as netCDF, in SI, through scipy; the same dataset gives the same bytes.
-
-    A dimension without entries (no events, no guides) cannot be told from an unlimited one in the file format:
-    what has such a dimension is left out.
-    """
-    empty = [name for name, size in dataset.sizes.items() if size == 0]
-    dataset.drop_dims(empty).to_netcdf(path, engine="scipy")
-
-
 def write_columns(
     path: str | Path,
     columns: Iterable[tuple[str, str, xarray.DataArray]],

@@ -20,6 +20,7 @@ from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.force_pages import group_page
 from centrode.render.instant_pages import instant_figure
 from centrode.render.levers import lever_page
+from centrode.render.outline_drawings import outline_figure, path_figure
 from centrode.render.panel_grids import grid_figure
 from centrode.render.position_pages import positions_figure
 from centrode.render.scenes import scene_figure
@@ -29,6 +30,7 @@ from centrode.render.vector_diagrams import vector_diagram_figure
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.outlines import OutlineDrawing, PathDrawing
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
     Abscissa,
@@ -59,6 +61,8 @@ INCHES = 4.6
 """Height of a diagram's axes, which its legend may take."""
 COLOURED = PALETTE[:-1]
 """The palette without its black, which is the sum's among parts."""
+MARKED = (0, (6, 2, 1.5, 2))
+"""Dashes of the line at a single place."""
 EVENTS = {EventKind.LIMIT: LIMIT, EventKind.CHANGE_POINT: CHANGE_POINT}
 
 
@@ -123,6 +127,10 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return instant_figure(picture, display)
             case VectorDiagramPage():
                 return vector_diagram_figure(picture, display)
+            case OutlineDrawing():
+                return outline_figure(picture, display)
+            case PathDrawing():
+                return path_figure(picture, display)
             case _:
                 assert_never(picture)
 
@@ -135,11 +143,55 @@ def _plot(plot: Plot, display: Display) -> Figure:
     if plot.sizes_above is not None:
         figure = _sizes([panel for row in rows for panel in row], abscissa, plot.sizes_above)
         write_title(figure, title, mechanism)
-        return figure
-    figure = sheet(title, mechanism, rows, abscissa)
+    else:
+        figure = sheet(title, mechanism, rows, abscissa)
     if plot.overlay is not None:
         _lay_over(figure, plot.overlay, spelling)
+    across = spelling.label(plot.abscissa.label)[0]
+    for axes, panel in zip(figure.axes, (panel for row in plot.rows for panel in row), strict=True):
+        _add_dots(axes, panel, across, spelling)
+        if panel.from_zero:
+            axes.set_ylim(bottom=0.0)
+    _mark_places(figure, plot, across, spelling)
     return figure
+
+
+def _add_dots(axes: Axes, panel: CurvePanel, across: float, spelling: FigureSpelling) -> None:
+    """Draw the single values of a panel, with their entries in its legend."""
+    up, entries = spelling.label(panel.label)[0], []
+    for name, x, y in panel.dots:
+        (dot,) = axes.plot([across * x], [up * y], "o", color=INK, markersize=5, clip_on=False, zorder=5)
+        entries.append((dot, PlainSpelling(spelling.display).text(name)))
+    if entries:
+        write_legend(axes, [*_entries(axes), *entries])
+
+
+def _mark_places(figure: Figure, plot: Plot, across: float, spelling: FigureSpelling) -> None:
+    """A line at each place that the panels show, its name along that in the first one."""
+    for name, value in plot.places:
+        place = across * value
+        low, high = figure.axes[0].get_xlim()
+        if not low <= place <= high:
+            continue
+        for axes in figure.axes:
+            axes.axvline(place, color=INK, linewidth=0.9, linestyle=MARKED)
+        beside = -4 if place > 0.5 * (low + high) else 12
+        figure.axes[0].annotate(
+            spelling.text(name), (place, 0.34), xycoords=("data", "axes fraction"), xytext=(beside, 0),
+            textcoords="offset points", rotation=90, ha="right", va="center", color=INK, fontsize=8.5,
+        )  # fmt: skip
+
+
+def _entries(axes: Axes) -> list[tuple[Artist, str]]:
+    """What the legend of a panel has."""
+    legend = axes.get_legend()
+    if legend is None:
+        return []
+    return [
+        (handle, text.get_text())
+        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True)
+        if handle is not None
+    ]
 
 
 def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> None:
@@ -150,13 +202,7 @@ def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> Non
     for axes, panel in zip(figure.axes, panels, strict=True):
         for curve in panel.curves.values():
             axes.plot(abscissa.values, curve[abscissa.order], zorder=3, **look)
-        legend = axes.get_legend()
-        if legend is not None:
-            entries: list[tuple[Artist, str]] = [
-                (handle, text.get_text())
-                for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True)
-                if handle is not None
-            ]
+        if entries := _entries(axes):
             name = PlainSpelling(spelling.display).text(overlay.name)
             write_legend(axes, [*entries, (Line2D([], [], **look), name)])
 

@@ -1,23 +1,26 @@
-"""Sheets as files of a folder: tables as CSV and workbooks, datasets as netCDF, the summary as JSON."""
+"""Sheets as files of a folder: tables, datasets and outlines as files of their kinds, the summary as JSON."""
 
 from __future__ import annotations
 
 import csv
 import json
 from collections.abc import Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from centrode import present
 from centrode.locale import speaking
 from centrode.present.displayed_units import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.present.tables import write_motion_netcdf
+from centrode.render.netcdf import write_dataset
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
+    from centrode.sheets.outlines import OutlineSet
     from centrode.sheets.sheet import Column, Scalar, Sheet, Table
 
 BLOCK = 10_000
@@ -27,14 +30,29 @@ BLOCK = 10_000
 def write_tables(sheet: Sheet, folder: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
     """Write the tables of a sheet as CSV (and as workbooks where `spelling` says so), its datasets as netCDF.
 
-    Further files are written as they are.
+    Outlines are written as drawings in true size; further files as they are.
     """
     for name, table in sheet.tables.items():
         write_table(table, folder / f"{name}.csv", display, spelling)
     for name, dataset in sheet.datasets.items():
-        write_motion_netcdf(dataset, folder / f"{name}.nc")
+        write_dataset(dataset, folder / f"{name}.nc")
     for name, text in sheet.files.items():
         (folder / name).write_text(text, encoding="utf-8")
+    for name, outlines in sheet.outlines.items():
+        write_outlines(outlines, folder / name)
+
+
+def write_outlines(outlines: OutlineSet, path: Path) -> None:
+    """Write outlines as SVG, and as DXF where its library is installed; `path` is without its ending."""
+    title = PlainSpelling(None).text(outlines.title)
+    present.write_outlines_svg(outlines.pieces, path.with_suffix(".svg"), title)
+    if writes_dxf():
+        present.write_outlines_dxf(outlines.pieces, path.with_suffix(".dxf"), title)
+
+
+def writes_dxf() -> bool:
+    """Whether the library that writes DXF is installed."""
+    return find_spec("ezdxf") is not None
 
 
 def write_summary(scalars: Mapping[str, Scalar], path: Path) -> None:

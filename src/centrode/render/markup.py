@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _
+from centrode.render.latex import LatexSpelling, aligned_relations, escape, linear_system
 from centrode.render.spelling import PlainSpelling
-from centrode.render.terminal import sheet_text, table_rows
+from centrode.render.symbolic import spell_symbolic
+from centrode.render.terminal import sheet_text, symbol_texts, table_rows
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -17,19 +18,21 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
+    LinearEquations,
     Listing,
     Paragraph,
     Section,
     Sheet,
+    SymbolList,
     Table,
 )
+from centrode.sheets.symbolic import SymbolicLeaf
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
-    from centrode.sheets.sheet import Fact
-    from centrode.sheets.texts import Number
+    from centrode.sheets.sheet import ExplainedSymbol, Fact
+    from centrode.sheets.texts import Leaf, Number
 
-SPECIAL = re.compile(r"([#$%&_{}])|([\\^~])")
 HEAD = r"""\documentclass{article}
 \usepackage[T1,T2A]{fontenc}
 \usepackage[utf8]{inputenc}
@@ -45,11 +48,13 @@ def page_text(sheet: Sheet, title: str, kind: str, display: Display) -> str:
 
     Parameters
     ----------
+    title : str
+        Without a heading if empty.
     kind : "txt", "tex" or "md"
         Plain text, a LaTeX document (amsmath), or Markdown.
     """
     if kind == "txt":
-        return f"{title}\n\n{sheet_text(sheet, display)}\n"
+        return "\n\n".join(filter(None, (title, sheet_text(sheet, display)))) + "\n"
     return (LatexPage(display) if kind == "tex" else MarkdownPage(display)).page(sheet, title)
 
 
@@ -76,6 +81,22 @@ class MarkupPage(PlainSpelling):
     def paragraph(self, text: str) -> str:
         """Sentences."""
 
+    @abstractmethod
+    def relations(self, lines: Sequence[Sequence[str]]) -> str:
+        """Relations below each other."""
+
+    @abstractmethod
+    def displayed(self, mathematics: str) -> str:
+        """Mathematics on lines of its own."""
+
+    def symbolic(self, leaf: SymbolicLeaf) -> str:
+        """A formula in letters within a sentence."""
+        return f"${self.leaf(leaf)}$"
+
+    def leaf(self, leaf: Leaf) -> str:
+        """A part of a relation: formulas without their dollar signs."""
+        return spell_symbolic(leaf, LatexSpelling()) if isinstance(leaf, SymbolicLeaf) else super().leaf(leaf)
+
     def parts(self, sheet: Sheet) -> Iterator[str]:
         """The facts of a sheet, and what is printed below them."""
         if sheet.facts:
@@ -90,6 +111,10 @@ class MarkupPage(PlainSpelling):
     def _facts(self, facts: Sequence[Fact]) -> str:
         return self.table((), [(self.text(fact.label), self.text(fact.value)) for fact in facts])
 
+    def _symbols(self, symbols: Sequence[ExplainedSymbol]) -> list[tuple[str, str, str]]:
+        texts = (symbol_texts(symbol, self) for symbol in symbols)
+        return [(f"${symbol}$", value, meaning) for symbol, value, meaning in texts]
+
     def _block(self, block: Block) -> str:
         match block:
             case Paragraph(text):
@@ -103,7 +128,15 @@ class MarkupPage(PlainSpelling):
                 return self.items([self.text(item) for item in texts], numbered)
             case Listing(heading, texts):
                 return self.paragraph(f"{self.text(heading)}: {', '.join(map(self.text, texts))}")
-            case Formula() | Illustration() | Check():
+            case Formula(lines):
+                return self.relations([list(map(self.leaf, line)) for line in lines])
+            case LinearEquations(matrix, unknowns, right):
+                entries = [list(map(self.leaf, row)) for row in matrix]
+                sides = (list(map(self.leaf, side)) for side in (unknowns, right))
+                return self.displayed(linear_system(entries, *sides))
+            case SymbolList(symbols):
+                return self.table((_("symbol"), _("value"), _("meaning")), self._symbols(symbols))
+            case Illustration() | Check():
                 return ""
             case _:
                 assert_never(block)
@@ -122,8 +155,8 @@ class LatexPage(MarkupPage):
 
     def page(self, sheet: Sheet, title: str) -> str:
         """A document of its own."""
-        parts = [HEAD, rf"\section*{{{escape(title)}}}" + "\n", *self.parts(sheet)]
-        return "".join(parts) + "\\end{document}\n"
+        heading = [rf"\section*{{{escape(title)}}}" + "\n"] if title else []
+        return "".join((HEAD, *heading, *self.parts(sheet), "\\end{document}\n"))
 
     def heading(self, text: str) -> str:
         """A subsection without a number."""
@@ -146,13 +179,22 @@ class LatexPage(MarkupPage):
         """Sentences, with an empty line behind them."""
         return f"{text}\n\n"
 
+    def relations(self, lines: Sequence[Sequence[str]]) -> str:
+        """Relations without numbers, aligned."""
+        return "\\begin{align*}\n" + aligned_relations(lines) + "\n\\end{align*}\n"
+
+    def displayed(self, mathematics: str) -> str:
+        """Mathematics on lines of its own."""
+        return f"\\[\n{mathematics}\n\\]\n"
+
 
 class MarkdownPage(MarkupPage):
     """Sheets as Markdown."""
 
     def page(self, sheet: Sheet, title: str) -> str:
         """The title and the parts, an empty line between them."""
-        return "\n".join([f"# {title}\n", *self.parts(sheet)])
+        heading = [f"# {title}\n"] if title else []
+        return "\n".join((*heading, *self.parts(sheet)))
 
     def heading(self, text: str) -> str:
         """A heading of the second level."""
@@ -172,7 +214,10 @@ class MarkdownPage(MarkupPage):
         """Sentences on one line."""
         return f"{text}\n"
 
+    def relations(self, lines: Sequence[Sequence[str]]) -> str:
+        """Relations, aligned."""
+        return self.displayed(f"\\begin{{aligned}}\n{aligned_relations(lines)}\n\\end{{aligned}}")
 
-def escape(text: str) -> str:
-    """Text that LaTeX shows as it is."""
-    return SPECIAL.sub(lambda m: f"\\{m[1]}" if m[1] else rf"\char{ord(m[2])}{{}}", text)
+    def displayed(self, mathematics: str) -> str:
+        """Mathematics on lines of its own."""
+        return f"$$\n{mathematics}\n$$\n"

@@ -46,7 +46,7 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
         for jump in panel.jumps:
             at_end = jump[0] in (plot.ends[0], plot.ends[-1])
             _draw_jump(axes, panel, jump, factor, spelling, clipped=not at_end)
-        for end in plot.ends if plot.names else ():
+        for end in plot.ends if plot.names else plot.ends[1:-1]:
             axes.axvline(factor * end, color=MUTED, linewidth=0.6, zorder=1)
     _name_spans(grid[0], plot, factor, words)
     low, high = factor * plot.ends[0], factor * plot.ends[-1]
@@ -76,7 +76,8 @@ def _draw(
             _("admissible"), (1.0, factor * bound), xycoords=("axes fraction", "data"), xytext=(-4, 2),
             textcoords="offset points", ha="right", va="bottom", color=GROUND, fontsize=8.5,
         )  # fmt: skip
-    axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
+    if panel.zero_line:
+        axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
     if heading := spelling.text(panel.heading):
         axes.set_title(heading, fontsize=9.5)
     axes.set_ylabel(label)

@@ -7,15 +7,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
+from centrode.equations.spelling import FormulaSpelling
 from centrode.locale import _, ngettext
 from centrode.present.displayed_units import formula, plain, shown_as
 from centrode.quantities import typeset_unit
+from centrode.render.symbolic import spell_symbolic
+from centrode.sheets.symbolic import SymbolicLeaf
 from centrode.sheets.texts import (
     Counted,
     Expression,
     Factor,
     Indexed,
     Joined,
+    Leaf,
     Name,
     Number,
     Part,
@@ -51,6 +55,8 @@ class Spelling(ABC):
 
     def text(self, text: Text) -> str:
         """A text as a string."""
+        if isinstance(text, SymbolicLeaf):
+            return self.symbolic(text)
         match text:
             case Name(what):
                 return self.name(what)
@@ -133,6 +139,10 @@ class Spelling(ABC):
     def vectors(self, notation: str) -> str:
         """A relation of a construction on paper."""
 
+    @abstractmethod
+    def symbolic(self, leaf: SymbolicLeaf) -> str:
+        """A formula in the letters of equations."""
+
 
 def filled_notation(relation: VectorNotation) -> str:
     """The notation of a relation with its numbers."""
@@ -167,12 +177,7 @@ class PlainSpelling(Spelling):
 
     def expression(self, expression: Expression) -> str:
         """Mathematics in its own notation: terminals have no other."""
-        holes = {
-            name: leaf
-            if isinstance(leaf, str)
-            else self.text(leaf.number if isinstance(leaf, Factor) else leaf)
-            for name, leaf in expression.values.items()
-        }
+        holes = {name: self.leaf(leaf) for name, leaf in expression.values.items()}
         return expression.notation.format(**holes)
 
     def indexed(self, symbol: Indexed) -> str:
@@ -196,6 +201,16 @@ class PlainSpelling(Spelling):
     def vectors(self, notation: str) -> str:
         """A relation of a construction on paper, in its own notation."""
         return notation
+
+    def symbolic(self, leaf: SymbolicLeaf) -> str:
+        """A formula in letters, as one line."""
+        return spell_symbolic(leaf, FormulaSpelling())
+
+    def leaf(self, leaf: Leaf) -> str:
+        """A part of a relation."""
+        if isinstance(leaf, str):
+            return leaf
+        return self.text(leaf.number if isinstance(leaf, Factor) else leaf)
 
 
 class DrawingSpelling(PlainSpelling):

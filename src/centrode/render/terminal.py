@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.quantities import typeset_unit
+from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
 from centrode.render.plain_table import WIDTH, aligned, listing
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.sheet import (
@@ -16,16 +17,18 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
+    LinearEquations,
     Listing,
     Paragraph,
     Section,
+    SymbolList,
     Table,
 )
 from centrode.sheets.texts import Number
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
-    from centrode.sheets.sheet import Column, Fact, Sheet
+    from centrode.sheets.sheet import Column, ExplainedSymbol, Fact, Sheet
     from centrode.sheets.texts import Text
 
 
@@ -61,12 +64,21 @@ def sheet_text(sheet: Sheet, display: Display) -> str:
 
 
 def _section(section: Section, spelling: PlainSpelling) -> str:
-    parts = [spelling.text(section.title), *(_block(block, spelling) for block in section.blocks)]
+    parts = [spelling.text(section.title), *(_part(block, spelling) for block in section.blocks)]
     return "\n".join(filter(None, parts))
 
 
+def _part(block: Block, spelling: PlainSpelling) -> str:
+    """A block below the title of a section: sentences and formulas are indented."""
+    text = _block(block, spelling)
+    if not isinstance(block, Paragraph | Formula | LinearEquations | SymbolList):
+        return text
+    text = textwrap.indent(text, "  ")
+    return f"{text}\n" if isinstance(block, LinearEquations) else text
+
+
 def _block(block: Block, spelling: PlainSpelling) -> str:
-    """A block as lines; formulas, pictures and checks belong to documents."""
+    """A block as lines; pictures and checks belong to documents."""
     match block:
         case FactTable(facts):
             return aligned([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
@@ -78,7 +90,15 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             return "\n".join(f"  {spelling.text(item)}" for item in texts)
         case Listing(heading, items):
             return listing(spelling.text(heading), [spelling.text(item) for item in items])
-        case Formula() | Illustration() | Check():
+        case Formula(relations):
+            return "\n".join(line for one in relations for line in relation_lines(map(spelling.leaf, one)))
+        case LinearEquations(matrix, unknowns, right):
+            entries = [list(map(spelling.leaf, row)) for row in matrix]
+            sides = (list(map(spelling.leaf, side)) for side in (unknowns, right))
+            return "\n".join(system_lines(entries, *sides))
+        case SymbolList(symbols):
+            return "\n".join(symbol_lines([symbol_texts(one, spelling) for one in symbols]))
+        case Illustration() | Check():
             return ""
         case _:
             assert_never(block)
@@ -104,6 +124,11 @@ def table_rows(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[t
         for column in table.columns
     ]
     return [_head(column, spelling) for column in table.columns], list(zip(*cells, strict=True))
+
+
+def symbol_texts(symbol: ExplainedSymbol, spelling: PlainSpelling) -> tuple[str, str, str]:
+    """A symbol, its value, and what it stands for."""
+    return spelling.leaf(symbol.symbol), spelling.text(symbol.value), spelling.text(symbol.meaning)
 
 
 def _head(column: Column, spelling: PlainSpelling) -> str:

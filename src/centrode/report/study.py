@@ -210,7 +210,7 @@ class ReportStudy:
     @property
     def points(self) -> tuple[str, ...]:
         """Points whose velocities and paths are told: those asked for, else those on guides of the frame."""
-        return self.equations.sliding if self.wishes.points is None else self.wishes.points
+        return self.equations.points if self.wishes.points is None else self.wishes.points
 
     @property
     def cam_results(self) -> CamResults:

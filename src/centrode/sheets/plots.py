@@ -108,12 +108,16 @@ class CurvePanel:
     curves : in the order of the legend
     scale : what counts as a great value [unit of the label]; parts in 10^9 of it are rounding
     legend : whether the names stand beside the panel
+    dots : names in the legend and places (abscissa, value) of single values
+    from_zero : the axis begins at zero
     """
 
     label: AxisLabel
     curves: tuple[Curve, ...]
     scale: float = 0.0
     legend: bool = True
+    dots: tuple[tuple[Text, float, float], ...] = ()
+    from_zero: bool = False
 
 
 @dataclass(frozen=True)
@@ -142,6 +146,7 @@ class Plot:
     mechanism : of which mechanism
     overlay : what the curves are compared with
     sizes_above : of each curve its size where that is greater, on logarithmic scales; plain scales if None
+    places : names of single values of the abscissa, and these, in its unit; they are marked in all panels
     """
 
     title: Sentence
@@ -150,6 +155,7 @@ class Plot:
     rows: tuple[tuple[CurvePanel, ...], ...]
     overlay: Overlay | None = None
     sizes_above: float | None = None
+    places: tuple[tuple[Text, float], ...] = ()
 
 
 class TraceKind(Enum):
@@ -375,6 +381,7 @@ class SpanPanel:
     jumps : (abscissa, from, to) of curves that jump where spans meet
     bounds : values that are admissible at most or at least
     heading : above the panel
+    zero_line : a line stands where the quantity is zero
     """
 
     label: AxisLabel
@@ -382,6 +389,7 @@ class SpanPanel:
     jumps: tuple[tuple[float, float, float], ...] = ()
     bounds: tuple[float, ...] = ()
     heading: Text = NOTHING
+    zero_line: bool = True
 
 
 @dataclass(frozen=True)
@@ -394,7 +402,7 @@ class SpanPlot:
     label : of the abscissa
     values : (place) in the unit of the label; where two places are equal a span ends, and no line joins them
     ends : (spans + 1) where spans begin, and the last one ends
-    names : of the spans; none where there is one alone
+    names : of the spans; none where there is one alone, or the panels have headings
     panels : from the top
     """
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -36,6 +37,8 @@ Picture: TypeAlias = (
     | PositionsPage
     | InstantPage
     | VectorDiagramPage
+    | OutlineDrawing
+    | PathDrawing
 )
 Part = TypeVar("Part")
 
@@ -185,7 +188,49 @@ class Listing:
     items: tuple[Text, ...]
 
 
-Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Items | Listing
+@dataclass(frozen=True)
+class LinearEquations:
+    """matrix unknowns = right.
+
+    Attributes
+    ----------
+    matrix : (n, n) entries
+    unknowns, right : (n)
+    """
+
+    matrix: tuple[tuple[Leaf, ...], ...]
+    unknowns: tuple[Leaf, ...]
+    right: tuple[Leaf, ...]
+
+
+@dataclass(frozen=True)
+class ExplainedSymbol:
+    """A symbol of formulas, its value, and what it stands for."""
+
+    symbol: Leaf
+    value: Text
+    meaning: Text
+
+
+@dataclass(frozen=True)
+class SymbolList:
+    """Symbols of formulas with their values and meanings."""
+
+    symbols: tuple[ExplainedSymbol, ...]
+
+
+Block: TypeAlias = (
+    Paragraph
+    | Formula
+    | Table
+    | FactTable
+    | Illustration
+    | Check
+    | Items
+    | Listing
+    | LinearEquations
+    | SymbolList
+)
 
 
 @dataclass(frozen=True)
@@ -241,6 +286,7 @@ class Sheet:
     files : name of a further file -> its text
     record : the result as JSON holds it, in SI and in English; None where a result has no such form
     failure : what ends a command after everything is shown and written; None if nothing does
+    outlines : name of a file without its ending -> outlines, as SVG and DXF
     """
 
     facts: tuple[Fact, ...] = ()
@@ -254,6 +300,7 @@ class Sheet:
     record: Mapping[str, Any] | None = None
     failure: Failure | None = None
     heading: Text = NOTHING
+    outlines: Mapping[str, OutlineSet] = field(default_factory=dict)
 
 
 class Deferred(Mapping[str, Part]):

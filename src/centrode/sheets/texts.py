@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from centrode.sheets.symbolic import SymbolicLeaf
+
 
 @dataclass(frozen=True)
 class Name:
@@ -215,11 +217,13 @@ class VectorNotation:
         object.__setattr__(self, "values", values)
 
 
-Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed | VectorNotation"
+Leaf: TypeAlias = (
+    "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed | VectorNotation | SymbolicLeaf"
+)
 """A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
 Text: TypeAlias = (
     "Name | Title | Number | Sentence | Counted | Joined | Symbol"
-    " | Expression | Unit | Part | Place | Indexed | VectorNotation"
+    " | Expression | Unit | Part | Place | Indexed | VectorNotation | SymbolicLeaf"
 )
 
 NOTHING = Joined(())

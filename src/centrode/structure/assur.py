@@ -70,30 +70,30 @@ class Contours:
 
 def contours_of(mechanism: Mechanism, group: Newton) -> Contours:
     """Joints inside a group and towards what is known before it."""
-    found = Contours()
+    contours = Contours()
     for link in group.links:
         for point in mechanism.links[link].coordinates:
             if point in group.points:
-                found.joints.setdefault(("hinge", point), []).append(link)
+                contours.joints.setdefault(("hinge", point), []).append(link)
             elif _is_shared(mechanism, point, link):
-                found.outer += 1
+                contours.outer += 1
     for guide in mechanism.guides:
         slider = guide.link or slider_of(guide)
         inside = [body for body in (guide.on, slider) if body in group.links]
         if guide.link is None and guide.point in group.points:
-            found.joints.setdefault(("hinge", guide.point), []).append(slider)
+            contours.joints.setdefault(("hinge", guide.point), []).append(slider)
             inside.append(slider)
         # the slider's link is not written in the description, but it is a link of the group with an outer
         # hinge
         elif guide.link is None and guide.on in group.links:
             # a slider between the link and a known point belongs to the group as well
             inside.append(slider)
-            found.outer += 1
+            contours.outer += 1
         if len(inside) == 2:
-            found.joints[("guide", guide.id)] = inside
+            contours.joints[("guide", guide.id)] = inside
         elif inside:
-            found.outer += 1
-    return found
+            contours.outer += 1
+    return contours
 
 
 def _is_shared(mechanism: Mechanism, point: str, link: str) -> bool:
@@ -150,7 +150,7 @@ class AssurGroup:
 
 def assur_groups(structure: Structure) -> tuple[AssurGroup, ...]:
     """Inputs and groups in the order of the plan."""
-    found: list[AssurGroup] = []
+    groups: list[AssurGroup] = []
     taken: set[str] = set()
     for group in structure.groups:
         if isinstance(group, RigidPoint):
@@ -160,8 +160,8 @@ def assur_groups(structure: Structure) -> tuple[AssurGroup, ...]:
         members = tuple(name for name in own if name not in taken)
         taken.update(members)
         if members:
-            found.append(_term(structure.mechanism, group, members))
-    return tuple(found)
+            groups.append(_term(structure.mechanism, group, members))
+    return tuple(groups)
 
 
 def structural_formula(structure: Structure) -> str:
@@ -194,12 +194,12 @@ def roman(number: int) -> str:
     """A small number in Roman figures."""
     # 9 and 4 are written by subtraction, so they stand among the figures
     figures = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
-    found = ""
+    numeral = ""
     for value, figure in figures:
         while number >= value:
-            found += figure
+            numeral += figure
             number -= value
-    return found
+    return numeral
 
 
 def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:

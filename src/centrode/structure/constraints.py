@@ -558,25 +558,27 @@ def _row(bodies: tuple[Entity, ...], slopes: Rows) -> Row:
 def constraints_of(mechanism: Mechanism) -> tuple[Constraint, ...]:
     # drives first: rows of the Jacobian are kept in this order, so a drive is never the redundant one
     """All constraints of a mechanism: drives, links, guides, gears, rolling, each in description order."""
-    found: list[Constraint] = []
+    constraints: list[Constraint] = []
     for drive in mechanism.drives:
         if drive.kind == "angle":
-            found.append(AngleDrive(drive.id, drive.link or "", drive.relative_to))
+            constraints.append(AngleDrive(drive.id, drive.link or "", drive.relative_to))
         elif drive.distance is not None:
-            found.append(DistanceDrive(drive.id, *drive.distance))
+            constraints.append(DistanceDrive(drive.id, *drive.distance))
         else:
             guide = mechanism.guide(drive.guide or "")
-            found.append(DisplacementDrive(drive.id, guide.point, guide.id, guide.on))
+            constraints.append(DisplacementDrive(drive.id, guide.point, guide.id, guide.on))
     for name, link in mechanism.links.items():
-        found += [PointInLink(point, name) for point in link.coordinates]
+        constraints += [PointInLink(point, name) for point in link.coordinates]
     for guide in mechanism.guides:
-        found.append(PointOnGuide(guide.point, guide.id, guide.on))
+        constraints.append(PointOnGuide(guide.point, guide.id, guide.on))
         if guide.link is not None:
-            found.append(NoTurning(guide.link, guide.id, guide.on))
-    found += [GearRatio(gear.id, gear.links[0], gear.links[1], gear.carrier) for gear in mechanism.gears]
+            constraints.append(NoTurning(guide.link, guide.id, guide.on))
+    constraints += [
+        GearRatio(gear.id, gear.links[0], gear.links[1], gear.carrier) for gear in mechanism.gears
+    ]
     for wheel in mechanism.rolling:
-        found += [kind(wheel.id, wheel.link, wheel.centre, wheel.on) for kind in (NoSlip, Contact)]
-    return tuple(found)
+        constraints += [kind(wheel.id, wheel.link, wheel.centre, wheel.on) for kind in (NoSlip, Contact)]
+    return tuple(constraints)
 
 
 def is_drive(constraint: Constraint) -> bool:

@@ -35,12 +35,12 @@ def references_of(
     ends: Mapping[str, tuple[str, ...]],
 ) -> dict[str, tuple[Any, ...]]:
     """Of driven links and those of gears: ends of the own arc, and of the reference arc in the base's axes."""
-    found = {}
+    references = {}
     for link, body in measured_on(mechanism).items():
         # the angle lies between the own arc and the arc from the same pivot to the end of the reference
         pivot, second = list(local[link])[:2]
         base = frame if body == FRAME else local[body]
-        found[link] = (local[link][pivot], local[link][second], base[pivot], base[ends[link][0]])
+        references[link] = (local[link][pivot], local[link][second], base[pivot], base[ends[link][0]])
     for drive in mechanism.drives:
         if drive.link is None:
             continue
@@ -57,8 +57,8 @@ def references_of(
                 _("drive it relative to the link that has both points, or choose other points"),
             )
         own = local[drive.link]
-        found[drive.link] = (own[pivot], own[second], base[pivot], base[towards])
-    return found
+        references[drive.link] = (own[pivot], own[second], base[pivot], base[towards])
+    return references
 
 
 Number: TypeAlias = Any

@@ -175,8 +175,8 @@ def shares_of(mechanism: Mechanism, gear: str) -> tuple[float, float]:
     """How many times the carrier's angle is taken off those of the first and the second wheel of a gear."""
     if mechanism.space != "sphere":
         return 1.0, 1.0
-    found = next(other for other in mechanism.gears if other.id == gear)
-    first, second = (_share(mechanism, found, wheel) for wheel in found.links)
+    meshing = next(other for other in mechanism.gears if other.id == gear)
+    first, second = (_share(mechanism, meshing, wheel) for wheel in meshing.links)
     return first, second
 
 
@@ -184,12 +184,12 @@ def measured_on(mechanism: Mechanism) -> dict[str, str]:
     """Link -> the body that its reference arc lies on, of the links of gears on the sphere."""
     if mechanism.space != "sphere":
         return {}
-    found: dict[str, str] = {}
+    bases: dict[str, str] = {}
     for gear in mechanism.gears:
         for link in (*gear.links, gear.carrier):
-            if link != FRAME and link not in found:
-                found[link] = _base(mechanism, gear, link)
-    return found
+            if link != FRAME and link not in bases:
+                bases[link] = _base(mechanism, gear, link)
+    return bases
 
 
 def _share(mechanism: Mechanism, gear: Gear, wheel: str) -> float:

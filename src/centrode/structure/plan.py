@@ -130,11 +130,11 @@ def train(group: GroupToSolve) -> Train | None:
     # as many equations as angles, and every one of them between angles alone
     if len(equations) != len(group.links) or len(equations) < 2 or None in equations:
         return None
-    found = tuple(equation for equation in equations if equation is not None)
+    chosen = tuple(equation for equation in equations if equation is not None)
     placed = _placing_order(group, hinges)
     if placed is None:
         return None
-    return Train(found, _pivots(group, found), *placed)
+    return Train(chosen, _pivots(group, chosen), *placed)
 
 
 def equation_of(group: GroupToSolve, constraint: Constraint) -> AngleEquation | None:
@@ -205,26 +205,26 @@ def _pivots(group: GroupToSolve, equations: Sequence[AngleEquation]) -> tuple[tu
     """Order of elimination by the description's own ratios: the greatest factor first."""
     rows = [_weights(group.mechanism, equation) for equation in equations]
     table = [{link: row.get(link, 0.0) for link in group.links} for row in rows]
-    found: list[tuple[int, str]] = []
+    pivots: list[tuple[int, str]] = []
     for _step in group.links:
         # what is left of rows and columns; of equal sizes the first row counts, hence -i
         rest = [
             (abs(table[i][link]), -i, link)
             for i in range(len(table))
             for link in group.links
-            if all(i != row and link != column for row, column in found)
+            if all(i != row and link != column for row, column in pivots)
         ]
         size, k, link = max(rest, key=lambda entry: entry[:2])
         # what is left is rounding beside factors of the order of one
         if size < SINGULAR:
             raise _singular(group.links)
-        found.append((-k, link))
+        pivots.append((-k, link))
         # eliminated in all rows left, as the formula does it over any algebra
         for i in range(len(table)):
-            if all(i != row for row, _column in found):
+            if all(i != row for row, _column in pivots):
                 share = table[i][link] / table[-k][link]
                 table[i] = {name: x - share * table[-k][name] for name, x in table[i].items()}
-    return tuple(found)
+    return tuple(pivots)
 
 
 def _weights(mechanism: Mechanism, equation: AngleEquation) -> Mapping[str, float]:
@@ -296,12 +296,12 @@ class Unsolved:
             follows = relation_to_known(self, c, link)
             if follows is not None:
                 return c, follows
-            found = _turning_of(c)
-            if found is None or link not in (found.link, found.relative_to):
+            turning = _turning_of(c)
+            if turning is None or link not in (turning.link, turning.relative_to):
                 continue
-            other = found.relative_to if found.link == link else found.link
+            other = turning.relative_to if turning.link == link else turning.link
             if self.knows_link(other):
-                return c, found
+                return c, turning
         return None
 
 
@@ -332,9 +332,9 @@ def classify(
     )
     # from the simplest on: a group that one form fits is not looked at by the next
     for attempt in (_rigid_point, _single_link, _aim_with_block, _meet, train):
-        found = attempt(group)
-        if found is not None:
-            return found
+        classified = attempt(group)
+        if classified is not None:
+            return classified
     return Newton(group.points, group.links, tuple(equations))
 
 
@@ -400,11 +400,11 @@ def _meet(group: Unsolved) -> Group | None:
         if len(group.points) != 1:
             return None
     else:
-        found = group.turning(carriage)
-        if found is None or not _carries_all(group, carriage):
+        pair = group.turning(carriage)
+        if pair is None or not _carries_all(group, carriage):
             return None
-        used.add(found[0])
-        turning = found[1]
+        used.add(pair[0])
+        turning = pair[1]
         # the carriage's own points are its part of the unknown vector
         used |= {c for c in group.constraints if isinstance(c, PointInLink) and c.link == carriage}
     loci: list[Locus] = []
@@ -569,8 +569,8 @@ def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
         ("rolling", bool(mechanism.rolling), "[[rolling]]", _("take it out, or work in the plane")),
         ("distance", distance, "[[drives]] distance", _("drive the angle of a link")),
     ]
-    for what, found, where, repair in asked:
-        if found and what in space.lacks:
+    for what, present, where, repair in asked:
+        if present and what in space.lacks:
             raise NotComputedYet(where, _("it is not computed on the sphere"), repair)
 
 

@@ -385,7 +385,7 @@ def strong_components(depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]
     on_stack: set[Node] = set()
     stack: list[Node] = []
     # for the order of results
-    found: list[list[Node]] = []
+    components: list[list[Node]] = []
     rank = {node: k for k, node in enumerate(depends)}
 
     for root in depends:
@@ -417,8 +417,8 @@ def strong_components(depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]
                     while not component or component[-1] != node:
                         component.append(stack.pop())
                         on_stack.discard(component[-1])
-                    found.append(sorted(component, key=rank.__getitem__))
-    return found
+                    components.append(sorted(component, key=rank.__getitem__))
+    return components
 
 
 def in_order(

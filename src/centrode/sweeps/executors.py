@@ -73,13 +73,13 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     if name == arrays.name or (name == AUTO and positions < designs.WORTH_COMPILING):
         return arrays, arrays.name
     try:
-        found = _machine_code_executor(task, design, threads, MACHINE_CODE)
+        executor = _machine_code_executor(task, design, threads, MACHINE_CODE)
     except Untraceable as why:
         if name == AUTO:
             return arrays, f"{arrays.name} ({why.reason})"
         what = _("machine code cannot compute this: {reason}").format(reason=_(why.reason))
         raise InputError("executor", what, _('say executor = "auto" or "arrays"')) from None
-    return found, found.name
+    return executor, executor.name
 
 
 def _machine_code_executor(
@@ -87,20 +87,20 @@ def _machine_code_executor(
 ) -> MachineCodeExecutor:
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
-    found = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
-    _ = found.asked.columns  # what expressions cannot say is told before anything is computed
-    return found
+    executor = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
+    _ = executor.asked.columns  # what expressions cannot say is told before anything is computed
+    return executor
 
 
 def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tuple[Executor, str]:
     """Derivatives are those of expressions: on arrays these are computed by NumPy."""
     kernels = choose_executor(name) if name == AUTO else name
     try:
-        found = _machine_code_executor(task, design, threads, kernels)
+        executor = _machine_code_executor(task, design, threads, kernels)
     except Untraceable as why:
         what = _("derivatives cannot be computed here: {reason}").format(reason=_(why.reason))
         raise InputError("gradient", what, _("leave gradient out")) from None
-    return found, found.name
+    return executor, executor.name
 
 
 def bare(executor: str) -> str:

@@ -173,7 +173,7 @@ class Slopes:
         parts = gradient(still, [*moved, *map(variable, names)])
         partial = dict(zip(moved, parts, strict=False))
         of_folds = dict(zip(names, parts[len(moved) :], strict=True))
-        found: dict[str, Operand] = {}
+        slopes: dict[str, Operand] = {}
         for path, through in self.through.items():
             total: Operand = 0.0
             for x, factor in through:
@@ -182,8 +182,8 @@ class Slopes:
                 # the chain through a fold's result: its own derivatives are summed up while the samples are
                 # passed
                 total = total + part * self.states_of(name).at_end[path]
-            found[path] = total
-        return dict(Graph.of(found).substitute(self.standing).outputs)
+            slopes[path] = total
+        return dict(Graph.of(slopes).substitute(self.standing).outputs)
 
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
@@ -232,7 +232,7 @@ class Slopes:
         moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
         slopes = gradient(rest.outputs[""], [variable(x) for x in moved])
         labels = {x: f"{fold.name} through {x}" for x in moved}
-        found = Graph.of(dict(zip(labels.values(), slopes, strict=True)))
+        graph = Graph.of(dict(zip(labels.values(), slopes, strict=True)))
         ends: dict[str, Operand] = dict.fromkeys(self.through, 0.0)
         for x in moved:
             for path, factor in factors[x].items():
@@ -240,7 +240,7 @@ class Slopes:
                     ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
                 )
         # the parts are put back as expressions: states are folded from variables of the plan alone
-        outputs = found.substitute({**self.standing, **parts.outputs}).outputs
+        outputs = graph.substitute({**self.standing, **parts.outputs}).outputs
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
     def _without_standing(self, node: Node) -> Node:
@@ -325,15 +325,15 @@ class Expressed:
         given = {path: box_array([variable(path)]) for path in self.task.paths}
         if asked.formulas:
             return {
-                formula.name: [as_node(formula.traced(self.folds, solved, given))]
+                formula.name: [as_node(formula.trace(self.folds, solved, given))]
                 for formula in asked.formulas
             }
-        found = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
+        columns = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
         if asked.reduction is None:
-            return {name: [as_node(x) for x in nodes] for name, nodes in found.items()}
+            return {name: [as_node(x) for x in nodes] for name, nodes in columns.items()}
         return {
             name: [as_node(self.folds.fold(asked.reduction, x)) for x in nodes]
-            for name, nodes in found.items()
+            for name, nodes in columns.items()
         }
 
     @cached_property
@@ -355,10 +355,10 @@ class Expressed:
     @cached_property
     def final(self) -> dict[str, list[Node]]:
         """Reduced columns, and those of derivatives, from the folds."""
-        found = dict(self.columns)
+        columns = dict(self.columns)
         for name, slope in self.task.asked.slopes.items():
-            found[slope] = [x for node in found[name] for x in self.slopes.of_node(node).values()]
-        return found
+            columns[slope] = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
+        return columns
 
     @cached_property
     def judging(self) -> EventScreening:
@@ -376,9 +376,9 @@ class Expressed:
     @cached_property
     def judges(self) -> dict[str, Node]:
         """What is looked at in every sample: greatest residual, least slack of radicands."""
-        found = {RESIDUAL: as_node(self.traced.solved.residual[0, 0])}
+        judges = {RESIDUAL: as_node(self.traced.solved.residual[0, 0])}
         slack = self.judging.slack_at_samples
-        return found if slack is None else {**found, SLACK: slack}
+        return judges if slack is None else {**judges, SLACK: slack}
 
     @property
     def samples(self) -> int:
@@ -419,7 +419,7 @@ Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 class Passing(Protocol):
     """One way to pass the samples of mechanisms without events."""
 
-    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         """The states when all samples are passed."""
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
@@ -437,7 +437,7 @@ class EachForItself:
 
     asked: Expressed
 
-    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         asked = self.asked
         over_samples = Pass(reduction, tuple(rows), asked.inputs)
         # where nothing moves the samples are counted all the same
@@ -449,7 +449,7 @@ class EachForItself:
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
         for part, room in rooms:
             take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self.reduced(judging_states(self.asked), rows)
+        return self.reduce(judging_states(self.asked), rows)
 
     @cached_property
     def _scan(self) -> Scan:
@@ -467,9 +467,9 @@ class Along:
 
     asked: Expressed
 
-    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         asked = self.asked
-        return Walking(asked.judging.walk, reduction).reduced(asked.way, rows, asked.kernels, asked.threads)
+        return Walking(asked.judging.walk, reduction).reduce(asked.way, rows, asked.kernels, asked.threads)
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
@@ -510,9 +510,9 @@ class StreamedColumns(dict[str, AnyArray]):
 
     def part(self, rows: slice) -> StreamedColumns:
         """A view of some mechanisms."""
-        found = StreamedColumns({name: array[rows] for name, array in self.items()})
-        found.streams = None if self.streams is None else self.streams[:, rows]
-        return found
+        chosen = StreamedColumns({name: array[rows] for name, array in self.items()})
+        chosen.streams = None if self.streams is None else self.streams[:, rows]
+        return chosen
 
 
 def streamed_columns(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
@@ -525,22 +525,22 @@ def streamed_columns(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
 def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColumns:
     """Fresh memory for columns, with streams where there is any."""
     kept = streamed_columns(columns)
-    found = StreamedColumns(
+    streamed = StreamedColumns(
         # what has no sample dimension is an array of its own, in the order of the result
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
     if kept:
         numbers = [math.prod(column.shape[1:]) for column in kept]
-        found.streams = np.empty((sum(numbers), mechanisms, kept[0].shape[0]))
+        streamed.streams = np.empty((sum(numbers), mechanisms, kept[0].shape[0]))
         first = 0
         for column, count in zip(kept, numbers, strict=True):
-            streams = found.streams[first : first + count].reshape(
-                *column.shape[1:], *found.streams.shape[1:]
+            streams = streamed.streams[first : first + count].reshape(
+                *column.shape[1:], *streamed.streams.shape[1:]
             )
             # a view with mechanisms and samples in front: nothing is copied
-            found[column.name] = np.moveaxis(streams, (-2, -1), (0, 1))
+            streamed[column.name] = np.moveaxis(streams, (-2, -1), (0, 1))
             first += count
-    return found
+    return streamed
 
 
 # Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
@@ -647,7 +647,7 @@ class MachineCodeExecutor:
     def lanes(self, task: SweepTask) -> int:
         """How many mechanisms are computed together."""
         # a mechanism that is written takes the room of its columns beside its states
-        written = 0 if task.asked.reduced else sum(column.bytes for column in task.asked.columns)
+        written = 0 if task.asked.is_reduced else sum(column.bytes for column in task.asked.columns)
         return max(
             1,
             min(designs.KERNEL_LANES, designs.WORKING_SET // (COPIES * NUMBER * self.asked.states + written)),
@@ -686,7 +686,7 @@ class MachineCodeExecutor:
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
         """Fill in the mechanisms that have events: their motions as machine code, columns as by arrays."""
-        for lanes, solved in self._eventful.solved(numbers, left):
+        for lanes, solved in self._eventful.solve_lanes(numbers, left):
             parts = self._room(len(lanes))
             fill_columns(self.task, solved, _rows_at(values, lanes), parts)
             _put_columns(parts, lanes, results)
@@ -714,18 +714,18 @@ class MachineCodeExecutor:
 
     def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
-        found = (
+        states = (
             self._fill_reductions(rows, at, results)
-            if self.task.asked.reduced
+            if self.task.asked.is_reduced
             else self._fill_samples(rows, at, results)
         )
         results["samples_ok"][at] = self.asked.samples
-        results["worst_residual"][at] = found[RESIDUAL]
+        results["worst_residual"][at] = states[RESIDUAL]
         # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes to
         # the arrays
-        clear: Mask = found[RESIDUAL] <= 0.5 * CLOSED
-        for slack in {SLACK, SURE} & found.keys():
-            clear &= found[slack] > 0.0
+        clear: Mask = states[RESIDUAL] <= 0.5 * CLOSED
+        for slack in {SLACK, SURE} & states.keys():
+            clear &= states[slack] > 0.0
         return clear
 
     def _fill_reductions(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
@@ -734,13 +734,13 @@ class MachineCodeExecutor:
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows |= self._passing.reduced(self._states(depth), rows)
+            rows |= self._passing.reduce(self._states(depth), rows)
         nodes = {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
-        found = evaluate(Graph(nodes), rows)
+        values = evaluate(Graph(nodes), rows)
         for name, numbers in columns.items():
             flat = results[name].reshape(len(results[name]), len(numbers))
             for k in range(len(numbers)):
-                flat[at, k] = found[f"{name} {k}"]
+                flat[at, k] = values[f"{name} {k}"]
         return rows
 
     def _states(self, depth: int) -> Reduction:

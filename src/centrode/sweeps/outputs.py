@@ -70,9 +70,11 @@ class Output:
             assert first is not None
             assert second is not None
             if self.quantity in kind.names:
-                found = by_time((_values, first, second), kind.names.index(self.quantity), solved.span)
-                if found is not None:
-                    return found
+                differentiated = by_time(
+                    (_values, first, second), kind.names.index(self.quantity), solved.span
+                )
+                if differentiated is not None:
+                    return differentiated
             by_drive = [kind.prefix + word for word in COEFFICIENTS]
             if self.quantity in by_drive:
                 return (first, second)[by_drive.index(self.quantity)]
@@ -92,12 +94,12 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
     if len(names) > designs.OUTPUTS:
         what = _("{count} outputs are asked for").format(count=len(names))
         raise InputError("outputs", what, _("ask for at most {most}").format(most=designs.OUTPUTS))
-    found: dict[str, Output] = {}
+    outputs: dict[str, Output] = {}
     for name in names:
-        if name in found:
+        if name in outputs:
             raise InputError("outputs", _("{name} is asked for twice").format(name=value_text(name)))
-        found[name] = _output(motion, name)
-    return tuple(found.values())
+        outputs[name] = _output(motion, name)
+    return tuple(outputs.values())
 
 
 def quantities_of(motion: xr.Dataset) -> list[str]:
@@ -191,8 +193,8 @@ def fold_samples(name: str, values: Array, ok: Mask) -> Array:
     counted = ok.reshape(*ok.shape, *[1] * (values.ndim - 2))
     counts = counted.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        found = np.asarray(_fold(name, values, counted, counts))
-    return np.where(counts > 0, found, np.nan)
+        folded = np.asarray(_fold(name, values, counted, counts))
+    return np.where(counts > 0, folded, np.nan)
 
 
 def _fold(name: str, values: Array, counted: Mask, counts: Any) -> Any:
@@ -262,12 +264,12 @@ class OutputFormula:
         """Value of the formula for each mechanism (lanes,); NaN where no sample is ok."""
         given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
         with np.errstate(all="ignore"):
-            found = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
+            value = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
         # one number a mechanism stands in a column of one
-        flat = np.broadcast_to(found, (len(ok), 1))[:, 0]
+        flat = np.broadcast_to(value, (len(ok), 1))[:, 0]
         return np.where(ok.any(axis=1), flat, np.nan)
 
-    def traced(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
+    def trace(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
         """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
         given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
         return self.text(m, **given)
@@ -349,8 +351,8 @@ def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Va
     # of two samples: what still has two values varies from sample to sample
     two = {name: np.ones((1, 1 if variable.kind == "varied" else 2)) for name, variable in variables.items()}
     with np.errstate(all="ignore"):
-        found = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
-    if np.shape(found)[-1:] == (2,):
+        value = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
+    if np.shape(value)[-1:] == (2,):
         what = _("the formula has a value at every sample, not one a mechanism")
         raise InputError(
             where, what, _("say of which sample: min(...), max(...), range(...), mean(...), sum(...)")
@@ -409,7 +411,7 @@ class SweepOutputs:
         return {name: slope_of(name) for name in names if slope_of(name) in names}
 
     @property
-    def reduced(self) -> bool:
+    def is_reduced(self) -> bool:
         """Whether a mechanism has one number of its samples."""
         return bool(self.reduction or self.formulas)
 
@@ -435,7 +437,7 @@ def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
 
     Raises InputError where nothing is reduced.
     """
-    if not asked.reduced:
+    if not asked.is_reduced:
         what = _("derivatives are those of reduced outputs")
         raise InputError("gradient", what, _("say how to reduce them"))
     reduced = [column for column in asked.columns if column not in JUDGED]
@@ -458,8 +460,8 @@ def asked_of(
 ) -> SweepOutputs:
     """What these arguments of `sweep` mean; `motion` is a motion of the mechanism. Raises InputError."""
     if reduce is None or (isinstance(reduce, str) and reduce in REDUCTIONS):
-        found = outputs_of(motion, outputs if outputs is not None else ())
-        return SweepOutputs(found, reduce, (), _columns(motion, found, reduce))
+        listed = outputs_of(motion, outputs if outputs is not None else ())
+        return SweepOutputs(listed, reduce, (), _columns(motion, listed, reduce))
     if not isinstance(reduce, str | Mapping):
         raise InputError(
             "reduce", _("it is one of {names}, or a formula").format(names=", ".join(REDUCTIONS))
@@ -489,7 +491,7 @@ def _columns(
     along: tuple[str, ...] = () if reduction else ("sample",)
     count = () if reduction else (motion.sizes["sample"],)
     more = {"reduction": reduction} if reduction else {}
-    found = [
+    columns = [
         SweepColumn(x.name, along + x.dimensions, count + x.shape, np.float64, {**x.attributes, **more})
         for x in outputs
     ]
@@ -498,5 +500,5 @@ def _columns(
             key: value.tolist() if isinstance(value, np.ndarray) else value
             for key, value in motion["status"].attrs.items()
         }
-        found.append(SweepColumn("status", along, count, np.int8, attributes, -1))
-    return (*found, *JUDGED)
+        columns.append(SweepColumn("status", along, count, np.int8, attributes, -1))
+    return (*columns, *JUDGED)

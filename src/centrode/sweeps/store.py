@@ -136,10 +136,10 @@ class Tally:
         self.none += other.none
         # NaN is no residual: a block without any changes nothing
         self.worst_residual = float(np.fmax(self.worst_residual, other.worst_residual))
-        for name, found in other.extremes.items():
+        for name, theirs in other.extremes.items():
             own = self.extremes.get(name)
             self.extremes[name] = (
-                found if own is None else [_wider(a, b) for a, b in zip(own, found, strict=True)]
+                theirs if own is None else [_wider(a, b) for a, b in zip(own, theirs, strict=True)]
             )
 
     def as_dict(self) -> dict[str, Any]:
@@ -192,7 +192,7 @@ def tally_of(asked: SweepOutputs, samples: int, results: Mapping[str, npt.NDArra
     ok = results["samples_ok"]
     worst = float(np.fmax.reduce(results["worst_residual"]))
     extremes: Extremes = {}
-    if asked.reduced:
+    if asked.is_reduced:
         for column in asked.columns:
             # derivatives have no extremes of interest, and the variables of whole mechanisms have theirs
             if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):
@@ -329,10 +329,10 @@ def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
         "worst_residual": tally.worst_residual,
     }
     for column in frame.asked.columns:
-        found = tally.extremes.get(column.name)
-        if found is None:
+        extremes = tally.extremes.get(column.name)
+        if extremes is None:
             continue
-        ends = [(math.nan, math.nan) if pair is None else tuple(pair) for pair in found]
+        ends = [(math.nan, math.nan) if pair is None else tuple(pair) for pair in extremes]
         least, greatest = [end[0] for end in ends], [end[1] for end in ends]
         single = not column.shape
         data[column.name].attrs["least"] = least[0] if single else least
@@ -442,7 +442,7 @@ class Marks:
 
         A chunk that holds nothing but empty numbers has no file.
         """
-        found = hashlib.sha256(json.dumps([block, told], sort_keys=True).encode())
+        checksum = hashlib.sha256(json.dumps([block, told], sort_keys=True).encode())
         for file, size in self.chunks(block):
             try:
                 status = file.stat()
@@ -450,15 +450,15 @@ class Marks:
                 if not stat.S_ISREG(status.st_mode) or status.st_size != size:
                     return None
                 with file.open("rb") as stream:
-                    found.update(b"chunk")
+                    checksum.update(b"chunk")
                     for piece in iter(lambda: stream.read(PIECE), b""):
-                        found.update(piece)
+                        checksum.update(piece)
             except (FileNotFoundError, NotADirectoryError):
                 # a chunk of empty numbers is not written by zarr: its absence is part of the checksum
-                found.update(b"none")
+                checksum.update(b"none")
             except OSError:
                 return None
-        return found.hexdigest()
+        return checksum.hexdigest()
 
 
 def read_small(file: Path) -> dict[str, Any] | None:
@@ -577,15 +577,15 @@ def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -
     with hold_lock(path / PROGRESS / LOCK, str(path)):
         with refusals(path):
             study = _study(frame, task)
-            found = _stored_study(path)
-            if found is None:
+            stored = _stored_study(path)
+            if stored is None:
                 _make(path, frame, blocks, study)
             else:
-                _refuse_other_studies(path, found, study)
+                _refuse_other_studies(path, stored, study)
                 # the store's own division counts: another version may have chosen otherwise
-                blocks = _blocks_of(found, path, frame)
+                blocks = _blocks_of(stored, path, frame)
                 # metadata are compared with what this sweep would write, before zarr reads any of it
-                _refuse_damaged_files(path, _empty_store(frame, blocks), found["files"])
+                _refuse_damaged_files(path, _empty_store(frame, blocks), stored["files"])
                 _remove_drafts(path)
         yield Store(path, frame, blocks)
 
@@ -722,14 +722,14 @@ def _refuse_damaged_files(path: Path, files: Mapping[str, bytes], checksums: Map
 
 def _as_made(file: Path, content: bytes, checksum: object) -> bool:
     """Whether a file holds what a making writes: metadata of the same meaning, labels as they were written."""
-    found = read_bounded(file, 2 * len(content) + GREATEST)
-    if found is None or found == content:
-        return found is not None
+    stored = read_bounded(file, 2 * len(content) + GREATEST)
+    if stored is None or stored == content:
+        return stored is not None
     if file.name != METADATA:
         # on another machine coordinates may differ in their last bits
-        return hashlib.sha256(found).hexdigest() == checksum
+        return hashlib.sha256(stored).hexdigest() == checksum
     try:
-        return bool(json.loads(found) == json.loads(content))
+        return bool(json.loads(stored) == json.loads(content))
     except (ValueError, RecursionError):
         return False
 

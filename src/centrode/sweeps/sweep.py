@@ -109,10 +109,10 @@ def sweep(
         return _in_memory(frame, blocks, task, chosen, progress)
     _check_size(frame, designs.IN_STORE, _("reduce it, or ask for fewer"))
     with open_store(Path(store), frame, blocks, task) as kept:
-        found = kept.tally.mechanisms
+        finished = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
     data = with_tally(read_store(Path(store), frame), frame, kept.tally)
-    return data.assign_attrs(mechanisms_found=found)
+    return data.assign_attrs(mechanisms_found=finished)
 
 
 TABLE_ROWS = 100_000
@@ -349,8 +349,8 @@ def _sample(table: Mapping[str, Any]) -> Sample:
         raise InputError(
             "[sample]", _("it needs count and ranges"), _("write count = 1000 and [sample.ranges]")
         )
-    found = {path: _range_of_sample(path, value) for path, value in _paths(ranges, RANGE[:2])}
-    return sample(found, table["count"], table.get("method", METHODS[0]), table.get("seed", 0))
+    spans = {path: _range_of_sample(path, value) for path, value in _paths(ranges, RANGE[:2])}
+    return sample(spans, table["count"], table.get("method", METHODS[0]), table.get("seed", 0))
 
 
 def _range_of_sample(path: str, value: object) -> Any:

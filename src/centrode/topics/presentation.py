@@ -1,32 +1,111 @@
-"""A result of any topic: in words, in tables, in figures, as files of a folder."""
+"""A result of any topic: in words, in tables, in figures, as files of a folder, and read from a file again.
+
+A result is what a topic computes, or its dataset, which names its topic and holds its description as text.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from centrode import render
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
-from centrode.locale import _
+from centrode.locale import _, mark
+from centrode.model.cam_files import parse_cam
+from centrode.model.files import parse_mechanism
+from centrode.render.netcdf import read_dataset
 from centrode.topics.registry import TOPICS
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.figure import Figure
 
     from centrode.model.cam_files import AnyCam
-    from centrode.model.mechanism import Display
+    from centrode.model.mechanism import Display, Mechanism
     from centrode.sheets.sheet import Sheet, Table
+
+
+WHOLE = mark("show a dataset as it was computed, with its attributes")
+RESTORED = {topic.name: topic for topic in TOPICS if topic.restore is not None}
+"""Topics whose results are made from their datasets."""
+
+
+@dataclass(frozen=True, repr=False)
+class Result:
+    """A dataset of a topic that prints its summary.
+
+    Attributes
+    ----------
+    dataset : Dataset
+        With the attributes `topic` and `mechanism`, or `cam`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.Result(ct.transmission_angles(ct.example("crank-rocker"), 73)))
+    least transmission angle AB-DB  0.585686 rad at 0 rad
+    """
+
+    dataset: xarray.Dataset
+
+    def __repr__(self) -> str:
+        return summary(self)
+
+
+def is_result(dataset: Any) -> bool:
+    """Whether a dataset names its topic and holds its description."""
+    attributes = getattr(dataset, "attrs", None)
+    if not isinstance(attributes, dict) or attributes.get("topic") not in RESTORED:
+        return False
+    return isinstance(attributes.get(RESTORED[attributes["topic"]].subject), str)
+
+
+def restored_result(result: Any) -> Any:
+    """The result of a dataset, where what the dataset does not hold is computed; any other result as it is.
+
+    Raises InputError for a dataset that does not name its topic, or lacks a part.
+    """
+    dataset = result.dataset if isinstance(result, Result) else result
+    if not isinstance(getattr(dataset, "attrs", None), dict):
+        return dataset
+    if not is_result(dataset):
+        raise InputError("dataset", _("it names no topic, or no description"), _(WHOLE))
+    topic = RESTORED[dataset.attrs["topic"]]
+    assert topic.restore is not None
+    try:
+        return topic.restore(_description_of(dataset), dataset)
+    except (KeyError, AttributeError) as absent:
+        raise _incomplete(absent) from absent
+
+
+def _description_of(dataset: xarray.Dataset) -> Mechanism | AnyCam:
+    """The mechanism or cam that a dataset of a result holds as text."""
+    if RESTORED[dataset.attrs["topic"]].subject == "cam":
+        return parse_cam(dataset.attrs["cam"])
+    return parse_mechanism(dataset.attrs["mechanism"])
+
+
+def _incomplete(absent: Exception) -> InputError:
+    """The refusal of a dataset that lacks a variable or a dimension."""
+    return InputError("dataset", _("it lacks a part: {what}").format(what=absent), _(WHOLE))
 
 
 def sheet_of(result: Any) -> Sheet:
     """What there is to say about a result, as data; InputError for what is no result of a topic."""
+    dataset, result = result, restored_result(result)
     kind = type(result)
     names = {(one.__module__, one.__qualname__) for one in kind.__mro__}
     for topic in TOPICS:
         if (topic.result.module, topic.result.name) in names:
-            return cast("Sheet", topic.view(result))
+            try:
+                return cast("Sheet", topic.view(result))
+            except KeyError as absent:
+                if result is dataset:  # of a result that was computed nothing is missing
+                    raise
+                raise _incomplete(absent) from absent
     known = ", ".join(topic.result.name for topic in TOPICS)
     raise InputError(
         kind.__name__,
@@ -55,8 +134,15 @@ def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str
 
 def display_of(result: Any) -> Display:
     """The units of the description that a result knows: that of its mechanism or of its cam."""
-    description = result.mechanism if hasattr(result, "mechanism") else result.cam
-    return cast("Display", description.display)
+    return description_of(result).display
+
+
+def description_of(result: Any) -> Mechanism | AnyCam:
+    """The mechanism or the cam that a result knows."""
+    dataset = result.dataset if isinstance(result, Result) else result
+    if is_result(dataset):
+        return _description_of(dataset)
+    return cast("Mechanism | AnyCam", result.mechanism if hasattr(result, "mechanism") else result.cam)
 
 
 def summary(result: Any) -> str:
@@ -65,6 +151,18 @@ def summary(result: Any) -> str:
     They are in the language that is spoken and the units of the result's description.
     """
     return render.sheet_text(sheet_of(result), display_of(result))
+
+
+def page(result: Any, kind: str) -> str:
+    """What a terminal prints of a result, under the title of its description, as a document.
+
+    Parameters
+    ----------
+    kind : "txt", "tex" or "md"
+        Plain text, a LaTeX document (amsmath), or Markdown.
+    """
+    description = description_of(result)
+    return render.page_text(sheet_of(result), _(description.title), kind, description.display)
 
 
 def tables(result: Any) -> Mapping[str, Table]:
@@ -88,3 +186,15 @@ def write(result: Any, folder: str | Path) -> None:
         render.write_pictures(sheet.pictures, draft, display)
         if sheet.scalars:
             render.write_summary(sheet.scalars, draft / "summary.json")
+
+
+def open(path: str | Path) -> xarray.Dataset:
+    """A dataset of a result from the netCDF file that a command or `ct.write` wrote.
+
+    Raises InputError for a file that cannot be read, and for one that is no result of centrode.
+    """
+    dataset = read_dataset(Path(path))
+    if not is_result(dataset):
+        what = _("it is no result: it names no topic, or no description")
+        raise InputError(str(path), what, _("name a netCDF file that a command has written"))
+    return dataset

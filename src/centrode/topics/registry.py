@@ -23,6 +23,8 @@ READ_RANGES = Lazily("centrode.cli.option_values", "read_ranges")
 READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
+HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
+NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
 WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
 
@@ -30,6 +32,7 @@ INTEGRATE = Topic(
     name="integrate",
     compute=Lazily("centrode.equations.integration", "integration_results"),
     result=Lazily("centrode.equations.integration", "IntegrationResults"),
+    restore=Lazily("centrode.equations.integration", "results_of_integration"),
     view=Lazily("centrode.views.integrations", "sheet"),
     concerns=Lazily("centrode.equations.integration", "is_integrated"),
     command=Command(
@@ -93,6 +96,7 @@ REGION = Topic(
     name="region",
     compute=Lazily("centrode.kinematics.several_inputs.region", "region_results"),
     result=Lazily("centrode.kinematics.several_inputs.region", "RegionResults"),
+    restore=Lazily("centrode.kinematics.several_inputs.region", "results_of_region"),
     view=Lazily("centrode.views.regions", "sheet"),
     concerns=Lazily("centrode.kinematics.several_inputs.region", "has_two_drives"),
     command=Command(
@@ -132,6 +136,7 @@ ANGLES = Topic(
     name="angles",
     compute=Lazily("centrode.analysis.transmission", "transmission_results"),
     result=Lazily("centrode.analysis.transmission", "TransmissionResults"),
+    restore=Lazily("centrode.analysis.transmission", "TransmissionResults"),
     view=Lazily("centrode.views.transmission", "sheet"),
     command=Command(
         help=mark("Compute transmission and pressure angles over the motion."), folder="angles", dark=True
@@ -142,6 +147,7 @@ REDUCTION = Topic(
     name="reduce",
     compute=Lazily("centrode.dynamics.reduction_results", "reduction_results"),
     result=Lazily("centrode.dynamics.reduction_results", "ReductionResults"),
+    restore=Lazily("centrode.dynamics.reduction_results", "results_of_reduction"),
     view=Lazily("centrode.views.reduction", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     command=Command(
@@ -156,6 +162,7 @@ FLYWHEEL = Topic(
     name="flywheel",
     compute=Lazily("centrode.dynamics.steady_motion.machine", "machine_results"),
     result=Lazily("centrode.dynamics.steady_motion.machine", "MachineResults"),
+    restore=Lazily("centrode.dynamics.steady_motion.machine", "results_of_steady_motion"),
     view=Lazily("centrode.views.flywheel", "sheet"),
     concerns=Lazily("centrode.dynamics.steady_motion.machine", "is_machine"),
     command=Command(
@@ -187,6 +194,7 @@ SIMULATION = Topic(
     name="simulate",
     compute=Lazily("centrode.dynamics.simulation.results", "simulation_results"),
     result=Lazily("centrode.dynamics.simulation.results", "SimulationResults"),
+    restore=Lazily("centrode.dynamics.simulation.results", "results_of_simulation"),
     view=Lazily("centrode.views.simulation", "sheet"),
     concerns=Lazily("centrode.dynamics.simulation.results", "has_simulation"),
     command=Command(
@@ -218,6 +226,7 @@ REACTIONS = Topic(
     name="reactions",
     compute=Lazily("centrode.dynamics.bearings.results", "reaction_results"),
     result=Lazily("centrode.dynamics.bearings.results", "ReactionResults"),
+    restore=Lazily("centrode.dynamics.bearings.results", "results_of_reactions"),
     view=Lazily("centrode.views.reactions", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     command=Command(
@@ -302,6 +311,7 @@ SHAKING = Topic(
     name="shaking",
     compute=Lazily("centrode.dynamics.balancing.results", "shaking_results"),
     result=Lazily("centrode.dynamics.balancing.results", "ShakingResults"),
+    restore=Lazily("centrode.dynamics.balancing.results", "results_of_shaking"),
     view=Lazily("centrode.views.balance", "shaking_sheet"),
     concerns=Lazily("centrode.dynamics.balancing.results", "may_shake"),
     document=InDocuments(
@@ -313,6 +323,7 @@ CENTRES = Topic(
     name="centres",
     compute=Lazily("centrode.analysis.instant_centres.results", "centre_results"),
     result=Lazily("centrode.analysis.instant_centres.results", "CentreResults"),
+    restore=Lazily("centrode.analysis.instant_centres.results", "results_of_centres"),
     view=Lazily("centrode.views.centres", "sheet"),
     command=Command(
         help=mark("Find the instant centres of velocity of every pair of links."),
@@ -362,6 +373,7 @@ CENTRODES = Topic(
     name="centrodes",
     compute=Lazily("centrode.analysis.instant_centres.results", "centrode_results"),
     result=Lazily("centrode.analysis.instant_centres.results", "CentrodeResults"),
+    restore=Lazily("centrode.analysis.instant_centres.results", "results_of_centrodes"),
     view=Lazily("centrode.views.centrodes", "sheet"),
     command=Command(
         help=mark("Compute the centrodes of a link and draw them."),
@@ -392,9 +404,15 @@ FOLLOWER_MOTION = Topic(
     name="follower-motion",
     compute=Lazily("centrode.cams.followers.motion_results", "follower_motion_results"),
     result=Lazily("centrode.cams.followers.motion_results", "FollowerMotionResults"),
+    restore=Lazily("centrode.cams.followers.motion_results", "results_of_follower_motion"),
     view=Lazily("centrode.views.follower_motion", "sheet"),
     concerns=Lazily("centrode.model.cam_files", "has_follower"),
-    document=InDocuments(chapters=(ChapterOfTopic("lift", mark("Motion of the follower")),)),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("lift", mark("Motion of the follower")),
+        )
+    ),
     subject="cam",
 )
 
@@ -402,10 +420,16 @@ MOTION_LAWS = Topic(
     name="motion-laws",
     compute=Lazily("centrode.cams.followers.motion_results", "motion_law_results"),
     result=Lazily("centrode.cams.followers.motion_results", "MotionLawResults"),
+    restore=Lazily("centrode.cams.followers.motion_results", "MotionLawResults"),
     view=Lazily("centrode.views.motion_laws", "sheet"),
     concerns=Lazily("centrode.cams.followers.motion_results", "has_rise"),
     document=InDocuments(chapters=(ChapterOfTopic("laws", mark("Laws of motion for one rise")),)),
     subject="cam",
+    command=Command(
+        help="",
+        options=(FlagOption("laws", mark("Also other laws of motion for the first rise of the follower.")),),
+        needs=Lazily("centrode.model.cam_files", "with_follower"),
+    ),
     flag="laws",
 )
 
@@ -568,6 +592,39 @@ VARIANTS = Topic(
     subject="mechanisms",
 )
 
+EQUATIONS = Topic(
+    name="equations",
+    compute=Lazily("centrode.equations.instants", "equation_results"),
+    result=Lazily("centrode.equations.derivation", "Equations"),
+    view=Lazily("centrode.views.equations", "sheet"),
+    command=Command(
+        help=mark("Write the constraint equations in symbols, solved."),
+        options=(
+            ValueOption(
+                "point",
+                mark("NAME"),
+                mark(
+                    "A point whose velocity is asked for, again for more; those on guides of the frame if left out."
+                ),
+                several=True,
+                parameter="points",
+            ),
+        ),
+        pages=("txt", "tex", "md"),
+        file_help=WRITTEN_PAGE,
+        samples=False,
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("equations", mark("Constraint equations")),
+            ChapterOfTopic("derivation", mark("Velocities and accelerations")),
+        ),
+        points=True,
+        may_be_left_out=True,
+        may_be_incomplete=True,
+    ),
+)
+
 DESCRIBE = Topic(
     name="describe",
     compute=Lazily("centrode.analysis.operation", "principle_of_operation"),
@@ -591,6 +648,79 @@ GIVEN_MASSES = Topic(
     document=InDocuments(
         chapters=(ChapterOfTopic("masses-and-loads", mark("Masses and loads")),), instants=False
     ),
+)
+
+BASE_RADIUS = Topic(
+    name="base-radius",
+    compute=Lazily("centrode.cams.followers.base_radius_results", "base_radius_results"),
+    result=Lazily("centrode.cams.followers.base_radius_results", "BaseRadiusResults"),
+    view=Lazily("centrode.views.base_radius", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_size"),
+    document=InDocuments(chapters=(ChapterOfTopic("base-radius", mark("Choice of the base radius")),)),
+    subject="cam",
+)
+
+FOLLOWER_PROFILE = Topic(
+    name="follower-profile",
+    compute=Lazily("centrode.cams.followers.profile_results", "follower_profile_results"),
+    result=Lazily("centrode.cams.followers.profile_results", "FollowerProfileResults"),
+    view=Lazily("centrode.views.follower_profile", "sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
+    command=Command(
+        help="",
+        animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
+        animation_file="cam.gif",
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),)),
+    subject="cam",
+)
+
+ROLLER_PATH = Topic(
+    name="roller-path",
+    compute=Lazily("centrode.cams.cam", "roller_path_results"),
+    result=Lazily("centrode.cams.cam", "RollerPathResults"),
+    view=Lazily("centrode.views.roller_path", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("data", mark("Data")),
+            ChapterOfTopic("path", mark("Path of the roller's centre")),
+        ),
+        instants=False,
+    ),
+    subject="cam",
+)
+
+PATH_ROUTES = Topic(
+    name="path-routes",
+    compute=Lazily("centrode.cams.cam", "path_routes_results"),
+    result=Lazily("centrode.cams.cam", "PathRoutesResults"),
+    view=Lazily("centrode.views.path_routes", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    command=Command(
+        help="",
+        options=(
+            ValueOption(
+                "terms",
+                mark("N"),
+                mark("Cut the power series after a_N; the description's own number, else 20."),
+                int,
+            ),
+        ),
+        needs=NEEDS_CURVATURE_LAW,
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("routes", mark("Three routes to the path")),)),
+    subject="cam",
+)
+
+FOLLOWER_FORCES = Topic(
+    name="follower-forces",
+    compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
+    result=Lazily("centrode.cams.followers.force_results", "FollowerForceResults"),
+    view=Lazily("centrode.views.follower_forces", "sheet"),
+    concerns=Lazily("centrode.cams.followers.force_results", "has_forces"),
+    document=InDocuments(chapters=(ChapterOfTopic("cam-forces", mark("Forces on cam and follower")),)),
+    subject="cam",
 )
 
 TOPICS: tuple[Topic, ...] = (
@@ -617,5 +747,11 @@ TOPICS: tuple[Topic, ...] = (
     VARIANTS,
     GIVEN_MASSES,
     DESCRIBE,
+    BASE_RADIUS,
+    FOLLOWER_PROFILE,
+    ROLLER_PATH,
+    PATH_ROUTES,
+    FOLLOWER_FORCES,
+    EQUATIONS,
 )
 """Every topic."""

@@ -110,7 +110,7 @@ class Command:
 
     Attributes
     ----------
-    help : what the command does, marked for the catalogues
+    help : what the command does, marked for the catalogues; of a cam's topic empty
     options : in the order of `--help`
     needs : (mechanism, **arguments) raises InputError where the command needs more, although a document does without
     arguments : options as they are written -> arguments of the computation; the same if None
@@ -126,6 +126,7 @@ class Command:
     summary : whether the scalars of the sheet are written as `summary.json`
     pictures, dark : whether it draws, and on a dark ground as well
     animation : (result, file, dark) writes an animation, with `--animate`
+    animation_file : its name, that of the topic as a GIF if empty
     animation_help : what the animation shows, marked for the catalogues
     file_help : what the one file holds, marked for the catalogues; JSON or CSV if empty
     """
@@ -146,6 +147,7 @@ class Command:
     pictures: bool = True
     dark: bool = False
     animation: Lazily | None = None
+    animation_file: str = ""
     animation_help: str = ""
     file_help: str = ""
 
@@ -203,9 +205,11 @@ class Topic:
     concerns : whether a mechanism has what the topic is about; every one has if None
     command : None where only documents and Python have the topic
     document : its chapters
-    subject : "mechanism"; "cam": those of cams have one command together; "mechanisms": many of one structure, whose
-        commands read a file of their own and go on with what is in a folder
+    subject : "mechanism"; "cam": those have one command together, with the options of all of them; "mechanisms":
+        many of one structure, whose commands read a file of their own and go on with what is in a folder
     flag : option of that command without which it leaves the topic out
+    restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
+        computation has no dataset that says everything
     """
 
     name: str
@@ -217,3 +221,4 @@ class Topic:
     document: InDocuments = InDocuments()
     subject: Literal["mechanism", "cam", "mechanisms"] = "mechanism"
     flag: str = ""
+    restore: Lazily | None = None

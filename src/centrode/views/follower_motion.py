@@ -50,6 +50,7 @@ from centrode.sheets.texts import (
     Text,
     Title,
 )
+from centrode.views.follower_data import data_chapter
 from centrode.views.followers import (
     CONTACTS,
     KINDS,
@@ -95,7 +96,7 @@ def sheet(results: FollowerMotionResults) -> Sheet:
         tables=Deferred({"cam-motion": lambda: turn_table(results.dataset)}),
         datasets={"cam-motion": results.dataset},
         pictures=Deferred({"cam-motion": lambda: _plot(results)}),
-        chapters=Deferred({"lift": lambda: _chapter(results)}),
+        chapters=Deferred({"data": lambda: data_chapter(results.cam), "lift": lambda: _chapter(results)}),
     )
 
 

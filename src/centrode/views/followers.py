@@ -6,16 +6,20 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from centrode.errors import Status
 from centrode.quantities import QUANTITIES
-from centrode.sheets.sheet import Column, Table
-from centrode.sheets.texts import Expression, Name, Number, Sentence, Symbol, Text
+from centrode.sheets.sheet import Check, Column, Failure, Table
+from centrode.sheets.texts import NOTHING, Expression, Joined, Name, Number, Sentence, Symbol, Text
 from centrode.views.columns import rows_shown, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
+Array = npt.NDArray[np.float64]
+
+MEGA = 1e-6
 CURVE_NAMES = {
     "uniform": Sentence("uniform"),
     "harmonic": Sentence("harmonic"),
@@ -95,20 +99,33 @@ def turn_table(dataset: xr.Dataset) -> Table:
 def course(
     dataset: xr.Dataset, variables: Sequence[tuple[str, str]], caption: Sentence, *, brief: bool = False
 ) -> Table:
-    """Variables over the angle of the cam at even steps, under their letters.
+    """Variables over the angle of the cam at even steps, under their letters; stresses in MPa.
 
     A `brief` table has of rows that are alike, but for the angle, only the first and the last.
     """
     columns = [Column("cam_angle", dataset["cam_angle"].to_numpy(), "rad", Expression("phi"))]
     for name, letter in variables:
-        unit = str(dataset[name].attrs["units"])
-        columns.append(Column(name, dataset[name].to_numpy(), unit, Expression(letter)))
+        values, unit = in_megapascals(dataset[name].to_numpy(), str(dataset[name].attrs["units"]))
+        columns.append(Column(name, values, unit, Expression(letter)))
     rows = rows_shown(dataset.sizes["sample"], ROWS)
     if brief:
         kept = _unlike(rows, columns[1:])
         if len(kept) < len(rows):
             rows, caption = kept, Sentence("{caption}; of alike rows the first and the last", caption=caption)
     return Table(tuple(columns), caption, rows)
+
+
+def in_megapascals(values: Array, unit: str) -> tuple[Array, str]:
+    """Values in a unit, stresses in MPa."""
+    return (MEGA * values, "MPa") if unit == "Pa" else (values, unit)
+
+
+def failed_checks(failure: Failure | None) -> tuple[Check, ...]:
+    """What a cam cannot do, among the checks of a document."""
+    if failure is None:
+        return ()
+    parts = [text for text in (failure.what, failure.repair) if text != NOTHING]
+    return (Check(Sentence("{failure}.", failure=Joined(parts, "; ")), 1.0, 1.0, 0.0),)
 
 
 def _unlike(rows: tuple[int, ...], columns: Sequence[Column]) -> tuple[int, ...]:

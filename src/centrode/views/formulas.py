@@ -1,8 +1,9 @@
-"""Pieces of formulas with numbers, as expressions: letters with names below them, long sums."""
+"""Formulas with numbers, as expressions: letters with names below them, long sums, letters followed by numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 
 from centrode.sheets.texts import Expression, Leaf, Name, Number
 
@@ -10,6 +11,7 @@ LONGEST = 6
 """Terms of a sum beyond which only its first and its last ones are written."""
 ROUNDING = 1e-13
 """Terms below this share of the greatest are zero."""
+NO_LETTERS: Mapping[str, str] = MappingProxyType({})
 
 
 def index_symbol(letter: str, name: str, behind: str = "") -> Expression:
@@ -37,3 +39,32 @@ def join_expressions(parts: Sequence[Expression], between: str) -> Expression:
     """Expressions with a sign between them."""
     holes = {f"part{place}": part for place, part in enumerate(parts)}
     return Expression(between.join(f"{{{name}}}" for name in holes), **holes)
+
+
+def relation(
+    left: str,
+    notation: str,
+    result: Leaf,
+    values: Mapping[str, Leaf],
+    letters: Mapping[str, str] = NO_LETTERS,
+) -> tuple[Leaf, ...]:
+    """A line of a formula: left side, right side in letters, the same with numbers, and the result.
+
+    Parameters
+    ----------
+    left : in the notation of `Expression`, as `notation`
+    notation : with a hole for each quantity; an asterisk between blanks is a product, whose sign letters do without
+    values : hole -> the number, or an expression of numbers
+    letters : hole -> how the quantity is written, where that is not the name of the hole
+    """
+    return left, in_letters(notation, values, letters), with_numbers(notation, values), result
+
+
+def in_letters(notation: str, values: Iterable[str], letters: Mapping[str, str] = NO_LETTERS) -> str:
+    """The right side of a `relation` in letters."""
+    return notation.replace(" * ", " ").format(**{name: letters.get(name, name) for name in values})
+
+
+def with_numbers(notation: str, values: Mapping[str, Leaf]) -> Expression:
+    """The right side of a `relation` with numbers."""
+    return Expression(notation.replace(" * ", " dot.op "), **values)

@@ -38,13 +38,13 @@ def integrated_rates(mechanism: Mechanism, exact: xr.Dataset) -> Mapping[tuple[s
     if int(course["status"][-1]) != Status.OK:
         return {}
     last = course.isel(sample=-1)
-    found = {
+    rates = {
         ("angular_velocity", name): float(last["angular_velocity"].sel(link=name))
         for name in mechanism.link_names
     }
     for name in mechanism.moving_points:
-        found["velocity", name] = float(np.hypot(*last["velocity"].sel(point=name).to_numpy()))
-    return found
+        rates["velocity", name] = float(np.hypot(*last["velocity"].sel(point=name).to_numpy()))
+    return rates
 
 
 RATES = (("angular_velocity", "velocity"), ("angular_acceleration", "acceleration"))
@@ -102,11 +102,11 @@ def graphic_check(
     Parameters and failures are those of `diagrams`: a value of the drive or a time, a reading step of directions
     [rad] and of lengths on paper [m], scales of the drawings.
     """
-    found = diagrams(mechanism, at, angle_step, length_step, scales)
-    integrated = integrated_rates(mechanism, found.exact)
-    pairs = zip(RATES, (found.velocity, found.acceleration), strict=True)
-    rows = [row for names, diagram in pairs for row in _rows(found, diagram, names, integrated)]
-    return GraphicCheck(found, tuple(rows))
+    drawn = diagrams(mechanism, at, angle_step, length_step, scales)
+    integrated = integrated_rates(mechanism, drawn.exact)
+    pairs = zip(RATES, (drawn.velocity, drawn.acceleration), strict=True)
+    rows = [row for names, diagram in pairs for row in _rows(drawn, diagram, names, integrated)]
+    return GraphicCheck(drawn, tuple(rows))
 
 
 def _rows(

@@ -245,11 +245,11 @@ def triangle_of(
         return None
     names = (_side(first, second), first.text.split(" ")[0], second.text.split(" ")[0])
     # angles opposite to the sides, in the order of the sides
-    found = tuple(
+    angles = tuple(
         _angle(corners[a] - corners[k], corners[b] - corners[k])
         for k, a, b in ((2, 0, 1), (1, 0, 2), (0, 1, 2))
     )
-    return Triangle(names, sides, (found[0], found[1], found[2]))
+    return Triangle(names, sides, (angles[0], angles[1], angles[2]))
 
 
 def _side(first: Ray, second: Ray) -> str:
@@ -269,7 +269,7 @@ def _angle(a: complex, b: complex) -> float:
 def _train(stage: ConstructionStage, group: Train) -> list[str]:
     """Links that gears turn together: angular velocities by their equations, then images one after the other."""
     stage.turns.update(train_rates(stage, group))
-    equations = [line for one in group.equations for line in wheel_equations(stage, one)]
+    equations = [line for equation in group.equations for line in wheel_equations(stage, equation)]
     for link, pivot in group.places:
         stage.bases[link] = pivot
         for point, bringing in group.brought:

@@ -118,10 +118,10 @@ def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], d
         drive = path.driven[0].drive.id
         return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
     first, second = {}, {}
-    for one in path.driven:
-        value = one.value(JETS, Jet.variable(span.time, 2))
+    for driven in path.driven:
+        value = driven.value(JETS, Jet.variable(span.time, 2))
         value = value if isinstance(value, Jet) else Jet((value, 0.0, 0.0))
-        first[one.drive.id], second[one.drive.id] = (
+        first[driven.drive.id], second[driven.drive.id] = (
             float(np.broadcast_to(value.derivative(k), (1,))[0]) for k in (1, 2)
         )
     return first, second
@@ -137,16 +137,16 @@ def instant_centres(velocity: ConstructionStage) -> dict[str, complex | None]:
     """Instant centres of velocity where perpendiculars to the velocities meet; None at infinity."""
     size = max((abs(rate) for rate in velocity.points.values()), default=0.0)
     reach = extent_of([velocity.drawing.point(name) for name in velocity.points])
-    found: dict[str, complex | None] = {}
+    centres: dict[str, complex | None] = {}
     for link, base in velocity.bases.items():
         rate, turn = velocity.rate(base), velocity.turns[link]
         # a turn counts by the speed that it gives across the drawing
         if abs(turn) * reach > AT_REST * size:
-            found[link] = velocity.drawing.point(base) + 1j * rate / turn
+            centres[link] = velocity.drawing.point(base) + 1j * rate / turn
         # it moves but does not turn: the centre is at infinity; what does neither has none
         elif abs(rate) > AT_REST * size:
-            found[link] = None
-    return found
+            centres[link] = None
+    return centres
 
 
 MECHANISM, DIAGRAM = 90.0, 105.0
@@ -266,20 +266,23 @@ def diagrams(
     span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
-    found = _construct_diagrams(prepared, exact, span, board, scales or {})
+    exact_drawing = _construct_diagrams(prepared, exact, span, board, scales or {})
     if board.paper_step is None:
-        return found
+        return exact_drawing
     # scales are chosen by the exact drawing, then lengths on paper are read
     # a step on paper [m] in millimetres, times what a millimetre stands for
-    coarse = replace(board, length_step=1e3 * board.paper_step * found.scale)
-    grains = tuple(1e3 * board.paper_step * one.scale for one in (found.velocity, found.acceleration))
+    coarse = replace(board, length_step=1e3 * board.paper_step * exact_drawing.scale)
+    grains = tuple(
+        1e3 * board.paper_step * diagram.scale
+        for diagram in (exact_drawing.velocity, exact_drawing.acceleration)
+    )
     # with the reading step all is drawn again, at the scales already chosen
     again = _construct_diagrams(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
     return replace(
         again,
-        scale=found.scale,
-        velocity=replace(again.velocity, scale=found.velocity.scale),
-        acceleration=replace(again.acceleration, scale=found.acceleration.scale),
+        scale=exact_drawing.scale,
+        velocity=replace(again.velocity, scale=exact_drawing.velocity.scale),
+        acceleration=replace(again.acceleration, scale=exact_drawing.acceleration.scale),
     )
 
 

@@ -101,11 +101,11 @@ class Ray:
 
     def edges(self, end: complex) -> list[Edge]:
         """All parts as they are drawn."""
-        place, found = self.origin, []
+        place, edges = self.origin, []
         for leg in self.legs:
-            found.append(Edge(place, place + leg.vector, leg.kind, leg.name, self.link))
+            edges.append(Edge(place, place + leg.vector, leg.kind, leg.name, self.link))
             place += leg.vector
-        return [*found, Edge(place, end, self.kind, self.name, self.link)]
+        return [*edges, Edge(place, end, self.kind, self.name, self.link)]
 
     def equation(self, letter: str, name: str) -> str:
         """The equation in symbols: v_B = v_A + v_BA (⊥ AB)."""
@@ -464,13 +464,13 @@ def solve_by_trials(
     # no turn, then one link after the other turned by the size: as many trials as unknowns and one
     values = [tuple(size * (k == j + 1) for j in range(count)) for k in range(count + 1)]
     misfits = [_misfits(_construct_trial(stage, opened, trial, construct), opened) for trial in values]
-    found = tuple(_interpolate_trial(np.array(values), np.array(misfits)).tolist())
+    fitting = tuple(_interpolate_trial(np.array(values), np.array(misfits)).tolist())
     trial = ConstructionTrial(
-        opened.turned, tuple(values), tuple(misfits), found, tuple(cut.name for cut in opened.cuts)
+        opened.turned, tuple(values), tuple(misfits), fitting, tuple(cut.name for cut in opened.cuts)
     )
     stage.steps.append(ConstructionStep(group.sentence, (), trial=trial))
     # the trials are thrown away: only the drawing with the right turns stays
-    _adopt(stage, _construct_trial(stage, opened, found, construct))
+    _adopt(stage, _construct_trial(stage, opened, fitting, construct))
     for cut in opened.cuts:
         _put_back(stage, cut)
 
@@ -615,11 +615,11 @@ def _fallen(
         entity: [o for number in own for o in equations[number][0].bodies if o != entity and o in matched]
         for entity, own in matched.items()
     }
-    found: list[Group] = []
+    dyads: list[Group] = []
     for component in in_order(strong_components(depends), depends):
         own = sorted(number for entity in component for number in matched[entity])
         part = classify(structure.mechanism, component, [equations[n] for n in own])
         if isinstance(part, Newton):
             return None
-        found.append(part)
-    return tuple(found)
+        dyads.append(part)
+    return tuple(dyads)

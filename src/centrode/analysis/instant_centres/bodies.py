@@ -111,7 +111,7 @@ class BodyMotions(Named):
         """One sample of a motion that is no batch."""
         return replace(self, **{name: getattr(self, name)[number] for name in ORDERS})
 
-    def carried(self, body: int, local: Sequence[float]) -> complex:
+    def place_in_frame(self, body: int, local: Sequence[float]) -> complex:
         """Where a place in a body's axes is, at one sample."""
         name = self.names[body]
         # place is that of the body's first named point, so the arm is measured from it
@@ -147,20 +147,20 @@ def bodies_of(motion: xr.Dataset) -> BodyMotions:
     }
     front = motion["status"].shape
     kinds = dict.fromkeys(ORDERS[:3], np.complex128) | dict.fromkeys(ORDERS[3:], np.float64)
-    found: dict[str, npt.NDArray[Any]]
-    found = {name: np.zeros((*front, len(names)), dtype=kind) for name, kind in kinds.items()}
+    orders: dict[str, npt.NDArray[Any]]
+    orders = {name: np.zeros((*front, len(names)), dtype=kind) for name, kind in kinds.items()}
     columns = {dimension: [str(name) for name in motion[dimension].values] for dimension in ("point", "link")}
     for number, name in enumerate(names[1:], start=1):
         carrier = sliders[name].on if name in sliders else name
         point = sliders[name].point if name in sliders else next(iter(mechanism.links[name].coordinates))
         for order in ORDERS[:3]:
-            found[order][..., number] = values[order][..., columns["point"].index(point)]
+            orders[order][..., number] = values[order][..., columns["point"].index(point)]
         # a slider on the frame keeps the zeros: it does not turn
         for order in ORDERS[3:] if carrier != FRAME else ():
-            found[order][..., number] = values[order][..., columns["link"].index(carrier)]
-    absent = ~np.isfinite(found["velocity"] + found["spin"]).all(axis=-1)
-    found["velocity"][absent] = found["spin"][absent] = np.nan  # the frame's too, in a singular position
-    return BodyMotions(mechanism, names, sliders, scale=float(dimensions_of(mechanism).scale), **found)
+            orders[order][..., number] = values[order][..., columns["link"].index(carrier)]
+    absent = ~np.isfinite(orders["velocity"] + orders["spin"]).all(axis=-1)
+    orders["velocity"][absent] = orders["spin"][absent] = np.nan  # the frame's too, in a singular position
+    return BodyMotions(mechanism, names, sliders, scale=float(dimensions_of(mechanism).scale), **orders)
 
 
 def _variables(motion: xr.Dataset) -> tuple[str, ...]:
@@ -183,15 +183,15 @@ def body_names(mechanism: Mechanism) -> tuple[str, ...]:
 
 def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
     """Name -> guide of the sliders that a description does not name as links."""
-    found: dict[str, Guide] = {}
+    sliders: dict[str, Guide] = {}
     for guide in mechanism.guides:
         if guide.link is None:
             name = f"slider {guide.id}"
             # a link may have the name already
-            while name in mechanism.links or name in found:
+            while name in mechanism.links or name in sliders:
                 name += "'"
-            found[name] = guide
-    return found
+            sliders[name] = guide
+    return sliders
 
 
 def vectors(places: Places) -> Array:
@@ -308,8 +308,8 @@ def _of_one(motion: xr.Dataset) -> TurningBodies:
         spin_rate[:, number] = spin_rate[:, base] + carried
         speed[:, number] = speed[:, base] + slides[3][:, None] * pole
     absent = ~np.isfinite(spin).all(axis=(1, 2))
-    for found in (spin, spin_rate, speed):
-        found[absent] = np.nan  # the frame's too, in a singular position
+    for rates in (spin, spin_rate, speed):
+        rates[absent] = np.nan  # the frame's too, in a singular position
     return TurningBodies(mechanism, names, sliders, axes, spin, spin_rate, speed, points)
 
 
@@ -320,9 +320,9 @@ def _slides(orders: tuple[str, str]) -> tuple[str, ...]:
 def _angular(motion: xr.Dataset, variable: str, count: int) -> Array:
     """A vector of every link, with zeros for the frame and room for the sliders."""
     values = motion[variable].to_numpy()
-    found = np.zeros((len(values), count, 3))
-    found[:, 1 : 1 + values.shape[1]] = values
-    return found
+    rates = np.zeros((len(values), count, 3))
+    rates[:, 1 : 1 + values.shape[1]] = values
+    return rates
 
 
 def _attitudes(mechanism: Mechanism, name: str, points: dict[str, Array], samples: int) -> Array:

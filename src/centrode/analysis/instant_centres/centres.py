@@ -58,22 +58,22 @@ class PrimaryGearing:
 
 def joints_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryJoint, ...]:
     """Hinges, guides and rolling wheels, in the order of the points, the guides and the wheels."""
-    found: list[PrimaryJoint] = []
+    joints: list[PrimaryJoint] = []
     for point in mechanism.points:
-        found += [
+        joints += [
             # what is hinged at one point is hinged pair by pair: of n bodies n (n - 1) / 2 centres lie there
             PrimaryJoint("hinge", point, order_pair(pair))
             for pair in combinations(carriers(bodies, point), 2)
         ]
     for guide in mechanism.guides:
         slid = guide.link if guide.link is not None else slider_of(bodies, guide)
-        found.append(
+        joints.append(
             PrimaryJoint("guide", guide.id, order_pair((bodies.number(slid), bodies.number(guide.on))))
         )
     for wheel in mechanism.rolling:
         pair = order_pair((bodies.number(wheel.link), bodies.number(wheel.on)))
-        found.append(PrimaryJoint("rolling", wheel.id, pair))
-    return tuple(found)
+        joints.append(PrimaryJoint("rolling", wheel.id, pair))
+    return tuple(joints)
 
 
 def gearings_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryGearing, ...]:
@@ -132,7 +132,7 @@ def point_at(bodies: BodyMotions, point: str) -> complex:
         if guide.point == point:
             return complex(bodies.place[bodies.number(name)])
     owner = next(name for name, link in mechanism.links.items() if point in link.coordinates)
-    return bodies.carried(bodies.number(owner), mechanism.links[owner].coordinates[point])
+    return bodies.place_in_frame(bodies.number(owner), mechanism.links[owner].coordinates[point])
 
 
 def contact_of(wheel: Rolling, bodies: BodyMotions) -> complex:
@@ -141,11 +141,11 @@ def contact_of(wheel: Rolling, bodies: BodyMotions) -> complex:
     centre, track = point_at(bodies, wheel.centre), wheel.along
     if track.through is not None:
         along = complex(*track.unit) * np.exp(1j * bodies.turn[on])
-        start = bodies.carried(on, track.through)
+        start = bodies.place_in_frame(on, track.through)
         return start + complex(((centre - start) * np.conj(along)).real * along)
     own = track.centre
     local = mechanism.points_of(wheel.on)[own] if isinstance(own, str) else own
-    middle = bodies.carried(on, local or (0.0, 0.0))
+    middle = bodies.place_in_frame(on, local or (0.0, 0.0))
     radius = track.radius or 0.0
     # a ring around its pin touches on the far side of the pin
     far = -1.0 if track.inside and wheel.radius > radius else 1.0
@@ -218,17 +218,17 @@ class Recogniser:
         moving, spin = bodies.relative(pair)
         slow = ROUNDED * bodies.rate
         still = np.abs(spin) * bodies.scale <= slow
-        found = self._by_velocities(pair, moving, spin, slow)
+        cases = self._by_velocities(pair, moving, spin, slow)
         # from weaker to stronger: what a joint shows overrides what velocities show, rest overrides both, and
         # where nothing is there no case holds
         if order_pair(pair) in self.rolling:
-            found[:] = Case.ROLLING
+            cases[:] = Case.ROLLING
         if order_pair(pair) in self.hinged:
-            found[:] = Case.HINGE
-        found[still] = Case.TRANSLATION
-        found[still & (np.abs(moving) <= slow)] = Case.REST
-        found[~np.isfinite(np.abs(moving) + spin)] = Case.ABSENT
-        return found
+            cases[:] = Case.HINGE
+        cases[still] = Case.TRANSLATION
+        cases[still & (np.abs(moving) <= slow)] = Case.REST
+        cases[~np.isfinite(np.abs(moving) + spin)] = Case.ABSENT
+        return cases
 
     def _by_velocities(self, pair: Pair, moving: Places, spin: Array, slow: Array) -> Kinds:
         """Cases by the velocities of two points of the first body against the second."""
@@ -240,11 +240,11 @@ class Recogniser:
             parallel = np.abs(product.imag) <= ROUNDED * np.abs(product)
         # perpendiculars to parallel velocities coincide: the line through the arrowheads cuts them in the
         # centre
-        found = np.full(moving.shape, Case.DIRECTIONS, dtype=np.int8)
-        found[parallel & (product.real > 0.0)] = Case.SAME_SENSE
-        found[parallel & (product.real <= 0.0)] = Case.OPPOSITE_SENSE
-        found[(np.abs(moving) <= slow) | (np.abs(other) <= slow)] = Case.STANDSTILL
-        return found
+        cases = np.full(moving.shape, Case.DIRECTIONS, dtype=np.int8)
+        cases[parallel & (product.real > 0.0)] = Case.SAME_SENSE
+        cases[parallel & (product.real <= 0.0)] = Case.OPPOSITE_SENSE
+        cases[(np.abs(moving) <= slow) | (np.abs(other) <= slow)] = Case.STANDSTILL
+        return cases
 
 
 # Instantaneous axes of bodies that turn about the centre of a sphere, and how they are located.
@@ -265,9 +265,9 @@ def axis_of(bodies: TurningBodies, pair: Pair) -> Array:
 def axis_speed(bodies: TurningBodies, pair: Pair, axis: Array) -> Array:
     """Relative angular velocity [rad/s] about the end of the axis that is given; zero where nothing turns."""
     speed = bodies.speed[..., pair[0], :] - bodies.speed[..., pair[1], :]
-    found = np.sum(speed * axis, axis=-1)
+    about_axis = np.sum(speed * axis, axis=-1)
     # at rest there is no axis to project on: what is left is rounding, said as it is
-    return np.asarray(np.where(at_rest(bodies, pair), np.linalg.norm(speed, axis=-1), found))
+    return np.asarray(np.where(at_rest(bodies, pair), np.linalg.norm(speed, axis=-1), about_axis))
 
 
 def at_rest(bodies: TurningBodies, pair: Pair) -> Mask:
@@ -285,20 +285,20 @@ def axis_cases(bodies: TurningBodies, pair: Pair) -> Kinds:
     product = np.sum(one * other, axis=-1)
     # both square to one great circle: the axis lies on it, beyond or between the places
     parallel = np.linalg.norm(np.cross(one, other), axis=-1) <= ROUNDED * sizes[0] * sizes[1]
-    found = np.full(slow.shape, Case.DIRECTIONS, dtype=np.int8)
-    found[parallel & (product > 0.0)] = Case.SAME_SENSE
-    found[parallel & (product <= 0.0)] = Case.OPPOSITE_SENSE
-    found[(sizes[0] <= slow) | (sizes[1] <= slow)] = Case.STANDSTILL
+    cases = np.full(slow.shape, Case.DIRECTIONS, dtype=np.int8)
+    cases[parallel & (product > 0.0)] = Case.SAME_SENSE
+    cases[parallel & (product <= 0.0)] = Case.OPPOSITE_SENSE
+    cases[(sizes[0] <= slow) | (sizes[1] <= slow)] = Case.STANDSTILL
     mechanism = bodies.mechanism
     if order_pair(pair) in set(rolling_pairs(mechanism, bodies)):
-        found[:] = Case.ROLLING
+        cases[:] = Case.ROLLING
     if order_pair(pair) in {
         joint.pair for joint in joints_of(mechanism, bodies)
     }:  # a guide's pole is a hinge too
-        found[:] = Case.HINGE
-    found[at_rest(bodies, pair)] = Case.REST
-    found[~np.isfinite(spin).all(axis=-1)] = Case.ABSENT
-    return found
+        cases[:] = Case.HINGE
+    cases[at_rest(bodies, pair)] = Case.REST
+    cases[~np.isfinite(spin).all(axis=-1)] = Case.ABSENT
+    return cases
 
 
 NUMBERS = 5
@@ -339,19 +339,21 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     numbers = number_pairs(bodies, pairs)
     _check_size(bodies, len(numbers))
     spherical = isinstance(bodies, TurningBodies)
-    found = _axes(bodies, numbers) if isinstance(bodies, TurningBodies) else _centres(bodies, numbers)
+    located = _axes(bodies, numbers) if isinstance(bodies, TurningBodies) else _centres(bodies, numbers)
     front = tuple(map(str, motion["status"].dims))
     labels = [f"{bodies.names[first]},{bodies.names[second]}" for first, second in numbers]
     variables = {
         name: vocabulary_variable(
             name, (*front, "pair", "axis")[: values.ndim], values, length_unit="rad" if spherical else "m"
         )
-        for name, values in found.items()
+        for name, values in located.items()
     }
     variables["centre_case"][2]["flag_values"] = np.array([case.value for case in Case], dtype=np.int8)
     variables["centre_case"][2]["flag_meanings"] = " ".join(case.name.lower() for case in Case)
     kept = motion[["status"]].assign_coords(drive_value=motion["drive_value"], axis=motion["axis"])
-    return kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
+    centres = kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
+    # places of several mechanisms have no sheet
+    return centres.assign_attrs(topic="centres") if centres["status"].dims == ("sample",) else centres
 
 
 def _centres(bodies: BodyMotions, numbers: Sequence[Pair]) -> dict[str, Array]:
@@ -409,15 +411,15 @@ def number_pairs(bodies: Named, pairs: Sequence[tuple[str, str]] | None) -> list
     """Pairs by the numbers of their bodies; all of them, the later body against the earlier one, if left out."""
     if pairs is None:
         return [(second, first) for first, second in combinations(range(len(bodies.names)), 2)]
-    found = []
+    numbers = []
     for first, second in pairs:
         pair = bodies.number(first), bodies.number(second)
         if pair[0] == pair[1]:
             raise InputError(
                 "pair", _("{name} has no centre against itself").format(name=first), _("name two bodies")
             )
-        found.append(pair)
-    return found
+        numbers.append(pair)
+    return numbers
 
 
 def _check_size(bodies: Named, pairs: int) -> None:

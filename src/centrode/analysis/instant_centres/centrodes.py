@@ -106,24 +106,26 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
     are of the fourth order in the distance of the samples.
     """
     spherical = is_spherical(motion)
-    found = _on_sphere(motion, link, against) if spherical else _in_plane(motion, link, against)
-    pieces = _pieces(found, motion["status"].to_numpy() == Status.OK)
+    polodes = _on_sphere(motion, link, against) if spherical else _in_plane(motion, link, against)
+    pieces = _pieces(polodes, motion["status"].to_numpy() == Status.OK)
     step = _steps(motion)
     arcs = [
         _arc(curve, rate * step[:, None], pieces)
-        for curve, rate in zip((found.fixed, found.moving), found.rates, strict=True)
+        for curve, rate in zip((polodes.fixed, polodes.moving), polodes.rates, strict=True)
     ]
     front, unit = tuple(map(str, motion["status"].dims)), "rad" if spherical else "m"
     along = (*front, "axis")
     variables = {
-        "fixed_centrode": vocabulary_variable("fixed_centrode", along, found.fixed, length_unit=unit),
-        "moving_centrode": vocabulary_variable("moving_centrode", along, found.moving, length_unit=unit),
+        "fixed_centrode": vocabulary_variable("fixed_centrode", along, polodes.fixed, length_unit=unit),
+        "moving_centrode": vocabulary_variable("moving_centrode", along, polodes.moving, length_unit=unit),
         "centrode_piece": vocabulary_variable("centrode_piece", front, pieces),
         "fixed_arc": vocabulary_variable("fixed_arc", front, arcs[0], length_unit=unit),
         "moving_arc": vocabulary_variable("moving_arc", front, arcs[1], length_unit=unit),
     }
     kept = motion[["status"]].assign_coords(axis=motion["axis"], drive_value=motion["drive_value"])
-    return kept.assign(variables).assign_attrs(link=link, against=against)
+    curves = kept.assign(variables).assign_attrs(link=link, against=against)
+    # the centrodes of several mechanisms have no sheet
+    return curves.assign_attrs(topic="centrodes") if front == ("sample",) else curves
 
 
 def _in_plane(motion: xr.Dataset, link: str, against: str) -> Polodes:

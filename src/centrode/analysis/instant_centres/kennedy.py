@@ -106,7 +106,7 @@ class Construction:
         for step in reversed(self.steps):
             if step.pair in wanted:
                 kept.append(step)
-                wanted.update(order_pair((one, by)) for by in step.by for one in step.pair)
+                wanted.update(order_pair((body, by)) for by in step.by for body in step.pair)
         steps = tuple(reversed(kept))
         return replace(self, steps=steps, mismatch={step.pair: self.mismatch[step.pair] for step in steps})
 
@@ -259,9 +259,9 @@ class PlaneSpots:
     ) -> ProjectivePoint | None:
         """With A, B of the wheels on the carrier, P - A = i (P - B)."""
         # ratios of distances mean nothing with a centre at infinity
-        if any(one.at_infinity for one in known):
+        if any(centre.at_infinity for centre in known):
             return None
-        a, b = (complex(one.vector[0], one.vector[1]) / one.vector[2] for one in known)
+        a, b = (complex(centre.vector[0], centre.vector[1]) / centre.vector[2] for centre in known)
         ratio = gear.ratio
         # where they mesh both wheels have one velocity against the carrier: w1 (P - A) = w2 (P - B), and w2 =
         # i w1
@@ -354,7 +354,7 @@ class SphereSpots:
 
 
 def _geared_error(gear: PrimaryGearing, known: Sequence[ProjectivePoint]) -> float:
-    return sum(one.error for one in known) * (1.0 + abs(gear.ratio)) * 4.0
+    return sum(centre.error for centre in known) * (1.0 + abs(gear.ratio)) * 4.0
 
 
 def _hinge(bodies: TurningBodies, wheel: int, carrier: int) -> str | None:
@@ -427,8 +427,8 @@ def construct_centres(
             "at", _("the mechanism has no position with velocities there"), _("ask for another one")
         )
     residual = float(motion["residual"][sample])
-    found = _Constructing(spots_of(everything.sample(sample)), residual).run()
-    return found if wanted is None else found.needed(wanted)
+    construction = _Constructing(spots_of(everything.sample(sample)), residual).run()
+    return construction if wanted is None else construction.needed(wanted)
 
 
 class _Constructing:
@@ -453,9 +453,9 @@ class _Constructing:
         while unknown:
             # all of a round before any is noted: no step leans on one of its own round, as in the circle
             # diagram
-            found = [step for step in map(self._derive_centre, unknown) if step is not None]
+            derived = [step for step in map(self._derive_centre, unknown) if step is not None]
             # one centre of the velocity field at a time: it may be all that Kennedy's theorem lacked
-            for pair, where, how, name, by in found or [self._centre_of_velocities(unknown)]:
+            for pair, where, how, name, by in derived or [self._centre_of_velocities(unknown)]:
                 if where is None:
                     self._rest(pair, by)
                 else:
@@ -544,7 +544,7 @@ class _Constructing:
         for third in range(len(self.bodies.names)):
             if third in pair:
                 continue
-            legs = [order_pair((one, third)) for one in pair]
+            legs = [order_pair((body, third)) for body in pair]
             if all(leg in self.known for leg in legs):
                 yield third, self.known[legs[0]], self.known[legs[1]]
 
@@ -559,7 +559,7 @@ class _Constructing:
         # the step leans on the centres of the third wheel or carrier with both of the pair
         third = next((n for n in (gear.first, gear.second, gear.carrier) if n not in pair), gear.carrier)
         others = [self.known.get(leg) for name, leg in legs.items() if name != wanted]
-        known = [one for one in others if one is not None]
+        known = [centre for centre in others if centre is not None]
         if wanted is None or len(known) < 2:
             return None, third
         return self.spots.gear_centre(gear, wanted, known), third

@@ -93,14 +93,27 @@ def centre_results(
     if wanted is None and count_of_pairs(mechanism) > MOST_CENTRES:
         wanted = tuple((name, FRAME) for name in names[1:])
     course = motion(mechanism, at=instants)
-    constructions = tuple(
-        construct_centres(course, sample)
-        if has_velocities(course, sample) and len(names) <= MOST_BODIES
-        else None
-        for sample in range(len(instants))
-    )
     pairs = None if pairs is None else tuple(pairs)
-    return CentreResults(mechanism, pairs, course, instant_centres(course, wanted), constructions)
+    return CentreResults(
+        mechanism, pairs, course, instant_centres(course, wanted), _constructions(mechanism, course)
+    )
+
+
+def results_of_centres(mechanism: Mechanism, centres: xr.Dataset) -> CentreResults:
+    """A dataset of `instant_centres` with the motion at its samples, and the construction of all centres there."""
+    course = motion(mechanism, at=mechanism.motion_parameter.instants(centres))
+    labels = [tuple(str(label).split(",")) for label in centres["pair"].to_numpy()]
+    pairs = tuple((first, second) for first, second in labels)
+    return CentreResults(mechanism, pairs, course, centres, _constructions(mechanism, course))
+
+
+def _constructions(mechanism: Mechanism, course: xr.Dataset) -> tuple[Construction | None, ...]:
+    """Centres by Aronhold's and Kennedy's theorem at every sample that has velocities."""
+    few = len(body_names(mechanism)) <= MOST_BODIES
+    return tuple(
+        construct_centres(course, sample) if few and has_velocities(course, sample) else None
+        for sample in range(course.sizes["sample"])
+    )
 
 
 def centrode_results(
@@ -132,6 +145,13 @@ def centrode_results(
         return CentrodeResults(mechanism, link, against, course, curves, None, None)
     bends = curvature(mechanism, link, instants, against)
     return CentrodeResults(mechanism, link, against, course, curves, motion(mechanism, at=instants), bends)
+
+
+def results_of_centrodes(mechanism: Mechanism, curves: xr.Dataset) -> CentrodeResults:
+    """A dataset of `centrodes` with the motion at its samples."""
+    course = motion(mechanism, at=mechanism.motion_parameter.instants(curves))
+    link, against = str(curves.attrs["link"]), str(curves.attrs["against"])
+    return CentrodeResults(mechanism, link, against, course, curves, None, None)
 
 
 def count_of_pairs(mechanism: Mechanism) -> int:

@@ -115,9 +115,9 @@ def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | Non
         raise InputError(path, error.what, error.repair) from None
     unit = _unit(mechanism, path)
     scale = _scale(prepared, path, before, unit)
-    found = Varying(path, before, 0.0, 0.0, unit, scale)
-    _check_varies(prepared, found)
-    low, high = _default_bounds(found) if bounds is None else _given_bounds(found, bounds)
+    unbounded = Varying(path, before, 0.0, 0.0, unit, scale)
+    _check_varies(prepared, unbounded)
+    low, high = _default_bounds(unbounded) if bounds is None else _given_bounds(unbounded, bounds)
     return Varying(path, before, low, high, unit, scale)
 
 
@@ -215,19 +215,19 @@ class Candidates:
 
     def values(self, changes: Array) -> Array:
         """Values (n, p) in SI at scaled changes (n, p)."""
-        before = np.array([one.before for one in self.varying])
-        return np.asarray(before + changes * np.array([one.scale for one in self.varying]))
+        before = np.array([number.before for number in self.varying])
+        return np.asarray(before + changes * np.array([number.scale for number in self.varying]))
 
     def box(self) -> tuple[Array, Array]:
         """Least and greatest scaled change of each number."""
-        low = np.array([(one.low - one.before) / one.scale for one in self.varying])
-        high = np.array([(one.high - one.before) / one.scale for one in self.varying])
+        low = np.array([(number.low - number.before) / number.scale for number in self.varying])
+        high = np.array([(number.high - number.before) / number.scale for number in self.varying])
         return low, high
 
     def batch(self, changes: Array) -> Batch:
         """The mechanisms at scaled changes (n, p); what the initial angles place is placed anew."""
         mechanism = self.prepared.mechanism
-        columns = dict(zip((one.path for one in self.varying), self.values(changes).T, strict=True))
+        columns = dict(zip((number.path for number in self.varying), self.values(changes).T, strict=True))
         angles = {p.split(".")[1]: x for p, x in columns.items() if self._turns(p)}
         varied = {path: x for path, x in columns.items() if not self._turns(path)}
         # twice: what is placed depends on the numbers that vary, and the dimensions on what is placed
@@ -244,17 +244,17 @@ class Candidates:
         return Batch(kinematics, signs, len(changes))
 
     def _turns(self, path: str) -> bool:
-        return any(one.path == path and one.is_initial_angle for one in self.varying)
+        return any(number.path == path and number.is_initial_angle for number in self.varying)
 
     def mechanism(self, change: Array) -> Mechanism:
         """The description of one candidate at scaled changes (p,)."""
-        found = self.prepared.mechanism
-        for one, value in zip(self.varying, self.values(change[None, :])[0], strict=True):
-            found = with_value(found, one.path, float(value))
-        if places_anew(found):
+        mechanism = self.prepared.mechanism
+        for number, value in zip(self.varying, self.values(change[None, :])[0], strict=True):
+            mechanism = with_value(mechanism, number.path, float(value))
+        if places_anew(mechanism):
             # where angles place, they also decide the assembly; elsewhere the sides have to be written down
-            return replace_placed(found)
-        return _assembled_as(self.prepared, found, self.batch(change[None, :]))
+            return replace_placed(mechanism)
+        return _assembled_as(self.prepared, mechanism, self.batch(change[None, :]))
 
 
 def placed_numbers(
@@ -272,16 +272,20 @@ def placed_numbers(
             break
         waiting = [name for name in waiting if name not in posed]
     # paths are those of plain coordinates, so that dimensions_of takes them as given
-    found: dict[str, Number] = {}
+    coordinates: dict[str, Number] = {}
     for name, at in mechanism.frame.points.items():
         if isinstance(at, Placed):
-            found |= {f"frame.points.{name}.{axis}": x for axis, x in zip("xy", points[name], strict=True)}
+            coordinates |= {
+                f"frame.points.{name}.{axis}": x for axis, x in zip("xy", points[name], strict=True)
+            }
     for guide in mechanism.guides:
         if isinstance(guide.through, Placed):
             origin, rotor = poses[guide.on]
             inside = rotate_vector(subtract(points[guide.point], origin), reversed_rotor(rotor))
-            found |= {f"guides.{guide.id}.through.{axis}": x for axis, x in zip("xy", inside, strict=True)}
-    return found
+            coordinates |= {
+                f"guides.{guide.id}.through.{axis}": x for axis, x in zip("xy", inside, strict=True)
+            }
+    return coordinates
 
 
 def _pose(
@@ -330,14 +334,14 @@ def signs_at_start(
 
 
 def _hints(mechanism: Mechanism, group: Group, angles: Mapping[str, Number]) -> dict[str, Number]:
-    found: dict[str, Number] = {}
+    hints: dict[str, Number] = {}
     for link in group.links:
         angle = mechanism.links[link].angle
         if link in angles:
-            found[link] = np.asarray(angles[link])[:, None]
+            hints[link] = np.asarray(angles[link])[:, None]
         elif angle is not None:
-            found[link] = angle
-    return found
+            hints[link] = angle
+    return hints
 
 
 def _nearer(
@@ -378,15 +382,15 @@ def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechan
                 0 if prepared.assembled.signs[index] > 0 else 1
             ]
     assembly = mechanism.assembly.model_copy(update={"sides": FrozenMap(sides)})
-    found = mechanism.model_copy(update={"assembly": assembly})
+    redesigned = mechanism.model_copy(update={"assembly": assembly})
     at = _positions(batch)
     guided = {guide.link for guide in mechanism.guides} | {guide.on for guide in mechanism.guides}
     driven = {drive.link for drive in mechanism.drives}
     for link in _links_with_angles(mechanism, groups):
         if link not in guided and link not in driven and mechanism.space == "plane":
             cosine, sine = (float(np.reshape(x, -1)[0]) for x in at.poses[link].rotor)
-            found = with_value(found, f"links.{link}.angle", float(np.arctan2(sine, cosine)))
-    return found
+            redesigned = with_value(redesigned, f"links.{link}.angle", float(np.arctan2(sine, cosine)))
+    return redesigned
 
 
 def _positions(batch: Batch) -> Positions:
@@ -470,7 +474,7 @@ class _Lengths:
     def __init__(self, candidates: Candidates) -> None:
         self.candidates = candidates
         self.mechanism = candidates.prepared.mechanism
-        self.bounds = {one.path: VariedRange(one.low, one.high) for one in candidates.varying}
+        self.bounds = {number.path: VariedRange(number.low, number.high) for number in candidates.varying}
 
     def of(self, link: str) -> VariedRange | None:
         length = self.mechanism.links[link].length

@@ -54,7 +54,7 @@ def squared_sines(batch: Batch, nodes: int) -> Array:
     along = kinematics.path.initial + (np.arange(nodes) + 0.5) * (tau / nodes)
     at = kinematics.frame(ARRAYS, along[None, :])
     hooks = _Keeping(batch.signs)
-    found = []
+    ratios = []
     with np.errstate(all="ignore"):
         for index, group in enumerate(kinematics.structure.groups):
             choices = SideChoices(hooks, index)
@@ -63,11 +63,11 @@ def squared_sines(batch: Batch, nodes: int) -> Array:
             # the root's argument was kept on the way: nothing is computed twice
             if size is not None:
                 ratio = hooks.kept[index] / size
-                found.append(np.broadcast_to(ratio, (batch.size, nodes)))
-    if not found:
+                ratios.append(np.broadcast_to(ratio, (batch.size, nodes)))
+    if not ratios:
         # without a dyad nothing can lock
         return np.ones((batch.size, 1, nodes))
-    return np.stack(found, axis=1)
+    return np.stack(ratios, axis=1)
 
 
 class _Keeping(FixedSigns):
@@ -213,8 +213,8 @@ class RepairSearch:
         starts = self._apart(changes[good], np.linalg.norm(changes[good], axis=1))
         if not starts:
             starts = self._apart(changes, -margins)
-        found = [self.improve(start) for start in starts]
-        reached = [change for change in found if change is not None]
+        improved = [self.improve(start) for start in starts]
+        reached = [change for change in improved if change is not None]
         if self.progress is not None:
             self.progress(self.total, self.total)
         return sorted(reached, key=lambda change: float(np.linalg.norm(change)))
@@ -259,9 +259,9 @@ class RepairSearch:
         drawn = self._shorten(start)
         # from both starts: the search ends in the nearest local minimum
         for first in (start,) if drawn is None else (drawn, start):
-            found = self._minimise(first)
-            if found is not None:
-                options.append(found)
+            least_change = self._minimise(first)
+            if least_change is not None:
+                options.append(least_change)
         options += [] if drawn is None else [drawn]
         return min(options, key=lambda change: float(np.linalg.norm(change)), default=None)
 
@@ -318,8 +318,8 @@ class RepairSearch:
         size = len(change)
         # central differences: the error is of the second order in the step
         moved = np.vstack([change + STEP * np.eye(size), change - STEP * np.eye(size)])
-        found = self._sectors(moved)
-        return np.asarray((found[:size] - found[size:]).T / (2.0 * STEP * self.target))
+        sines = self._sectors(moved)
+        return np.asarray((sines[:size] - sines[size:]).T / (2.0 * STEP * self.target))
 
 
 DEFAULT_ANGLE = pi / 180
@@ -450,7 +450,7 @@ def turns_well(found: Rotatability, least_angle: float) -> bool:
 
 
 def _least_angle(found: Rotatability) -> float:
-    return min((one.least for one in found.one.transmissions), default=pi / 2)
+    return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
 
 
 def _angle(given: Value | None) -> float:
@@ -489,8 +489,8 @@ def _check_repairable(prepared: Ready) -> None:
             _("guides on moving links of a sphere"),
         ),
     ]
-    for found, what in lacking:
-        if found:
+    for present, what in lacking:
+        if present:
             raise NotComputedYet(
                 "--repair", _("no repair is computed of {what}").format(what=what), _("change it by hand")
             )
@@ -541,6 +541,6 @@ def _confirm_change(
 
 def _changes(varying: Sequence[Varying], change: Any) -> tuple[Change, ...]:
     return tuple(
-        Change(one.path, one.before, one.before + float(x) * one.scale, one.unit, float(x))
-        for one, x in zip(varying, change, strict=True)
+        Change(number.path, number.before, number.before + float(x) * number.scale, number.unit, float(x))
+        for number, x in zip(varying, change, strict=True)
     )

@@ -406,14 +406,14 @@ class Transmission:
 def watched_dyads(tour: DriveSweep, guides: bool = False) -> list[tuple[Watched, int]]:
     """The transmission angles of a plan's dyads, each with the number of its group; on demand of two guides too."""
     kinematics = tour.continuation.kinematics
-    found = []
+    dyads = []
     for index, group in enumerate(kinematics.structure.groups):
         watched = _watched_angle(kinematics, group)
         if watched is None and guides:
             watched = _watched_guides(kinematics, group)
         if watched is not None:
-            found.append((watched, index))
-    return found
+            dyads.append((watched, index))
+    return dyads
 
 
 def _watched_angle(kinematics: Kinematics, group: Group) -> Watched | None:
@@ -524,14 +524,14 @@ def _of_aim(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
 
 def transmissions_of(course: MonitoredFunction, groups: list[int], first: int = 0) -> list[Transmission]:
     """Extremes of the watched transmission angles, from number `first` on."""
-    found = []
+    transmissions = []
     for k, index in enumerate(groups, first):
         group = course.tour.prepared.structure.groups[index]
         fold = _between if group.kind == "RRR" else _acute  # two links have a sense each, a line has none
         extremes = [(float(at), fold(float(value))) for at, value in zip(*course.turned[k], strict=True)]
         least, at = least_of(course, k, index, extremes)
-        found.append(Transmission(course.watched[k].name, group.kind, least, at, tuple(extremes)))
-    return found
+        transmissions.append(Transmission(course.watched[k].name, group.kind, least, at, tuple(extremes)))
+    return transmissions
 
 
 def _between(value: float) -> float:
@@ -570,10 +570,10 @@ def least_of(
 
 def transmission_at_ends(course: MonitoredFunction, k: int) -> list[tuple[float, float]]:
     """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
-    found = []
+    angles = []
     for at in (end for end in course.tour.span if np.isfinite(end)):
         value = float(course.watched[k].value(course.tour.positions_at(at, ARRAYS), 1)[0])
         if np.isfinite(value):
             between = _between(value)
-            found.append((min(between, pi - between), at))
-    return found
+            angles.append((min(between, pi - between), at))
+    return angles

@@ -217,8 +217,8 @@ def circuits_of(tour: DriveSweep) -> tuple[Circuits | None, Uncounted | None]:
         return None, Uncounted.WHEELS
     if len(signed) > MOST_DYADS:
         return None, Uncounted.TOO_MANY
-    found = _Search(tour, signed).run()
-    return found, None if found else Uncounted.STANDING
+    circuits = _Search(tour, signed).run()
+    return circuits, None if circuits else Uncounted.STANDING
 
 
 class _Search:
@@ -286,13 +286,13 @@ class _Search:
             self.parent[max(one, other)] = min(one, other)
 
     def _circuits(self, own: tuple[int, int], joined: bool) -> Circuits:
-        found: dict[tuple[int, int], list[Branch]] = {}
+        branches: dict[tuple[int, int], list[Branch]] = {}
         for k, runs in enumerate(self.combinations.runs):
             for run in range(int(runs.max(initial=-1)) + 1):
                 # every run is given its root here: runs that nothing joined are circuits of their own
-                found.setdefault(self._root((k, run)), []).append(self._branch(k, run))
-        order = list(found)
-        return Circuits(tuple(tuple(found[root]) for root in order), order.index(self._root(own)), joined)
+                branches.setdefault(self._root((k, run)), []).append(self._branch(k, run))
+        order = list(branches)
+        return Circuits(tuple(tuple(branches[root]) for root in order), order.index(self._root(own)), joined)
 
     def _start(self, lane: int) -> int:
         """The node of the mechanism's own branch that is nearest to the initial position."""
@@ -353,10 +353,10 @@ class _Search:
         if self.tour.angular:
             # events are given in any turn: they are brought into the turn of the nodes
             turns = [tau * np.floor((e.at - first) / tau) for e in ends]
-            found = sorted(e.at - float(turn) for e, turn in zip(ends, turns, strict=True))
+            places = sorted(e.at - float(turn) for e, turn in zip(ends, turns, strict=True))
         else:
-            found = sorted(e.at for e in ends if first <= e.at <= last)
-        return found[which] if found else None
+            places = sorted(e.at for e in ends if first <= e.at <= last)
+        return places[which] if places else None
 
 
 # Four-bar and slider-crank loops of a mechanism, and which of their links turn fully: Grashof's rule.
@@ -438,10 +438,10 @@ class FourBar:
 def four_bars_of(prepared: Ready) -> tuple[FourBar, ...]:
     """Every loop of four hinged links, and of three with a slider on a guide, in the order of the description."""
     mechanism, numbers = prepared.mechanism, prepared.kinematics.numbers
-    found = [_hinged_four_bar(mechanism, numbers, bodies, pins) for bodies, pins in _loops(mechanism)]
+    loops = [_hinged_four_bar(mechanism, numbers, bodies, pins) for bodies, pins in _loops(mechanism)]
     if mechanism.space == "plane":
-        found += [loop for guide in mechanism.guides for loop in _slider_loops(mechanism, numbers, guide)]
-    return tuple(found)
+        loops += [loop for guide in mechanism.guides for loop in _slider_loops(mechanism, numbers, guide)]
+    return tuple(loops)
 
 
 def _points(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
@@ -495,13 +495,13 @@ def _hinged_four_bar(
 
 def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
     """Arcs of an equivalent spherical four-bar no two of which together exceed half a great circle."""
-    found = list(arcs)
+    reduced = list(arcs)
     # each exchange lowers the sum of the arcs, from a + b > pi to 2 pi - a - b < pi: it comes to an end
     while True:
-        first, second = sorted(range(4), key=lambda k: -found[k])[:2]
-        if found[first] + found[second] <= pi:
-            return tuple(found)
-        found[first], found[second] = pi - found[first], pi - found[second]
+        first, second = sorted(range(4), key=lambda k: -reduced[k])[:2]
+        if reduced[first] + reduced[second] <= pi:
+            return tuple(reduced)
+        reduced[first], reduced[second] = pi - reduced[first], pi - reduced[second]
 
 
 def _is_smaller_sum(short: float, long: float) -> bool | None:

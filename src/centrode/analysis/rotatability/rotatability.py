@@ -195,7 +195,9 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
 def _link_turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
     members, dyads = watched_members(tour), watched_dyads(tour)
     # members and dyads in one course: each evaluation of the motion serves them all
-    course = monitored_function(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
+    course = monitored_function(
+        tour, [*(watched for watched, _kind in members), *(watched for watched, _group in dyads)]
+    )
     swings = strokes_of(course, [kind for _one, kind in members])
     circuits, missing = circuits_of(tour)
     return LinkTurning(
@@ -218,21 +220,21 @@ def _link_turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
 
 def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
     events = [event for event in tour.continuation.branches.events if event.kind == "limit"]
-    found = [
+    limits = [
         _limit(prepared, tour, event, end)
         for end, value in (("low", tour.low), ("high", tour.high))
         for event in events
         if event.at == value
     ]
     # the formulas close for a negative length as well, so this limit is no event
-    if tour.drive.kind == "distance" and tour.low == 0.0 and not any(limit.value == 0.0 for limit in found):
+    if tour.drive.kind == "distance" and tour.low == 0.0 and not any(limit.value == 0.0 for limit in limits):
         name = tour.drive.id
         group, cause = (
             _("cylinder {name} of no length").format(name=name),
             Cause(CauseKind.NO_LENGTH, ((Tracer.CYLINDER, name),)),
         )
-        found.insert(0, LimitFound(0.0, name, "low", group, (), cause, f"{name} = 0"))
-    return tuple(found)
+        limits.insert(0, LimitFound(0.0, name, "low", group, (), cause, f"{name} = 0"))
+    return tuple(limits)
 
 
 def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFound:
@@ -249,13 +251,13 @@ def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFo
 
 
 def _change_points(prepared: Ready, tour: DriveSweep) -> tuple[ChangePoint, ...]:
-    found: dict[ChangePoint, None] = {}  # several pairs of positions of a group may meet at one place
+    points: dict[ChangePoint, None] = {}  # several pairs of positions of a group may meet at one place
     for event in tour.events("change point"):
         if tour.low <= event.at <= tour.high:
             group = prepared.structure.groups[event.group]
             why = cause_of(tour, group, event.group, event.at, crossing=True)
-            found[ChangePoint(event.at, tour.drive.id, name_of(group), *why)] = None
-    return tuple(found)
+            points[ChangePoint(event.at, tour.drive.id, name_of(group), *why)] = None
+    return tuple(points)
 
 
 def _dead_points(swings: list[LinkStroke]) -> list[DeadPoint]:

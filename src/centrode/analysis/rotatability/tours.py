@@ -147,17 +147,17 @@ class DriveSweep:
         """Coordinates of all moving points (points * axes, n) at values of the drive."""
         at = self.at(values, 0)
         moving = self.prepared.mechanism.moving_points
-        found = [x.value if isinstance(x, Jet) else x for name in moving for x in at.points[name]]
-        return np.array([np.broadcast_to(x, (1, len(values)))[0] for x in found])
+        coordinates = [x.value if isinstance(x, Jet) else x for name in moving for x in at.points[name]]
+        return np.array([np.broadcast_to(x, (1, len(values)))[0] for x in coordinates])
 
     def events(self, kind: str) -> list[Event]:
         """Events of a kind within the stretch, each once, in the drive's order."""
         first, last = self.span
-        found = [e for e in self.continuation.branches.events if e.kind == kind]
+        events = [e for e in self.continuation.branches.events if e.kind == kind]
         margin = 1e-9 * self.continuation.branches.unit
         # of a tour that comes round the event at its end is the one at its beginning
         ends = last - margin if self.comes_round else last + margin
-        return sorted((e for e in found if first - margin <= e.at <= ends), key=lambda e: (e.at, e.group))
+        return sorted((e for e in events if first - margin <= e.at <= ends), key=lambda e: (e.at, e.group))
 
 
 class _ClampedSigns(Smooth):
@@ -182,7 +182,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
         initial = float(prepared.assembled.positions.drives[drive])
         continuation = starting_at(prepared, held_path(prepared, drive, initial, held))
     path = continuation.kinematics.path
-    chosen = next(one.drive for one in path.driven if one.drive.id == drive)
+    chosen = next(driven.drive for driven in path.driven if driven.drive.id == drive)
     extent = tau * TURNS if chosen.kind == "angle" else SEARCH * path.unit
     ends = np.array([path.initial - extent, path.initial + extent])
     EventScan(continuation, mesh_of(path, ends)).run()
@@ -219,30 +219,32 @@ class Watched:
 
     def rate(self, at: Positions, count: int) -> tuple[Array, Array]:
         """What has the sign of the number's rate by the drive (n,), and its derivative."""
-        found = self.of(at)
-        if isinstance(found, tuple):
-            cosine, sine = (_derivatives(x, count) for x in found)
+        number = self.of(at)
+        if isinstance(number, tuple):
+            cosine, sine = (_derivatives(x, count) for x in number)
             # r^2 times the angle's rate, so its sign; the product of both first derivatives cancels in the
             # second
             return cosine[0] * sine[1] - sine[0] * cosine[1], cosine[0] * sine[2] - sine[0] * cosine[2]
-        value = _derivatives(found, count)
+        value = _derivatives(number, count)
         return value[1], value[2]
 
     def value(self, at: Positions, count: int) -> Array:
         """The number itself (n,); an angle in (-pi, pi]."""
-        found = self.of(at)
-        if isinstance(found, tuple):
-            cosine, sine = (_derivatives(x, count)[0] for x in found)
+        number = self.of(at)
+        if isinstance(number, tuple):
+            cosine, sine = (_derivatives(x, count)[0] for x in number)
             return np.asarray(np.arctan2(sine, cosine))
-        return _derivatives(found, count)[0]
+        return _derivatives(number, count)[0]
 
 
 def _derivatives(number: Number, count: int) -> list[Array]:
     """Value and derivatives of a jet (or of a constant) as plain arrays (n,)."""
-    found = [number.derivative(k) for k in range(number.order + 1)] if isinstance(number, Jet) else [number]
+    derivatives = (
+        [number.derivative(k) for k in range(number.order + 1)] if isinstance(number, Jet) else [number]
+    )
     # constants have fewer derivatives: the rest is zero
-    found += [0.0] * (3 - len(found))
-    return [np.broadcast_to(np.asarray(x, dtype=np.float64), (1, count))[0] for x in found]
+    derivatives += [0.0] * (3 - len(derivatives))
+    return [np.broadcast_to(np.asarray(x, dtype=np.float64), (1, count))[0] for x in derivatives]
 
 
 @dataclass(frozen=True)
@@ -267,12 +269,13 @@ def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> Monitore
     nodes = tour.nodes()
     # one derivative for the signs of the rates; the second is needed only at the few cells with a root
     at = tour.at(nodes, 1)
-    values = np.array([_unwrap(one, one.value(at, len(nodes))) for one in watched])
-    rates = np.array([one.rate(at, len(nodes))[0] for one in watched])
+    values = np.array([_unwrap(member, member.value(at, len(nodes))) for member in watched])
+    rates = np.array([member.rate(at, len(nodes))[0] for member in watched])
     if not len(watched):
         return MonitoredFunction(tour, (), nodes, np.zeros((0, len(nodes))), ())
     scale = [
-        1.0 if one.unit == "rad" else float(tour.continuation.kinematics.numbers.scale) for one in watched
+        1.0 if member.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
+        for member in watched
     ]
     moving = np.ptp(values, axis=1) > STILL * np.array(scale)
     # of what stands still the rate is rounding, and changes its sign everywhere
@@ -280,10 +283,10 @@ def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> Monitore
     places = _roots(tour, watched, which, nodes[cells], nodes[cells + 1])
     reached = _values_at(tour, watched, which, places)
     turned = []
-    for k, one in enumerate(watched):
+    for k, member in enumerate(watched):
         mine = which == k
-        found = _near(one, reached[mine], values[k][cells[mine]])
-        turned.append(_in_order(tour, places[mine], found))
+        extremes = _near(member, reached[mine], values[k][cells[mine]])
+        turned.append(_in_order(tour, places[mine], extremes))
     return MonitoredFunction(tour, tuple(watched), nodes, values, tuple(turned))
 
 
@@ -323,10 +326,10 @@ def _values_at(
 ) -> Array:
     if not len(which):
         return np.zeros(0)
-    found = _evaluate_each(
+    values = _evaluate_each(
         tour, watched, which, places, lambda one, at: (one.value(at, len(places)), np.zeros(len(places)))
     )
-    return found[0]
+    return values[0]
 
 
 def _evaluate_each(
@@ -404,7 +407,7 @@ def _windows(values: Array, band: float) -> list[tuple[int, int]]:
 
     Two queues hold what may still become the greatest and the least value, so each node is looked at once.
     """
-    found: list[tuple[int, int]] = []
+    windows: list[tuple[int, int]] = []
     numbers, first = values.tolist(), 0
     high: deque[int] = deque()
     low: deque[int] = deque()
@@ -427,8 +430,8 @@ def _windows(values: Array, band: float) -> list[tuple[int, int]]:
                 break
         # the window that ended cannot be widened on either side: it is one of the longest
         if first > before:
-            found.append((before, last - 1))
-    return [*found, (first, len(numbers) - 1)]
+            windows.append((before, last - 1))
+    return [*windows, (first, len(numbers) - 1)]
 
 
 # Links that fall in line: what an extreme position or a dead point looks like.
@@ -442,15 +445,15 @@ FLAT = 1e-7
 def in_line(tour: DriveSweep, values: Array) -> list[Pairs]:
     """Pairs of moving links, hinged to each other, that are in line at each of some values (n,) of the drive."""
     mechanism = tour.prepared.mechanism
-    found: list[dict[tuple[str, str], None]] = [{} for _value in values]
+    lined: list[dict[tuple[str, str], None]] = [{} for _value in values]
     if not len(values):
         return []
     places = _places(tour, values)
     for pair, a, pin, b in _hinged_pairs(mechanism):
         flat = _flat(mechanism, places[a], places[pin], places[b])
         for k in np.nonzero(flat)[0]:
-            found[k][pair] = None
-    return [tuple(pairs) for pairs in found]
+            lined[k][pair] = None
+    return [tuple(pairs) for pairs in lined]
 
 
 def _places(tour: DriveSweep, values: Array) -> dict[str, Array]:
@@ -472,15 +475,15 @@ def _hinged_pairs(mechanism: Mechanism) -> list[tuple[tuple[str, str], str, str,
         # a hinge is a point that two links name: the frame has no length to fall in line with
         for point in points:
             at_point.setdefault(point, []).append(link)
-    found = []
+    pairs = []
     for pin, links in at_point.items():
         for one, other in combinations(links, 2):
             ends = product((p for p in joints[one] if p != pin), (p for p in joints[other] if p != pin))
             # with both ends shared the two would be one body
-            found += [((one, other), a, pin, b) for a, b in ends if a != b]
+            pairs += [((one, other), a, pin, b) for a, b in ends if a != b]
     order = {name: k for k, name in enumerate(mechanism.links)}
     # in the order of the description, whatever the order of the points
-    return sorted(found, key=lambda one: (order[one[0][0]], order[one[0][1]]))
+    return sorted(pairs, key=lambda one: (order[one[0][0]], order[one[0][1]]))
 
 
 def _joints(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
@@ -575,7 +578,7 @@ def watched_members(tour: DriveSweep) -> list[tuple[Watched, Literal["link", "gu
     # an angle that a drive gives from the frame is no result: it is the question
     links = [angle(link) for link in numbers.ends if link not in driven]
     guides = [slide(g.id, g.point) for g in kinematics.structure.mechanism.guides if g.id not in sliding]
-    return [*((one, "link") for one in links), *((one, "guide") for one in guides)]
+    return [*((member, "link") for member in links), *((member, "guide") for member in guides)]
 
 
 def strokes_of(
@@ -594,18 +597,18 @@ def strokes_of(
 def _stroke_of(
     course: MonitoredFunction, k: int, member: Literal["link", "guide"], lined: Sequence[Pairs]
 ) -> LinkStroke:
-    tour, one = course.tour, course.watched[k]
+    tour, watched = course.tour, course.watched[k]
     values = course.values[k]
     shift = _shift(course, k, member)
     finite = np.isfinite(values)
     moved = float(np.ptp(values[finite])) if finite.any() else 0.0
-    scale = 1.0 if one.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
+    scale = 1.0 if watched.unit == "rad" else float(tour.continuation.kinematics.numbers.scale)
     # only a tour that ends where it began has whole turns
-    turns = round((values[-1] - values[0]) / tau) if tour.comes_round and one.unit == "rad" else None
-    if tour.comes_round and one.unit != "rad":
+    turns = round((values[-1] - values[0]) / tau) if tour.comes_round and watched.unit == "rad" else None
+    if tour.comes_round and watched.unit != "rad":
         turns = 0
     if moved <= STILL * scale:
-        return LinkStroke(one.name, member, "still", one.unit, turns, None, None, 0.0, None, (), ())
+        return LinkStroke(watched.name, member, "still", watched.unit, turns, None, None, 0.0, None, (), ())
     extremes = [
         StrokeExtreme(float(value) + shift, float(place), pairs)
         for place, value, pairs in zip(*course.turned[k], lined, strict=True)
@@ -616,15 +619,25 @@ def _stroke_of(
     if turns or None in ends or not extremes:
         kind: Literal["turns", "swings"] = "swings" if None in ends else "turns"
         return LinkStroke(
-            one.name, member, kind, one.unit, turns, None, None, None, None, tuple(extremes), ()
+            watched.name,
+            member,
+            kind,
+            watched.unit,
+            turns,
+            None,
+            None,
+            None,
+            None,
+            tuple(extremes),
+            (),
         )
     least, greatest = (pick(extremes, key=lambda e: e.value) for pick in (min, max))
     stroke = greatest.value - least.value
     return LinkStroke(
-        one.name,
+        watched.name,
         member,
         "swings",
-        one.unit,
+        watched.unit,
         turns,
         least,
         greatest,
@@ -649,21 +662,21 @@ def _shift(course: MonitoredFunction, k: int, member: str) -> float:
 
 def _ends(course: MonitoredFunction, k: int, shift: float) -> list[StrokeExtreme | None]:
     """The values at the ends of the drive's range, where the member stops with it; None where they are undetermined."""
-    tour, one = course.tour, course.watched[k]
-    found: list[StrokeExtreme | None] = []
+    tour, watched = course.tour, course.watched[k]
+    ends: list[StrokeExtreme | None] = []
     for limit, node in ((tour.low, 0), (tour.high, -1)):
         if not np.isfinite(limit):
             continue
         # at the limit itself the radicand is rounding and may be negative: it is taken as zero
-        value = float(one.value(tour.positions_at(limit, ARRAYS), 1)[0])
+        value = float(watched.value(tour.positions_at(limit, ARRAYS), 1)[0])
         near = float(course.values[k][node])
         if _goes_to_infinity(tour, limit) or not (np.isfinite(value) and np.isfinite(near)):
-            found.append(None)
+            ends.append(None)
             continue
         # the angle at the limit in the turn of the node beside it
-        value += tau * round((near - value) / tau) if one.unit == "rad" else 0.0
-        found.append(StrokeExtreme(value + shift, limit, (), True))
-    return found
+        value += tau * round((near - value) / tau) if watched.unit == "rad" else 0.0
+        ends.append(StrokeExtreme(value + shift, limit, (), True))
+    return ends
 
 
 def _goes_to_infinity(tour: DriveSweep, limit: float) -> bool:

@@ -500,6 +500,25 @@ def has_bounds(cam: PlateCam) -> bool:
     return any(one is not None for one in given)
 
 
+def has_size(cam: AnyCam) -> bool:
+    """Whether a cam with a follower has a base radius, or bounds that are to give it one."""
+    return isinstance(cam, PlateCam) and (cam.body.base_radius is not None or has_bounds(cam))
+
+
+def has_profile(cam: AnyCam) -> bool:
+    """Whether a cam with a follower has a size, and one that keeps its bounds where these are to give it.
+
+    Raises InputError as `follower_cam`.
+    """
+    if not has_size(cam):
+        return False
+    try:
+        follower_cam(cam)
+    except MotionError:
+        return False
+    return True
+
+
 def admissible_of(cam: PlateCam) -> Admissible:
     """What a description admits; what it leaves out is not bound, except that the profile is not undercut."""
     steep = cam.bounds.pressure_angle or math.pi / 2

@@ -425,7 +425,8 @@ def cam_laws(cam: AnyCam, samples: int = SAMPLES) -> xr.Dataset:
     segment = plate.segments[first_rise(plate)]
     own = None if segment.curve in CURVES else segment.law
     found = compare_laws(segment.to or 0.0, segment.angle, plate.body.speed, own=own, samples=samples)
-    return found.assign_attrs(title=plate.title, segment=first_rise(plate), curve=segment.curve)
+    facts = {"topic": "motion-laws", "title": plate.title, "cam": cam_text(plate)}
+    return found.assign_attrs(**facts, segment=first_rise(plate), curve=segment.curve)
 
 
 # The motion of a follower as a labelled result.
@@ -509,6 +510,6 @@ def _all_right(count: int) -> Variable:
 
 
 def _facts(cam: PlateCam, motion: FollowerMotion) -> dict[str, Any]:
-    facts = {"title": cam.title, "cam": cam_text(cam), "version": __version__}
+    facts = {"topic": "follower-motion", "title": cam.title, "cam": cam_text(cam), "version": __version__}
     curves = {"curves": ", ".join(segment.curve for segment in cam.segments)}
     return facts | curves | ({} if motion.speed is None else {"speed": motion.speed})

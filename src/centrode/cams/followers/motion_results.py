@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -122,6 +122,11 @@ def follower_motion_results(
         phi,
         at_instants,
     )
+
+
+def results_of_follower_motion(cam: PlateCam, dataset: xr.Dataset) -> FollowerMotionResults:
+    """A dataset of the motion of a follower with the extremes and the joints of its cam."""
+    return replace(follower_motion_results(cam, dataset.sizes["sample"]), dataset=dataset)
 
 
 def formulas_difference(results: FollowerMotionResults) -> float:

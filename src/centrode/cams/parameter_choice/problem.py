@@ -94,14 +94,14 @@ class Mesh:
     @property
     def panels(self) -> list[tuple[float, float]]:
         """(from, to) of every panel, those behind 0 backwards from 0."""
-        found = []
+        panels = []
         for end in self.ends:
             inner = sorted({b for b in self.breaks if min(0, end) < b < max(0, end)}, key=abs)
             for first, last in zip([0.0, *inner], [*inner, end], strict=True):
                 count = math.ceil(abs(last - first) / PANEL)
                 cuts = np.linspace(first, last, count + 1).tolist()
-                found += list(pairwise(cuts)) if count else []
-        return found
+                panels += list(pairwise(cuts)) if count else []
+        return panels
 
 
 def paths_of(trials: Sequence[PathTrial], mesh: Mesh, phi: Array) -> BatchPaths:
@@ -132,12 +132,12 @@ def paths_of(trials: Sequence[PathTrial], mesh: Mesh, phi: Array) -> BatchPaths:
 def _limit_curvature(trial: PathTrial, phi: Array) -> Array:
     """The curvature of a design: 0, which no cam has, where it is none; not beyond what any cam has."""
     with np.errstate(all="ignore"):
-        found = trial.curvature(phi)
-    return np.clip(np.where(np.isnan(found), 0.0, found), -MOST / trial.radius, MOST / trial.radius)
+        curvature = trial.curvature(phi)
+    return np.clip(np.where(np.isnan(curvature), 0.0, curvature), -MOST / trial.radius, MOST / trial.radius)
 
 
 def _starts(trials: Sequence[PathTrial]) -> Array:
-    return np.array([[math.log(one.radius) for one in trials], [one.gamma for one in trials]])
+    return np.array([[math.log(trial.radius) for trial in trials], [trial.gamma for trial in trials]])
 
 
 def _solve_panel(start: Array, curvature: Array, length: float) -> tuple[Array, Array]:
@@ -373,7 +373,7 @@ class ChoiceProblem:
         bound = abs(self.limits[name][1]) if name in self.limits else 0.0
         return bound or self._references.get(name, 1.0)
 
-    def measured(self, share: Array) -> tuple[dict[str, Array], dict[str, Array]]:
+    def measure(self, share: Array) -> tuple[dict[str, Array], dict[str, Array]]:
         """Measures (m,) with their signs, over their scales, and slopes (m, n) by the places in the box."""
         key = share.tobytes() + bytes(str(len(self.more)), "ascii")
         if self._known is None or self._known[0] != key:
@@ -381,8 +381,8 @@ class ChoiceProblem:
             tried = self.family.paths(lanes, self.phi)
             values, slopes = {}, {}
             for name, measure in self._measures.items():
-                found = measure.of(tried, self.family.contact) / self.scale(name)
-                values[name], slopes[name] = found[:, 0], found @ weights
+                scaled = measure.of(tried, self.family.contact) / self.scale(name)
+                values[name], slopes[name] = scaled[:, 0], scaled @ weights
             self._known = (key, values, slopes)
         return self._known[1], self._known[2]
 
@@ -391,25 +391,28 @@ class ChoiceProblem:
         first, last = self.family.mesh.ends
         phi = np.unique(np.concatenate([np.linspace(first, last, DENSE), [0.0]]))
         tried = self.family.paths(share[None], phi)
-        found = {}
+        extremes = {}
         for name, measure in self._measures.items():
             values = measure.of(tried, self.family.contact)[:, 0]
             at = int(np.argmax(values))
             place = float(phi[-1]) if measure.whole else float(phi[at % len(phi)])
-            found[name] = (measure.sign * float(values[at]), place)
-        return found
+            extremes[name] = (measure.sign * float(values[at]), place)
+        return extremes
 
     def excess(self, share: Array) -> dict[str, float]:
         """By how much of its bound each constraint is missed; negative where there is room."""
-        found = self.extremes(share)
+        extremes = self.extremes(share)
         return {
-            name: measure.sign * (found[name][0] - bound) / (abs(bound) or self.scale(name))
+            name: measure.sign * (extremes[name][0] - bound) / (abs(bound) or self.scale(name))
             for name, (measure, bound) in self.limits.items()
         }
 
     @property
     def _measures(self) -> dict[str, Measure]:
-        return {self.best: MEASURES[self.best], **{name: one for name, (one, _bound) in self.limits.items()}}
+        return {
+            self.best: MEASURES[self.best],
+            **{name: measure for name, (measure, _bound) in self.limits.items()},
+        }
 
     @property
     def _references(self) -> dict[str, float]:
@@ -419,8 +422,8 @@ class ChoiceProblem:
             some = np.stack([np.full(count, share) for share in (0.25, 0.5, 0.75)])
             middle = self.family.paths(some, self.phi)
             self._sizes = {
-                name: float(np.max(np.abs(one.of(middle, self.family.contact)))) or 1.0
-                for name, one in self._measures.items()
+                name: float(np.max(np.abs(measure.of(middle, self.family.contact)))) or 1.0
+                for name, measure in self._measures.items()
             }
         return self._sizes
 

@@ -71,7 +71,7 @@ def search(
     """Ends of searches from `first` (n,), `warm` ones and further places spread over the box, the best in front."""
     # Halton's points fill the box evenly for any number of them; the first is a corner
     spread = qmc.Halton(len(first), scramble=False).random(starts) if starts else np.empty((0, len(first)))
-    found: list[SearchResult] = []
+    results: list[SearchResult] = []
     for start in [first, *warm, *spread[1:]]:
         # first into the bounds: a run that makes the value best needs a place from which that can be done
         inner = _run_search(problem, np.asarray(start, float), elastic=True)
@@ -79,8 +79,8 @@ def search(
         # nearly admissible is enough: the second run keeps the bounds by itself
         if _worst(problem, inner) <= ACTIVE:
             ends.append(_run_search(problem, inner, elastic=False))
-        found += [_judge(problem, end) for end in ends]
-    ranked = _rank(found)
+        results += [_judge(problem, end) for end in ends]
+    ranked = _rank(results)
     # only the best end is worth the search with more angles
     return _rank([_exchange_angles(problem, ranked[0]), *ranked])
 
@@ -92,7 +92,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
     bind and of the sides of the box (Karush, Kuhn and Tucker). The residual is a part of the slope's own size; the
     multiplier of a bound tells by which part the value changes when the bound is moved by a part of itself.
     """
-    values, slopes = problem.measured(share)
+    values, slopes = problem.measure(share)
     count = len(share)
     columns, names = [], []
     top = values[problem.best].max()
@@ -131,7 +131,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
 def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
     """One run: of the value made best, or (`elastic`) of the excess over the bounds."""
     count = len(start)
-    values, _slopes = problem.measured(start)
+    values, _slopes = problem.measure(start)
     limits = _targets(problem)
     if elastic:
         # the worst excess at the start, as the variable that is made least
@@ -140,12 +140,12 @@ def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
         top = float(values[problem.best].max())
 
     def room(z: Array) -> Array:
-        values, _slopes = problem.measured(z[:count])
+        values, _slopes = problem.measure(z[:count])
         kept = [limit - values[name] + (z[-1] if elastic else 0.0) for name, limit in limits.items()]
         return np.concatenate(kept if elastic else [z[-1] - values[problem.best], *kept])
 
     def room_slope(z: Array) -> Array:
-        _values, slopes = problem.measured(z[:count])
+        _values, slopes = problem.measure(z[:count])
         kept = [_with(-slopes[name], 1.0 if elastic else 0.0) for name in limits]
         return np.concatenate(kept if elastic else [_with(-slopes[problem.best], 1.0), *kept])
 
@@ -188,9 +188,9 @@ def _judge(problem: ChoiceProblem, share: Array) -> SearchResult:
 
 def _rank(found: Sequence[SearchResult]) -> list[SearchResult]:
     best = found[0]
-    for one in found[1:]:
-        best = one if one.better_than(best) else best
-    return [best, *(one for one in found if one is not best)]
+    for result in found[1:]:
+        best = result if result.better_than(best) else best
+    return [best, *(result for result in found if result is not best)]
 
 
 def _exchange_angles(problem: ChoiceProblem, found: SearchResult) -> SearchResult:
@@ -245,8 +245,8 @@ class CamDesign:
     @property
     def misses(self) -> dict[str, float]:
         """The bounds that are not kept, each with the part of it that is missed."""
-        found = {name: judged.relative_miss(MEASURES[name]) for name, judged in self.measures.items()}
-        return {name: by for name, by in found.items() if by > 0}
+        misses = {name: judged.relative_miss(MEASURES[name]) for name, judged in self.measures.items()}
+        return {name: by for name, by in misses.items() if by > 0}
 
 
 @dataclass(frozen=True)
@@ -316,8 +316,8 @@ def choose(
     """
     _check(family, best, bounds)
     problem = ChoiceProblem(family, best, bounds)
-    found = search(problem, family.share(start), starts, [family.share(one) for one in warm])
-    first = found[0]
+    results = search(problem, family.share(start), starts, [family.share(cam_near) for cam_near in warm])
+    first = results[0]
     admissible = first.excess <= KEPT
     residual, held = kkt_residual(problem, first.share) if admissible else (float("nan"), {})
     ends = [
@@ -332,26 +332,26 @@ def choose(
         at_ends=tuple(ends),
         residual=residual,
         searches=1 + len(warm) + max(starts - 1, 0),
-        agreeing=_count_agreeing(found[1:], first, admissible),
+        agreeing=_count_agreeing(results[1:], first, admissible),
     )
 
 
 def design(family: Family, share: Array, best: str, bounds: Mapping[str, float]) -> CamDesign:
     """A design with every measure that the family has."""
     asked = [name for name in MEASURES if name != "stress" or family.contact is not None]
-    found = ChoiceProblem(family, best, {name: bounds.get(name, 0.0) for name in asked}).extremes(share)
+    measures = ChoiceProblem(family, best, {name: bounds.get(name, 0.0) for name in asked}).extremes(share)
     values = family.values(share)
     parameters = {name: float(value) for name, value in zip(family.names, values, strict=True)}
-    return CamDesign(parameters, {name: JudgedDesign(*found[name], bounds.get(name)) for name in asked})
+    return CamDesign(parameters, {name: JudgedDesign(*measures[name], bounds.get(name)) for name in asked})
 
 
 def _count_agreeing(found: Sequence[SearchResult], first: SearchResult, admissible: bool) -> int:
     same = [
-        abs(one.value - first.value) <= SAME * max(abs(first.value), 1.0)
+        abs(result.value - first.value) <= SAME * max(abs(first.value), 1.0)
         if admissible
-        else abs(one.excess - first.excess) <= SAME
-        for one in found
-        if not admissible or one.excess <= ACTIVE
+        else abs(result.excess - first.excess) <= SAME
+        for result in found
+        if not admissible or result.excess <= ACTIVE
     ]
     return sum(same)
 
@@ -398,7 +398,7 @@ class TradeOff:
 
     def values(self, name: str) -> Array:
         """Values in SI of a measure along the front."""
-        return np.array([one.measures[name].value for one in self.designs])
+        return np.array([design.measures[name].value for design in self.designs])
 
 
 def trade_off(
@@ -424,14 +424,14 @@ def trade_off(
     if not all(end.admissible for end in ends):
         return TradeOff(best, against, ())
     low, high = (end.chosen.measures[against].value for end in ends)
-    found = [ends[0].chosen]
+    designs = [ends[0].chosen]
     for number, bound in enumerate(np.linspace(low, high, points)[1:-1]):
         said(number + 1, points - 2)
-        warm = np.array(list(found[-1].parameters.values()))
+        warm = np.array(list(designs[-1].parameters.values()))
         made = choose(family, start, best, {**others, against: float(bound)}, FEW, [warm])
         if made.admissible:
-            found.append(made.chosen)
-    return TradeOff(best, against, (*found, ends[1].chosen))
+            designs.append(made.chosen)
+    return TradeOff(best, against, (*designs, ends[1].chosen))
 
 
 def _choose_among_equals(
@@ -506,10 +506,10 @@ def start_of(cam: Cam, family: Family) -> Array:
 def bounds_of(cam: Cam) -> dict[str, float]:
     """Bounds in SI by the names of measures; the admissible stress of the contact where none is given."""
     assert cam.choose is not None
-    found = {name: getattr(cam.choose, name) for name in ("stress", "pressure_angle", "size", "lift", "gap")}
-    if found["stress"] is None and cam.contact is not None:
-        found["stress"] = cam.contact.admissible
-    return {name: bound for name, bound in found.items() if bound is not None}
+    bounds = {name: getattr(cam.choose, name) for name in ("stress", "pressure_angle", "size", "lift", "gap")}
+    if bounds["stress"] is None and cam.contact is not None:
+        bounds["stress"] = cam.contact.admissible
+    return {name: bound for name, bound in bounds.items() if bound is not None}
 
 
 def chosen_cam(cam: Cam, choice: ParameterChoice) -> Cam:
@@ -532,20 +532,20 @@ def _trial(cam: Cam, names: tuple[str, ...], values: Array) -> PathTrial:
 
 def _with_law(cam: Cam, given: Mapping[str, float]) -> Cam:
     """The description with other numbers in its curvature law, not read once more: a search does it often."""
-    found: dict[str, object] = {}
+    numbers: dict[str, object] = {}
     points, letters = list(cam.curvature.points or ()), dict(cam.curvature.constants)
     for name, value in given.items():
         table, _dot, key = name.partition(".")
         if POINT.fullmatch(name):
             number = int(key.partition(".")[2]) - 1
             points[number] = (points[number][0], value)
-            found["points"] = tuple(points)
+            numbers["points"] = tuple(points)
         elif CONSTANT.fullmatch(name):
             letters[name.rpartition(".")[2]] = value
-            found["constants"] = FrozenMap(letters)
+            numbers["constants"] = FrozenMap(letters)
         elif table == "curvature":
-            found[key] = value
-    return cam.model_copy(update={"curvature": cam.curvature.model_copy(update=found)})
+            numbers[key] = value
+    return cam.model_copy(update={"curvature": cam.curvature.model_copy(update=numbers)})
 
 
 def given_value(cam: Cam, name: str) -> float:
@@ -625,12 +625,12 @@ def prove(cam: Cam, bounds: Mapping[str, float], best: str) -> Proof:
     own = MEASURES[best].sign * values[best]
     near = _neighbours(cam)
     gain, better, admissible = -math.inf, None, 0
-    for one in near:
-        found = measures_of(one, NEAR_ANGLES)
-        if excess_of(found, bounds) <= 0:
+    for neighbour in near:
+        measures = measures_of(neighbour, NEAR_ANGLES)
+        if excess_of(measures, bounds) <= 0:
             admissible += 1
-            by = (own - MEASURES[best].sign * found[best]) / (abs(own) or 1.0)
-            gain, better = (by, one) if by > gain else (gain, better)
+            by = (own - MEASURES[best].sign * measures[best]) / (abs(own) or 1.0)
+            gain, better = (by, neighbour) if by > gain else (gain, better)
     kept = better if gain > ROUNDING else None
     return Proof(values, excess_of(values, bounds), len(near), admissible, gain, kept)
 
@@ -649,7 +649,7 @@ def measures_of(cam: Cam, angles: int) -> dict[str, float]:
     phi = np.unique(np.append(np.linspace(0.0 if mirrored else low, high, angles), 0.0))
     radius = cam.roller.radius if cam.roller is not None else 0.0
     rho, gamma, curvature = (
-        one[:, None] for one in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])
+        values[:, None] for values in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])
     )
     tried = BatchPaths(phi, rho, gamma, curvature, np.array([radius]), mirrored)
     if not np.isfinite(rho * gamma * curvature).all():
@@ -666,7 +666,7 @@ def excess_of(values: Mapping[str, float], bounds: Mapping[str, float]) -> float
         for name, (measure, bound) in limits.items()
     ]
     # where a measure is not known nothing is kept
-    return max(math.inf if math.isnan(one) else one for one in missed)
+    return max(math.inf if math.isnan(miss) else miss for miss in missed)
 
 
 def _neighbours(cam: Cam) -> list[Cam]:
@@ -677,15 +677,15 @@ def _neighbours(cam: Cam) -> list[Cam]:
     low, width = ends[:, 0], ends[:, 1] - ends[:, 0]
     share = (np.array([given_value(cam, name) for name in names]) - low) / width
     directions = 2 * qmc.Halton(len(names), scramble=False).random(EACH + 1)[1:] - 1
-    found = []
+    neighbours = []
     for distance in DISTANCES:
         for place in np.clip(share + distance * directions, 0.0, 1.0):
             values = dict(zip(names, (low + place * width).tolist(), strict=True))
             try:
-                found.append(vary_cam(cam, values))
+                neighbours.append(vary_cam(cam, values))
             except InputError:
                 continue
-    return found
+    return neighbours
 
 
 # What a description asks to choose: the parameters, the proof, what the choice costs, the cam that comes of
@@ -769,5 +769,5 @@ def choose_cam(
         proof = prove(chosen, bounds, best)
     against = cam.choose.trade_off
     wanted = front and against is not None
-    found = trade_off(family, start, best, against or "", bounds, points, said) if wanted else None
-    return CamChoice(chosen, choice, proof, found)
+    trade = trade_off(family, start, best, against or "", bounds, points, said) if wanted else None
+    return CamChoice(chosen, choice, proof, trade)

@@ -187,8 +187,8 @@ def balance(
     # over one whole cycle, so that greatest values before and after are of the same motion
     ends = (turning.first, turning.first + turning.period) if speed == "mean" else (None, None)
     before, after = (
-        shaking(one, samples, *ends, about=centre, speed=speed, orders=orders)
-        for one in (mechanism, balanced)
+        shaking(each, samples, *ends, about=centre, speed=speed, orders=orders)
+        for each in (mechanism, balanced)
     )
     return Balance(
         mechanism,

@@ -252,9 +252,11 @@ def with_counterweights(
     """The description with counterweights in the masses, centres and inertias of their links."""
     own = {mass.link: mass for mass in masses}
     links = dict(mechanism.links)
-    for one in counterweights:
-        if one.mass > 0.0:
-            links[one.link] = _heavier(links[one.link], own.get(one.link), one)
+    for counterweight in counterweights:
+        if counterweight.mass > 0.0:
+            links[counterweight.link] = _heavier(
+                links[counterweight.link], own.get(counterweight.link), counterweight
+            )
     return replace_parts(mechanism, links=links)
 
 
@@ -303,15 +305,15 @@ def hinged_from(mechanism: Mechanism) -> Mapping[str, str]:
     known = set(mechanism.frame.points)
     reached: dict[str, str] = {}
     while True:
-        found = {
+        hinges = {
             name: next(point for point in points if point in known)
             for name, points in bodies.items()
             if name not in reached and known & set(points)
         }
-        if not found:
+        if not hinges:
             return reached
-        reached |= found
-        known |= {point for name in found for point in bodies[name]}
+        reached |= hinges
+        known |= {point for name in hinges for point in bodies[name]}
 
 
 def base_of(mechanism: Mechanism, link: str) -> str:
@@ -369,10 +371,10 @@ def number(value: object, where: str, kind: str) -> float:
 
 def positive(value: object, where: str, kind: str) -> float:
     """A number in SI greater than zero, of a number or a text with a unit; InputError about `where`."""
-    found = number(value, where, kind)
-    if not found > 0.0:
+    given = number(value, where, kind)
+    if not given > 0.0:
         raise InputError(where, _("it must be positive, got {value}").format(value=value_text(value)))
-    return found
+    return given
 
 
 def _places(mechanism: Mechanism, on: Sequence[str] | None, to: str) -> list[tuple[str, str]]:

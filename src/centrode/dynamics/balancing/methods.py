@@ -84,7 +84,7 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     """
     values = turning.values(INSTANTS * turning.turns)
     state, tracks = turning.at(values)
-    mass = np.array([one.mass for one in turning.masses])
+    mass = np.array([each.mass for each in turning.masses])
     # constants do not shake: only what differs from the mean counts
     own = _remove_mean(mass @ tracks.places[0])
     pairs = [mass_moments(state, spot) for spot in spots]
@@ -124,7 +124,7 @@ def enough_spots(
     chosen = list(hung)
     # first those hinged to the frame, as their mass alone does nothing; then others until the balance is
     # complete
-    for spot in [one for one in candidates if not one.fixed]:
+    for spot in [each for each in candidates if not each.fixed]:
         if full_balance(turning, chosen).complete:
             break
         chosen.append(spot)
@@ -132,7 +132,7 @@ def enough_spots(
         return list(candidates)
     # from the last one back: what has become superfluous goes
     for spot in reversed(list(chosen)):
-        fewer = [one for one in chosen if one is not spot]
+        fewer = [each for each in chosen if each is not spot]
         if full_balance(turning, fewer).complete:
             chosen = fewer
     return chosen
@@ -234,13 +234,13 @@ def arm(mechanism: Mechanism, link: str, first: str, second: str) -> complex:
 
 def shares_of(mechanism: Mechanism, masses: Sequence[Mass], loop: Loop) -> tuple[Share, ...]:
     """Crank, coupler and rocker replaced at their joints; what stands at a fixed joint does not move."""
-    found = [
+    shares = [
         share_of(mechanism, masses, loop.crank, loop.O, loop.A),
         share_of(mechanism, masses, loop.coupler, loop.A, loop.B),
     ]
     if loop.rocker is not None and loop.D is not None:
-        found.append(share_of(mechanism, masses, loop.rocker, loop.D, loop.B))
-    return tuple(found)
+        shares.append(share_of(mechanism, masses, loop.rocker, loop.D, loop.B))
+    return tuple(shares)
 
 
 def fraction_of_slider_crank(
@@ -294,8 +294,8 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
     names = [name for name in mechanism.links if _turns(orders(state.angle(name), len(values))[1])]
     rates = np.array([orders(state.angle(name), len(values))[1] for name in names])
     # momentum as a sum of constants times rates: the constants are the inertias that are too much
-    found, _rest, _rank, _sizes = np.linalg.lstsq(rates.T, momentum, rcond=SAME)
-    left = float(np.max(np.abs(momentum - found @ rates), initial=0.0))
+    inertias, _rest, _rank, _sizes = np.linalg.lstsq(rates.T, momentum, rcond=SAME)
+    left = float(np.max(np.abs(momentum - inertias @ rates), initial=0.0))
     if left > SAME * size:
         raise MotionError(
             "",
@@ -305,7 +305,7 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
             _("put the centres of mass of the links on the lines between their joints"),
         )
     discs = []
-    for name, inertia in zip(names, found, strict=True):
+    for name, inertia in zip(names, inertias, strict=True):
         if abs(inertia) * float(np.max(np.abs(rates))) <= SAME * size:
             # what is rounding beside the whole is no disc
             continue
@@ -322,7 +322,7 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
 
 def _momentum(tracks: MassTracks, masses: Sequence[Mass]) -> tuple[Array, float]:
     """Moment of momentum at unit speed of the drive (n), and the greatest sum of the sizes of its parts."""
-    mass, inertia = (np.array([getattr(one, name) for one in masses]) for name in ("mass", "inertia"))
+    mass, inertia = (np.array([getattr(each, name) for each in masses]) for name in ("mass", "inertia"))
     # about any place, as the force is balanced; near the middle numbers are small
     middle = tracks.places[0].mean()
     parts = [mass[:, None] * cross(tracks.places[0] - middle, tracks.places[1])]
@@ -426,7 +426,7 @@ class BalanceProblem:
     def unit(self) -> float:
         """What products are measured by [kg m]: all masses times the greatest length."""
         scale = self.turning.instants.ready.kinematics.path.scale
-        return scale * (sum(one.mass for one in self.turning.masses) or 1.0)
+        return scale * (sum(each.mass for each in self.turning.masses) or 1.0)
 
     @property
     def linear(self) -> bool:
@@ -470,22 +470,22 @@ class BalanceProblem:
         # all unknowns: components of the products, then their lengths
         place = np.concatenate([x, np.abs(products) / self.unit])
         slopes = [self._slopes(*each) for each in zip(self.spots, products, lengths, strict=True)]
-        found = []
+        terms = []
         for (name, weight), size in zip(self.aim.parts, self.sizes, strict=True):
             parts = [s @ getattr(column, name) for s, column in zip(slopes, self.columns, strict=True)]
             rows = np.concatenate([*(part[:2] for part in parts), *(part[2:] for part in parts)]).T
             rows = rows * (self.unit / size)
             # what makes the linear function agree with the effects at x
             constant = np.asarray(getattr(whole, name) / size - rows @ place)
-            found.append(MinimaxTerm(weight, constant, rows))
+            terms.append(MinimaxTerm(weight, constant, rows))
         if not self.pull:
-            return found
+            return terms
         pairs = len(self.spots)
         # the greatest product itself as a term of very little weight
         small = np.zeros((pairs, 3 * pairs), dtype=np.complex128)
         small[np.arange(pairs), 2 * np.arange(pairs)] = 1.0
         small[np.arange(pairs), 2 * np.arange(pairs) + 1] = 1j
-        return [*found, MinimaxTerm(self.pull, np.zeros(pairs, dtype=np.complex128), small)]
+        return [*terms, MinimaxTerm(self.pull, np.zeros(pairs, dtype=np.complex128), small)]
 
     def _slopes(self, spot: CounterweightPlace, product: complex, length: bool) -> Array:
         """Derivatives of the parameters by the product's components and its length (3, PARAMETERS)."""
@@ -572,7 +572,7 @@ def lightest(
     )
     most = [spot.making.greatest for spot in spots]
     # in units of the problem, and never without a bound, as linear programmes need a bounded box
-    limits = np.array([WIDE if one is None else min(WIDE, one / problem.unit) for one in most])
+    limits = np.array([WIDE if limit is None else min(WIDE, limit / problem.unit) for limit in most])
     x, bound = _solve_problem(problem, limits, None)
     for _exchange in range(EXCHANGES):
         finer = problem.with_tops(x)
@@ -588,13 +588,13 @@ def _solve_problem(problem: BalanceProblem, limits: Array, near: Array | None) -
     """The answer, with what no answer goes below where that is proved; `near` is one for a few instants less."""
     zero = np.zeros(2 * len(problem.spots))
     if problem.convex:
-        found = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
-        x = found.x[: len(zero)]
+        solution = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
+        x = solution.x[: len(zero)]
         # without what the small pull may have added
-        bound = max(found.bound - problem.pull * WIDE, 0.0)
+        bound = max(solution.bound - problem.pull * WIDE, 0.0)
         # lengths that are free to be greater than their products' would not make it better: then the convex
         # answer is the answer
-        if problem.value(x) <= found.value + TIGHT * max(found.value, 1e-3):
+        if problem.value(x) <= solution.value + TIGHT * max(solution.value, 1e-3):
             return x, bound
         # more inertia than the products have would be better: what was proved is not reached
     if near is not None:
@@ -630,11 +630,11 @@ def _descend(problem: BalanceProblem, x: Array, limits: Array, converged: float,
     for _step in range(STEPS):
         # the length of a product that is nearly zero bends too much to be linear
         lengths = (np.hypot(x[::2], x[1::2]) < CRUMB).tolist()
-        found = _linear(problem, x, limits, trust, max(CLOSED, 0.1 * converged), lengths)
-        there = found.x[: len(x)]
+        solution = _linear(problem, x, limits, trust, max(CLOSED, 0.1 * converged), lengths)
+        there = solution.x[: len(x)]
         reached = problem.value(there)
         # what the linear problem promised against what came of it decides on the region of trust
-        promised, gained = value - found.value, value - reached
+        promised, gained = value - solution.value, value - reached
         step = float(np.max(np.abs(there - x)))
         if gained > 0.0:
             x, value = there, reached
@@ -682,10 +682,10 @@ def fully(
 ) -> Chosen:
     """The force zero, by all spots where they were named, else by as few as are enough."""
     spots = spots if named else enough_spots(turning, spots)
-    found = full_balance(turning, spots)
-    if not found.complete:
-        raise _cannot(turning, mechanism, spots, found.left)
-    return Chosen(tuple(spots), found.products, left=found.left, unique=found.unique)
+    chosen = full_balance(turning, spots)
+    if not chosen.complete:
+        raise _cannot(turning, mechanism, spots, chosen.left)
+    return Chosen(tuple(spots), chosen.products, left=chosen.left, unique=chosen.unique)
 
 
 def least_effects(
@@ -702,17 +702,17 @@ def least_effects(
     if any(small):
         raise InputError("weights", _("what they count is zero without counterweights"))
     try:
-        found = lightest(turning, spots, aim, sizes)
+        chosen = lightest(turning, spots, aim, sizes)
     except ArithmeticError:
         what = _("the search for counterweights fails: effects over the cycle differ too much in size")
         raise MotionError("", what, _("look for places near a limit, or ask for the full balance")) from None
     bound = None
     # in steady motion the counterweights change the speed itself, so nothing is proved
-    proved = found.bound is not None and turning.instants.panels is None
-    if found.bound is not None and proved and aim.force and len(aim.parts) == 1:
-        bound = found.bound * sizes[0] / aim.force
+    proved = chosen.bound is not None and turning.instants.panels is None
+    if chosen.bound is not None and proved and aim.force and len(aim.parts) == 1:
+        bound = chosen.bound * sizes[0] / aim.force
     weighed = (aim.force, aim.moment, aim.driving)
-    return Chosen(tuple(spots), found.products, weights=weighed, bound=bound, proved=proved)
+    return Chosen(tuple(spots), chosen.products, weights=weighed, bound=bound, proved=proved)
 
 
 def by_fraction(
@@ -739,13 +739,13 @@ def by_fraction(
 
 def check_masses(spots: Sequence[CounterweightPlace], weighed: Sequence[Counterweight]) -> None:
     """Refuse counterweights with more mass than they may have."""
-    for spot, one in zip(spots, weighed, strict=True):
+    for spot, weight in zip(spots, weighed, strict=True):
         most = spot.making.most
-        if most is not None and one.mass > most * (1.0 + 1e-9):
+        if most is not None and weight.mass > most * (1.0 + 1e-9):
             what = _("the counterweight on {link} would have {mass:.6g} kg, more than {most:.6g} kg")
             raise MotionError(
                 "most",
-                what.format(link=one.link, mass=one.mass, most=most),
+                what.format(link=weight.link, mass=weight.mass, most=most),
                 _("allow more, give it a greater radius, or ask for the least greatest force"),
             )
 
@@ -763,7 +763,7 @@ def _cannot(
 ) -> MotionError:
     """Why the force cannot be balanced fully."""
     hinged = hinged_from(mechanism)
-    heavy = [one.link for one in turning.masses if one.weighs and one.link not in hinged]
+    heavy = [mass.link for mass in turning.masses if mass.weighs and mass.link not in hinged]
     links = ", ".join(spot.link for spot in spots) or _("none")
     if heavy:
         what = _("its force cannot be balanced fully: hinges alone do not lead from the frame to {links}")

@@ -156,7 +156,7 @@ class _Planes:
 
     def lowest(self, weights: Sequence[float], low: Array, high: Array) -> tuple[Array, Array]:
         """Unknowns and heights of the least weighted sum of heights."""
-        found: Any = _optimize().linprog(
+        solution: Any = _optimize().linprog(
             np.concatenate([np.zeros(self.unknowns), weights]),
             np.array(self.left),
             np.array(self.right),
@@ -164,9 +164,9 @@ class _Planes:
             method="highs",
             options=SOLVER,
         )
-        if found.x is None:  # zero unknowns with great heights are always allowed, but numbers may be wild
-            raise ArithmeticError(found.message)
-        return np.asarray(found.x[: self.unknowns]), np.asarray(found.x[self.unknowns :])
+        if solution.x is None:  # zero unknowns with great heights are always allowed, but numbers may be wild
+            raise ArithmeticError(solution.message)
+        return np.asarray(solution.x[: self.unknowns]), np.asarray(solution.x[self.unknowns :])
 
 
 def _touch_tops(planes: _Planes, number: int, term: MinimaxTerm, x: Array) -> None:

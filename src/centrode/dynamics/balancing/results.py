@@ -44,11 +44,15 @@ def shaking_results(mechanism: Mechanism, samples: int | None = None) -> Shaking
 
     Raises InputError, MotionError and NotComputedYet as `shaking`; where only the balance fails, the result says why.
     """
-    data = shaking(mechanism, samples)
+    return results_of_shaking(mechanism, shaking(mechanism, samples))
+
+
+def results_of_shaking(mechanism: Mechanism, data: xr.Dataset) -> ShakingResults:
+    """A dataset of `shaking` with the full balance where there is one."""
     if not data["shaking_force"].to_numpy().any():
         return ShakingResults(mechanism, data, None, "")
     try:
-        return ShakingResults(mechanism, data, balance(mechanism, samples=samples), "")
+        return ShakingResults(mechanism, data, balance(mechanism, samples=data.sizes["sample"]), "")
     except CentrodeError as refusal:
         return ShakingResults(mechanism, data, None, str(refusal))
 

@@ -53,8 +53,8 @@ class ShaftMotion:
 
     def second(self, orders: Numbers) -> Numbers:
         """Second derivatives by time of what has value and two derivatives by the parameter (3, ..., n)."""
-        found: Numbers = orders[2] * self.rate**2 + orders[1] * self.second_rate
-        return found
+        second_rate: Numbers = orders[2] * self.rate**2 + orders[1] * self.second_rate
+        return second_rate
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,8 @@ def effects_of(tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, ab
 
     With J the inertia reduced to the parameter q, the drive must give J q'' + (dJ/dq) q'^2 / 2.
     """
-    mass = np.array([one.mass for one in masses])
-    inertia = np.array([one.inertia for one in masses])
+    mass = np.array([each.mass for each in masses])
+    inertia = np.array([each.inertia for each in masses])
     (place, first, second), angles = tracks.places, tracks.angles
     acceleration = pace.second(tracks.places)
     turning = pace.second(angles)
@@ -124,8 +124,8 @@ def sizes_of(
     tracks: MassTracks, masses: Sequence[Mass], pace: ShaftMotion, about: complex
 ) -> tuple[float, float]:
     """Greatest force and moment if no link took anything from another: what rounding is a share of."""
-    mass = np.array([one.mass for one in masses])
-    inertia = np.array([one.inertia for one in masses])
+    mass = np.array([each.mass for each in masses])
+    inertia = np.array([each.inertia for each in masses])
     acceleration = np.abs(pace.second(tracks.places))
     moment = mass @ (np.abs(tracks.places[0] - about) * acceleration)
     moment = moment + inertia @ np.abs(pace.second(tracks.angles))
@@ -168,8 +168,10 @@ class Instants:
         """
         check_speed(speed)
         if speed == "steady":
-            found = solution_of(mechanism)
-            return cls(found.prepared, lambda values: steady_shaft_motion(found, values), found.cycle.panels)
+            solution = solution_of(mechanism)
+            return cls(
+                solution.prepared, lambda values: steady_shaft_motion(solution, values), solution.cycle.panels
+            )
         if mechanism.space == "sphere":
             raise on_sphere()
         prepared = ready(mechanism)
@@ -256,14 +258,14 @@ def turns_of_cycle(
         # at probes in every turn, which lie nowhere special
         turned = (PROBES + tau * np.arange(most + 1)[:, None]).reshape(-1)
         values = path.initial + path.forward * turned
-        found = _signature(instants, masses, carriers, values)
-        missing = ~np.isfinite(found).all(axis=0)
+        signature = _signature(instants, masses, carriers, values)
+        missing = ~np.isfinite(signature).all(axis=0)
         if missing.any():
             raise does_not_turn(float(values[missing][0]))
-        by_turn = found.reshape(len(found), most + 1, -1)
+        by_turn = signature.reshape(len(signature), most + 1, -1)
         # each turn against the first one, at the same probes
         apart = np.max(np.abs(by_turn[:, 1:] - by_turn[:, :1]), axis=(0, 2))
-        same = apart <= SAME * float(np.max(np.abs(found)))
+        same = apart <= SAME * float(np.max(np.abs(signature)))
         if same.any():
             # the first turn after which everything agrees
             return 1 + int(np.argmax(same))
@@ -469,16 +471,16 @@ def harmonics_of(turning: ShakingTurning, most: int) -> Harmonics:
             values, weights = turning.values(count), np.full(count, 1.0 / count)
         else:
             values, weights = _gauss(turning, panels)
-        found = _coefficients(turning, orders, values, weights)
+        coefficients = _coefficients(turning, orders, values, weights)
         if before is not None:
             # force by force, moment by moment: each coefficient over what its own sum may come up to
-            error = float(np.max(np.max(np.abs(found - before), axis=(0, 2)) / sizes))
+            error = float(np.max(np.max(np.abs(coefficients - before), axis=(0, 2)) / sizes))
         if error <= SETTLED:
             break
-        before, count = found, 2 * count
+        before, count = coefficients, 2 * count
         # twice the panels where the acceleration jumps: Gauss's rule converges between jumps only
         panels = None if panels is None else _halve_panels(panels)
-    cosine, sine = found
+    cosine, sine = coefficients
     return Harmonics(
         orders,
         cosine[0] + 1j * cosine[1],
@@ -496,8 +498,8 @@ def _coefficients(turning: ShakingTurning, orders: Array, values: Array, weights
     rows = np.stack([effects.force.real, effects.force.imag, effects.moment])
     # the mean has weight 1, the others 2: the coefficients of a real Fourier series
     waves = np.exp(1j * orders[:, None] * values) * np.where(orders == 0.0, 1.0, 2.0)[:, None]
-    found = (rows * weights) @ waves.T
-    return np.stack([found.real, found.imag])
+    coefficients = (rows * weights) @ waves.T
+    return np.stack([coefficients.real, coefficients.imag])
 
 
 def _gauss(turning: ShakingTurning, panels: Panels) -> tuple[Array, Array]:
@@ -573,7 +575,7 @@ def shaking(
     found, facts = _harmonics(mechanism, complex(*centre), speed, orders)
     if prepared.kinematics.path.by_time:
         del variables["drive_rate"]
-    attributes = attributes_of(solved) | {"about": list(centre), "speed": speed} | facts
+    attributes = attributes_of(solved, "shaking") | {"about": list(centre), "speed": speed} | facts
     coordinates = _coordinates(solved, found)
     return xr.Dataset(variables | found, coords=coordinates, attrs=attributes)
 
@@ -608,12 +610,12 @@ def _sampled_range(
         if start is not None or stop is not None:
             what = _("steady motion is shown over its cycle")
             raise InputError("speed", what, _("leave the range out, or name values by at"))
-        found = solution_of(mechanism)
-        turned = turned_at(found, samples, at)
-        rate, second = found.speed.at(turned), found.speed.acceleration(turned)
-        sense = found.cycle.sense
-        return found.prepared, SampleGrid(
-            found.speed.time(turned), found.cycle.value(turned), sense * rate, sense * second
+        solution = solution_of(mechanism)
+        turned = turned_at(solution, samples, at)
+        rate, second = solution.speed.at(turned), solution.speed.acceleration(turned)
+        sense = solution.cycle.sense
+        return solution.prepared, SampleGrid(
+            solution.speed.time(turned), solution.cycle.value(turned), sense * rate, sense * second
         )
     prepared = ready(mechanism)
     path = prepared.kinematics.path
@@ -631,16 +633,16 @@ def _sampled_range(
 def _curves(effects: Effects, unit: str, *, several: bool) -> dict[str, Variable]:
     """Force, its size, moment; what the drive gives, where there is one."""
     force = np.stack([effects.force.real, effects.force.imag], axis=-1)
-    found = {
+    curves = {
         "shaking_force": vocabulary_variable("shaking_force", ("sample", "axis"), force),
         "shaking_force_size": vocabulary_variable("shaking_force_size", ("sample",), np.abs(effects.force)),
         "shaking_moment": vocabulary_variable("shaking_moment", ("sample",), effects.moment),
     }
     if not several:
-        found["inertia_on_drive"] = vocabulary_variable(
+        curves["inertia_on_drive"] = vocabulary_variable(
             "inertia_on_drive", ("sample",), effects.driving, unit
         )
-    return found
+    return curves
 
 
 def _coordinates(solved: Solved, found: dict[str, Variable]) -> dict[str, Any]:
@@ -677,8 +679,8 @@ def greatest_of(turning: ShakingTurning) -> dict[str, float]:
         ("shaking_moment", lambda q: np.abs(turning.effects(q).moment)),
         ("inertia_on_drive", lambda q: np.abs(turning.effects(q).driving)),
     ):
-        found = top(curve, turning.nodes)
-        facts |= {f"greatest_{name}": found.value, f"greatest_{name}_at": found.at % (tau * turning.turns)}
+        peaks = top(curve, turning.nodes)
+        facts |= {f"greatest_{name}": peaks.value, f"greatest_{name}_at": peaks.at % (tau * turning.turns)}
     return facts
 
 

@@ -95,6 +95,13 @@ def reaction_results(
     return results if instants is None else with_instants(results, instants)
 
 
+def results_of_reactions(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:
+    """A dataset of `reactions`, over a motion with the loads and the wear of the bearings."""
+    if found.attrs["samples"] == "range":
+        return with_bearings(mechanism, found)
+    return ReactionResults(mechanism, found, tuple(map(float, mechanism.motion_parameter.instants(found))))
+
+
 def with_bearings(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:
     """Reactions over a motion with the loads of the bearings, in the plane with their wear."""
     loads = bearing_loads(mechanism, found)

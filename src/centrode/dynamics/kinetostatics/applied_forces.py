@@ -67,7 +67,7 @@ class Outer:
     @property
     def pulls(self) -> tuple[Wrench, ...]:
         """Everything that acts."""
-        return (*self.loads, *(pull for one in self.inertia for pull in one.pulls))
+        return (*self.loads, *(pull for action in self.inertia for pull in action.pulls))
 
 
 def outer_of(state: State, burden: MassesAndLoads, acceleration: Array, known: Any) -> Outer:
@@ -183,8 +183,8 @@ def steady_grid(
     mechanism: Mechanism, samples: int | None, at: npt.ArrayLike | None
 ) -> tuple[Ready, SampleGrid, InputMotion]:
     """Samples of a machine in steady motion, with the real speed of its drive; raises as `steady_motion` does."""
-    found = solution_of(mechanism)
-    turned, cycle, speed = turned_at(found, samples, at), found.cycle, found.speed
+    solution = solution_of(mechanism)
+    turned, cycle, speed = turned_at(solution, samples, at), solution.cycle, solution.speed
     span = SampleGrid(
         speed.time(turned),
         cycle.value(turned),
@@ -192,7 +192,7 @@ def steady_grid(
         cycle.sense * speed.acceleration(turned),
         # the speed of the steady motion is the sample grid's own
     )
-    return found.prepared, span, _along(span, "steady")
+    return solution.prepared, span, _along(span, "steady")
 
 
 def rates_of(solved: Solved, pace: InputMotion) -> Array:

@@ -113,7 +113,7 @@ class Scheme:
 
 def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
     """The unknowns that bear each pin: both rows of the first link that has both."""
-    found: dict[Axis, Unknown] = {}
+    hosts: dict[Axis, Unknown] = {}
     whole = set(kept)
     for constraint, row in kept:
         # a host bears both components of a pin, so both its rows have to be there
@@ -122,9 +122,9 @@ def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
             and constraint.point in points
             and (constraint, 1 - row) in whole
         ):
-            found.setdefault((constraint.point, row), (constraint, row))
+            hosts.setdefault((constraint.point, row), (constraint, row))
     # the first link in the order of the constraints: a host is a choice, and has to be the same every time
-    return found
+    return hosts
 
 
 # How forces act on bodies: three equations a link and two a pin, in the plane and on the sphere.
@@ -212,19 +212,19 @@ class InPlane:
         return constraint.angular
 
     def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
-        found = []
+        wrenches = []
         for entity, values in row.items():
             if entity.kind == "link":
                 x, y, moment = values
                 # moments of a row are by the turn about the origin of the link's axes, so there the force
                 # acts
-                found.append(Wrench(entity, (x, y), at.poses[entity.name].origin, moment))
+                wrenches.append(Wrench(entity, (x, y), at.poses[entity.name].origin, moment))
                 continue
             place = at.points[entity.name]
-            found.append(
+            wrenches.append(
                 on_point(entity.name, values, place) if link is None else on_link(link, values, place)
             )
-        return tuple(found)
+        return tuple(wrenches)
 
     def foot(self, first: Vector) -> MomentCentre:
         return (first,)
@@ -309,25 +309,25 @@ class OnSphere:
 
         The only link of a pin bears it; with several links nothing tells which, so that the centre does.
         """
-        found = []
+        pressings = []
         for pull in outer:
             name = pull.body.name
             if pull.body.kind == "point" and name in mechanism.moving_points:
                 up = at.points[name]
                 outwards = times(dot(pull.force, up), up)
-                links = [link for link, one in mechanism.links.items() if name in one.coordinates]
-                found.append(Pressing(name, links[0] if len(links) == 1 else FRAME, outwards, pull.at))
-        return tuple(found)
+                links = [link for link, body in mechanism.links.items() if name in body.coordinates]
+                pressings.append(Pressing(name, links[0] if len(links) == 1 else FRAME, outwards, pull.at))
+        return tuple(pressings)
 
     def centre(self, pulls: Iterable[Wrench], mechanism: Mechanism) -> tuple[Wrench, ...]:
         sums: dict[str, Vector] = dict.fromkeys(mechanism.links, NOWHERE)
         for pull in pulls:
             if pull.body.kind == "link" and pull.body.name in sums:
                 sums[pull.body.name] = add(sums[pull.body.name], pull.force)
-        found: list[Wrench] = []
+        wrenches: list[Wrench] = []
         for link, force in sums.items():
-            found += [on_link(link, tuple(-x for x in force), NOWHERE), on_link(FRAME, force, NOWHERE)]
-        return tuple(found)
+            wrenches += [on_link(link, tuple(-x for x in force), NOWHERE), on_link(FRAME, force, NOWHERE)]
+        return tuple(wrenches)
 
 
 def equilibrium_of(mechanism: Mechanism) -> Equilibrium:
@@ -354,13 +354,13 @@ class Teeth:
     @classmethod
     def of(cls, mechanism: Mechanism) -> Teeth:
         """The gears of a mechanism whose pitch points follow."""
-        found = {}
+        teeth = {}
         for gear in mechanism.gears:
             first, second = (_common(mechanism, wheel, gear.carrier) for wheel in gear.links)
             # wheels that turn alike have no pitch point: it lies at infinity
             if len(first) == len(second) == 1 and first != second and gear.ratio != 1.0:
-                found[gear.id] = (first[0], second[0])
-        return cls(found, mechanism.sphere_radius if mechanism.space == "sphere" else None)
+                teeth[gear.id] = (first[0], second[0])
+        return cls(teeth, mechanism.sphere_radius if mechanism.space == "sphere" else None)
 
     def pulls(self, constraint: GearRatio, at: Positions, numbers: Dimensions) -> tuple[Wrench, ...]:
         """The force between the teeth, square to the line of centres, with a moment of one on the second wheel.
@@ -472,10 +472,10 @@ class Inverse:
         """Solutions (m, ...) for right sides (n, ...), with one step of refinement."""
         asked = np.moveaxis(right, 0, -1)[..., None]
         with np.errstate(invalid="ignore"):
-            found = self.inverse @ asked
+            solution = self.inverse @ asked
             # one step of refinement takes back what the inverse's own rounding left
-            found = found + self.inverse @ (asked - self.matrix @ found)
-        return np.moveaxis(found[..., 0], -1, 0)
+            solution = solution + self.inverse @ (asked - self.matrix @ solution)
+        return np.moveaxis(solution[..., 0], -1, 0)
 
     @property
     def loss(self) -> Array:
@@ -508,11 +508,11 @@ def inverse_of(matrix: Array) -> Inverse:
         return Inverse(matrix, inverse, condition)
     wide = np.zeros((*matrix.shape[:-2], width, size))
     wide[..., :size, :] = inverse
-    found = Inverse(matrix, wide, condition)
-    lost = found.useless
+    candidate = Inverse(matrix, wide, condition)
+    lost = candidate.useless
     if lost.any():
         wide[lost], condition[lost] = _pseudo(matrix[lost])
-    return found
+    return candidate
 
 
 def _square(matrix: Array) -> tuple[Array, Array]:
@@ -576,7 +576,10 @@ class ForceSystem:
     @cached_property
     def _wrenches_by_unknown(self) -> dict[Unknown, list[Wrench]]:
         pulls = self.system.pulls
-        return {one: [pull.times(value) for pull in pulls[one]] for one, value in self.multipliers.items()}
+        return {
+            unknown: [pull.times(value) for pull in pulls[unknown]]
+            for unknown, value in self.multipliers.items()
+        }
 
     @cached_property
     def pressing(self) -> tuple[Pressing, ...]:
@@ -588,7 +591,7 @@ class ForceSystem:
     def acting(self) -> tuple[Wrench, ...]:
         """Everything that acts on any body but the centre of a sphere."""
         tied = [pull for pulls in self._wrenches_by_unknown.values() for pull in pulls]
-        return (*tied, *self.outer, *(pull for one in self.pressing for pull in one.pulls))
+        return (*tied, *self.outer, *(pull for joint in self.pressing for pull in joint.pulls))
 
     @cached_property
     def centre(self) -> tuple[Wrench, ...]:
@@ -640,8 +643,8 @@ class Kinetostatics:
         pulls: dict[Unknown, tuple[Wrench, ...]] = {}
         with np.errstate(all="ignore"):
             for constraint in scheme.structure.constraints:
-                found = wrenches_of(constraint, state.mechanism, numbers, at, teeth, space)
-                pulls |= {(constraint, row): each for row, each in enumerate(found)}
+                wrenches = wrenches_of(constraint, state.mechanism, numbers, at, teeth, space)
+                pulls |= {(constraint, row): each for row, each in enumerate(wrenches)}
         shape = (1, len(state.parameter))
         return cls(scheme, numbers, teeth, space, space.scale(numbers), at, pulls, shape)
 
@@ -660,9 +663,9 @@ class Kinetostatics:
 
     def right_side(self, outer: Iterable[Wrench]) -> Array:
         """Forces and moments [N] on the links, as (equations, 1, n)."""
-        found = np.zeros((self.scheme.size, *self.shape))
-        self._add(found, outer)
-        return found
+        right = np.zeros((self.scheme.size, *self.shape))
+        self._add(right, outer)
+        return right
 
     def forces(self, outer: Sequence[Wrench]) -> ForceSystem:
         """Constraint forces that balance what acts on points and links.
@@ -740,11 +743,11 @@ class Kinetostatics:
 
 def _along(force: Vector, axis: Vector) -> Number:
     """Component of a force; a component that is plainly zero costs nothing."""
-    found: Number = 0.0
+    summed: Number = 0.0
     for x, u in zip(force, axis, strict=True):
         if not _is_zero(x) and not _is_zero(u):
-            found = found + (x if isinstance(u, float) and u == 1.0 else x * u)
-    return found
+            summed = summed + (x if isinstance(u, float) and u == 1.0 else x * u)
+    return summed
 
 
 def _is_zero(value: Number) -> bool:

@@ -108,7 +108,7 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     Raises InputError for a hinge that is none, a pin in a body that is not there, a slider that is no link, and for a
     contact that is given twice; NotComputedYet on the sphere.
     """
-    found: dict[str, Contact] = {}
+    by_label: dict[str, Contact] = {}
     for load in mechanism.loads:
         if not isinstance(load, CoefficientFriction):
             continue
@@ -117,11 +117,11 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
             what = _("friction by a coefficient on the sphere is not computed yet")
             raise NotComputedYet(where, what, _("give the size of the friction, or leave it out"))
         for contact in _contacts(mechanism, load, where):
-            if contact.label in found:
+            if contact.label in by_label:
                 what = _("friction at {contact} is given twice").format(contact=contact.label)
                 raise InputError(where, what, _("keep one of them"))
-            found[contact.label] = contact
-    return tuple(found.values())
+            by_label[contact.label] = contact
+    return tuple(by_label.values())
 
 
 def _contacts(mechanism: Mechanism, load: CoefficientFriction, where: str) -> Sequence[Contact]:
@@ -293,8 +293,8 @@ class FrictionLaw:
         # 1
         weights[..., 0] = np.select(by, (first / safe, np.sign(first) * larger), 1.0)
         weights[..., 1] = np.select(by, (second / safe, np.sign(second) * ~larger), 0.0)
-        found = np.select(by, (length, np.maximum(np.abs(first), np.abs(second))), first)
-        return found, np.einsum("nja,njak->njk", weights, self.gain)
+        measures = np.select(by, (length, np.maximum(np.abs(first), np.abs(second))), first)
+        return measures, np.einsum("nja,njak->njk", weights, self.gain)
 
     @property
     def feedback(self) -> Array:
@@ -305,14 +305,14 @@ class FrictionLaw:
 
     def residual(self, sizes: Array, share: Array) -> tuple[Array, Array, Array]:
         """What is missing, f - s c m(f) (n, m), its derivatives (n, m, m), and what rounding leaves of it (n, m)."""
-        found, slopes = self.measures(sizes)
+        measures, slopes = self.measures(sizes)
         factor = share[:, None] * self.factor
         # sizes of the terms before they cancel: rounding is a share of these
         parts = np.abs(self.base).max(axis=2) + np.einsum(
             "njk,nk->nj", np.abs(self.gain).max(axis=2), np.abs(sizes)
         )
         noise = ROUNDING * EPSILON * (np.abs(sizes) + np.abs(factor) * parts)
-        return sizes - factor * found, np.eye(sizes.shape[1]) - factor[..., None] * slopes, noise
+        return sizes - factor * measures, np.eye(sizes.shape[1]) - factor[..., None] * slopes, noise
 
 
 @dataclass(frozen=True)
@@ -382,9 +382,9 @@ def _solve_matrices(matrix: Array, right: Array) -> Array:
     with np.errstate(all="ignore"):
         singular = ~(np.abs(np.linalg.det(matrix)) > 0.0)
     regular = np.where(singular[:, None, None], np.eye(matrix.shape[-1]), matrix)
-    found = np.linalg.solve(regular, right[..., None])[..., 0]
-    found[singular] = np.nan
-    return np.asarray(found)
+    solution = np.linalg.solve(regular, right[..., None])[..., 0]
+    solution[singular] = np.nan
+    return np.asarray(solution)
 
 
 def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]:
@@ -403,11 +403,11 @@ def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]
         ahead = part.factor * part.measures(here)[0]
         # along the branch (I - s c m') df/ds = c m: a tangent step, which Newton's method then corrects
         guess = here + (aim - share[going])[:, None] * _solve_matrices(slopes, ahead)
-        found, good, determinant, made = _newton_corrections(part, guess, aim, TRIES_ON_BRANCH)
+        corrected, good, determinant, made = _newton_corrections(part, guess, aim, TRIES_ON_BRANCH)
         # the determinant is 1 without friction and changes its sign where the branch ends
         good &= determinant > 0.0
         tries = max(tries, made)
-        sizes[going] = np.where(good[:, None], found, here)
+        sizes[going] = np.where(good[:, None], corrected, here)
         share[going] = np.where(good, aim, share[going])
         # twice as long after success, half as long after failure
         step[going] = np.where(good, np.minimum(2.0 * step[going], longest[going]), 0.5 * step[going])
@@ -464,9 +464,9 @@ class Rubbed:
     @property
     def pulls(self) -> list[Wrench]:
         """Friction as forces and moments on links and pins."""
-        found = self.solution.sizes
+        sizes = self.solution.sizes
         return [
-            pull.times(found[None, :, k].copy()) for k, size in enumerate(self.sizes) for pull in size.pulls
+            pull.times(sizes[None, :, k].copy()) for k, size in enumerate(self.sizes) for pull in size.pulls
         ]
 
     @property
@@ -526,12 +526,12 @@ def _sizes(contact: Contact, state: State) -> list[Size]:
     pulls = contact.motion.pulls(state)
     if isinstance(contact, HingeBearing):
         return [Size(contact, pulls, contact.coefficient * contact.radius, FrictionRule.LENGTH)]
-    found = [Size(contact, pulls, contact.coefficient, FrictionRule.GREATER)]
+    sizes = [Size(contact, pulls, contact.coefficient, FrictionRule.GREATER)]
     if contact.link is not None and contact.height:
         # the faces that bear lie half the height beside the line, on the side the force comes from
         arm = couple(contact.link, 1.0), couple(contact.on, -1.0)
-        found.append(Size(contact, arm, 0.5 * contact.coefficient * contact.height, FrictionRule.FIRST))
-    return found
+        sizes.append(Size(contact, arm, 0.5 * contact.coefficient * contact.height, FrictionRule.FIRST))
+    return sizes
 
 
 def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw:
@@ -548,11 +548,11 @@ def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw
 
 def _size_measures(forces: ForceSystem, sizes: Sequence[Size], samples: int) -> Array:
     """The two numbers (n, sizes, 2) that each size depends on."""
-    found = np.zeros((samples, len(sizes), 2))
+    measures = np.zeros((samples, len(sizes), 2))
     for k, size in enumerate(sizes):
         for part, value in enumerate(_contact_forces(forces, size.contact)):
-            found[:, k, part] = column(value, samples)
-    return found
+            measures[:, k, part] = column(value, samples)
+    return measures
 
 
 def _contact_forces(forces: ForceSystem, contact: Contact) -> tuple[Number, Number]:
@@ -577,14 +577,14 @@ def _where_known(law: FrictionLaw, useful: Mask) -> Followed:
     """Solve where all numbers are known; NaN elsewhere."""
     count, width = law.factor.shape
     known = useful & np.isfinite(law.base).all(axis=(1, 2)) & np.isfinite(law.gain).all(axis=(1, 2, 3))
-    found = solve_friction(law.at(known))
+    followed = solve_friction(law.at(known))
     sizes, outcome = np.full((count, width), np.nan), np.zeros(count, dtype=np.int8)
     share, residual = np.full(count, np.nan), np.zeros(count)
-    sizes[known], outcome[known] = found.sizes, found.outcome
-    share[known], residual[known] = found.share, found.residual
+    sizes[known], outcome[known] = followed.sizes, followed.outcome
+    share[known], residual[known] = followed.share, followed.residual
     # where there is no solution nothing is said of its residual
     residual[outcome != Outcome.FOUND] = 0.0
-    return Followed(sizes, outcome, share, residual, found.tries)
+    return Followed(sizes, outcome, share, residual, followed.tries)
 
 
 # What friction takes: power and work of each contact, efficiency, and where loads no longer drive.
@@ -701,17 +701,17 @@ def reversals(prepared: Ready, contacts: Sequence[Contact], first: float, last: 
 def friction_parts(rubbed: Rubbed, powers: Powers, mechanism: Mechanism) -> dict[str, Array]:
     """Variables of a dataset, samples first."""
     bearings = [k for k, contact in enumerate(rubbed.contacts) if isinstance(contact, HingeBearing)]
-    found = {
+    parts = {
         "friction_power": -rubbed.amounts * rubbed.slopes * powers.rate[:, None],
         "efficiency": powers.efficiency,
     }
     if bearings:
-        found["friction_moment"] = rubbed.amounts[:, bearings]
+        parts["friction_moment"] = rubbed.amounts[:, bearings]
     if len(bearings) < len(rubbed.contacts):
-        found["friction_force"] = np.zeros((len(rubbed.amounts), len(mechanism.guides)))
+        parts["friction_force"] = np.zeros((len(rubbed.amounts), len(mechanism.guides)))
         for k, guide in _guide_contacts(rubbed, mechanism):
-            found["friction_force"][:, guide] = rubbed.amounts[:, k]
-    return found
+            parts["friction_force"][:, guide] = rubbed.amounts[:, k]
+    return parts
 
 
 def _guide_contacts(rubbed: Rubbed, mechanism: Mechanism) -> list[tuple[int, int]]:

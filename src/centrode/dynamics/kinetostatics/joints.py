@@ -50,16 +50,16 @@ def sides_of(mechanism: Mechanism) -> tuple[JointSide, ...]:
     """
     held = {guide.point for guide in mechanism.guides}
     held |= {point for drive in mechanism.drives for point in drive.distance or ()}
-    found = []
+    sides = []
     named = [point for link in mechanism.links.values() for point in link.coordinates]
     for point in dict.fromkeys([*named, *mechanism.moving_points, *mechanism.frame.points]):
         links = [name for name, link in mechanism.links.items() if point in link.coordinates]
         fixed = point in mechanism.frame.points
         # a pin is worth a row where at least two bodies meet in it
         if len(links) > 1 or (links and fixed) or (point in held and (links or fixed)):
-            found += [JointSide(point, link) for link in links]
-            found += [JointSide(point, FRAME)] if fixed else []
-    return tuple(found)
+            sides += [JointSide(point, link) for link in links]
+            sides += [JointSide(point, FRAME)] if fixed else []
+    return tuple(sides)
 
 
 def side_forces(forces: ForceSystem, sides: Iterable[JointSide]) -> dict[JointSide, Vector]:
@@ -78,16 +78,16 @@ def _on_body(forces: ForceSystem, side: JointSide) -> list[Wrench]:
     tie = PointInLink(side.point, side.body)
     known = [(tie, row) for row in range(tie.size) if (tie, row) in forces.multipliers]
     tied = [pull for unknown in known for pull in forces.pulls(unknown) if pull.body.kind == "link"]
-    pressed = [pull for one in forces.pressing if one.point == side.point for pull in one.pulls]
+    pressed = [pull for joint in forces.pressing if joint.point == side.point for pull in joint.pulls]
     return [*tied, *(pull for pull in pressed if pull.body == Entity("link", side.body))]
 
 
 def _sum(pulls: Iterable[Wrench], origin: Vector) -> Vector:
     """Sum of forces; of none, nothing."""
-    found = origin
+    resultant = origin
     for pull in pulls:
-        found = tuple(x + y for x, y in zip(found, pull.force, strict=True))
-    return found
+        resultant = tuple(x + y for x, y in zip(resultant, pull.force, strict=True))
+    return resultant
 
 
 def wrenches_on_point(forces: ForceSystem, point: str) -> list[Wrench]:
@@ -107,10 +107,10 @@ def column(value: Number, samples: int) -> Array:
 
 def columns(values: Sequence[Number], samples: int) -> Array:
     """Numbers over the samples (n, numbers)."""
-    found = np.empty((samples, len(values)))
+    table = np.empty((samples, len(values)))
     for k, value in enumerate(values):
-        found[:, k] = column(value, samples)
-    return found
+        table[:, k] = column(value, samples)
+    return table
 
 
 def tables(values: Sequence[Sequence[Number]], width: int, samples: int) -> Array:
@@ -130,29 +130,29 @@ def reactions_of(forces: ForceSystem, sides: Sequence[JointSide]) -> dict[str, A
     }
     samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
     drives = [_value(forces, c) for c in structure.constraints if is_drive(c)]
-    found = {
+    parts = {
         "joint_force": tables([*side_forces(forces, sides).values()], axes, samples),
         "balancing": columns(drives, samples),
     }
     if axes == 3:
-        found["centre_force"] = tables([*centre_forces(forces).values()], axes, samples)
+        parts["centre_force"] = tables([*centre_forces(forces).values()], axes, samples)
     if of_kind[PointOnGuide]:
-        found |= _of_guides(forces, of_kind[PointOnGuide])
+        parts |= _of_guides(forces, of_kind[PointOnGuide])
     if of_kind[GearRatio]:
-        found |= _of_gears(forces, of_kind[GearRatio])
+        parts |= _of_gears(forces, of_kind[GearRatio])
     if of_kind[Contact]:
-        found |= _of_wheels(forces, of_kind[Contact], of_kind[NoSlip])
-    return found
+        parts |= _of_wheels(forces, of_kind[Contact], of_kind[NoSlip])
+    return parts
 
 
 def centre_forces(forces: ForceSystem) -> dict[str, Vector]:
     """On the sphere: force of its centre on each link, and on each pin of several links that loads act on."""
-    found = {pull.body.name: pull.force for pull in forces.centre if pull.body.name != FRAME}
-    for one in forces.pressing:
-        if one.bearer == FRAME:
-            known = found.get(f"pin {one.point}", forces.system.equilibrium.origin)
-            found[f"pin {one.point}"] = tuple(x - y for x, y in zip(known, one.force, strict=True))
-    return found
+    pulls = {pull.body.name: pull.force for pull in forces.centre if pull.body.name != FRAME}
+    for joint in forces.pressing:
+        if joint.bearer == FRAME:
+            known = pulls.get(f"pin {joint.point}", forces.system.equilibrium.origin)
+            pulls[f"pin {joint.point}"] = tuple(x - y for x, y in zip(known, joint.force, strict=True))
+    return pulls
 
 
 def _value(forces: ForceSystem, constraint: Constraint | None) -> Number:
@@ -173,9 +173,9 @@ def _of_guides(forces: ForceSystem, guides: Sequence[Constraint]) -> dict[str, A
     vectors = [[value * x for x in unit] for value, unit in zip(normal, units, strict=True)]
     moments = [_value(forces, turning.get(c.guide)) for c in guides if isinstance(c, PointOnGuide)]
     samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
-    found = {"guide_force": tables(vectors, axes, samples), "guide_normal": columns(normal, samples)}
+    parts = {"guide_force": tables(vectors, axes, samples), "guide_normal": columns(normal, samples)}
     # the guides of the sphere have no links of their own
-    return found if axes == 3 else found | {"guide_moment": columns(moments, samples)}
+    return parts if axes == 3 else parts | {"guide_moment": columns(moments, samples)}
 
 
 def _of_gears(forces: ForceSystem, gears: Sequence[Constraint]) -> dict[str, Array]:
@@ -228,10 +228,10 @@ MOMENTS = ("guide_moment", "gear_moment", "balancing")
 
 def reaction_status(system: Kinetostatics, status: Codes) -> Codes:
     """The motion's statuses (n), and `singular` where rounding leaves no digit of the reactions."""
-    found = status.copy()
+    codes = status.copy()
     lost = system.inverse.useless[0]
-    found[lost & ((status == Status.OK) | (status == Status.CUT_OFF))] = Status.SINGULAR
-    return found
+    codes[lost & ((status == Status.OK) | (status == Status.CUT_OFF))] = Status.SINGULAR
+    return codes
 
 
 def undetermined_parts(
@@ -243,9 +243,9 @@ def undetermined_parts(
     of them changes is not determined. `residual` is how well the equations repeat each other.
     """
     good = status == Status.OK
-    found: dict[str, Mask] = {}
+    masks: dict[str, Mask] = {}
     if not good.any():
-        return found
+        return masks
     condition = system.inverse.condition[0][good]
     # rounding of the matrix, and what the equations fail to repeat each other by, magnified by the condition
     # number
@@ -257,8 +257,8 @@ def undetermined_parts(
         for name, values in parts.items():
             bound = (noise * greatest).reshape(-1, *[1] * (values.ndim - 1))
             felt = (np.abs(values[good]) > bound).any(axis=0)
-            found[name] = found.get(name, np.zeros_like(felt)) | felt
-    return found
+            masks[name] = masks.get(name, np.zeros_like(felt)) | felt
+    return masks
 
 
 def _self_stress(system: Kinetostatics, unknown: Unknown) -> ForceSystem:

@@ -126,8 +126,8 @@ def find(
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))
     undetermined = undetermined_parts(system, sides, status, residual)
-    found = ReactionSolution(pace, outer, forces, sides, reactions_of(forces, sides), undetermined, status)
-    return _with_friction(found, solved, burden, state, contacts) if contacts else found
+    solution = ReactionSolution(pace, outer, forces, sides, reactions_of(forces, sides), undetermined, status)
+    return _with_friction(solution, solved, burden, state, contacts) if contacts else solution
 
 
 def _with_friction(
@@ -171,10 +171,10 @@ def totals_of(found: ReactionSolution) -> dict[str, Array]:
     """Inertia forces of the links, forces and moments on the frame, (samples, ...)."""
     inertia, samples = found.outer.inertia, found.forces.system.shape[-1]
     origin = found.forces.system.equilibrium.origin
-    shaking = [pull for one in inertia for pull in one.pulls]
-    moments = [components(one.moment) for one in inertia]
+    shaking = [pull for action in inertia for pull in action.pulls]
+    moments = [components(action.moment) for action in inertia]
     return {
-        "inertia_force": tables([one.force for one in inertia], len(origin), samples),
+        "inertia_force": tables([action.force for action in inertia], len(origin), samples),
         "inertia_moment": _moments(moments, len(origin), samples),
         **_sums("frame", found.forces.on_frame, origin, samples),
         **_sums("shaking", shaking, origin, samples),
@@ -183,8 +183,8 @@ def totals_of(found: ReactionSolution) -> dict[str, Array]:
 
 def _moments(moments: Sequence[Vector], axes: int, samples: int) -> Array:
     """Moments of links: one number each in the plane, three on the sphere."""
-    found = tables(moments, axes if axes == 3 else 1, samples)
-    return found if axes == 3 else found[:, :, 0]
+    table = tables(moments, axes if axes == 3 else 1, samples)
+    return table if axes == 3 else table[:, :, 0]
 
 
 def _sums(name: str, pulls: Sequence[Wrench], origin: Vector, samples: int) -> dict[str, Array]:
@@ -294,7 +294,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     }
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
     works = np.where(whole and _friction_converged(rubbed), works, np.nan)
-    found = {
+    variables = {
         "friction_work": vocabulary_variable("friction_work", ("friction",), works),
         "friction_turns": vocabulary_variable(
             "friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)
@@ -304,15 +304,15 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     if not solved.ready.kinematics.path.by_time:
         first, last = float(np.min(parameter)), float(np.max(parameter))
         places = reversals(solved.ready, rubbed.contacts, first, last)
-        found["jumps"] = vocabulary_variable("jumps", ("jump",), places, solved.ready.parameter.units[0])
-    return found
+        variables["jumps"] = vocabulary_variable("jumps", ("jump",), places, solved.ready.parameter.units[0])
+    return variables
 
 
 def friction_coordinates(contacts: tuple[Contact, ...]) -> dict[str, Any]:
     """Labels of the contacts."""
     bearings = tuple(contact.label for contact in contacts if isinstance(contact, HingeBearing))
-    found = {"friction": labels_of(tuple(contact.label for contact in contacts))}
-    return found | ({"bearing": labels_of(bearings)} if bearings else {})
+    coordinates = {"friction": labels_of(tuple(contact.label for contact in contacts))}
+    return coordinates | ({"bearing": labels_of(bearings)} if bearings else {})
 
 
 def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Any]:
@@ -383,7 +383,7 @@ def reactions_dataset(
     }
     if len(set(units)) > 1:
         variables["balancing"][2]["units"] = ", ".join(
-            one.force_unit for one in solved.ready.parameter.drives
+            drive.force_unit for drive in solved.ready.parameter.drives
         )
     if not solved.ready.kinematics.path.by_time:
         variables["drive_rate"] = vocabulary_variable(
@@ -392,8 +392,9 @@ def reactions_dataset(
     variables |= _statuses(solved, found)
     sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
     variables["determined"] = vocabulary_variable("determined", ("side",), sides)
-    attributes = attributes_of(solved) | checks
+    attributes = attributes_of(solved, "reactions") | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
+    attributes["samples"] = "range" if whole else "single places"
     coordinates = _coordinates(solved, burden, found)
     if found.friction is not None:
         rubbed, powers = found.friction.rubbed, found.friction.powers

@@ -58,7 +58,7 @@ class Sorted:
         return self.effort.amount.energy_class
 
     @property
-    def placed(self) -> bool:
+    def is_positional(self) -> bool:
         """Whether it can be represented by the drive's value, once for each sense."""
         return self.effort.amount.by_place
 
@@ -84,12 +84,12 @@ def sort_load_terms(loads: Sequence[AppliedLoad]) -> tuple[Sorted, ...]:
 
 def formulas_of(efforts: tuple[Sorted, ...]) -> tuple[Sorted, ...]:
     """Those whose amount is computed anew at every time."""
-    return tuple(one for one in efforts if not one.placed)
+    return tuple(term for term in efforts if not term.is_positional)
 
 
 def of_time(efforts: tuple[Sorted, ...]) -> bool:
     """Whether a load depends on time."""
-    return any("t" in one.effort.amount.uses for one in efforts)
+    return any("t" in term.effort.amount.uses for term in efforts)
 
 
 # What a simulation needs to know at a value of the drive, computed by the reduction itself.
@@ -148,25 +148,25 @@ class ReducedFunctions:
 
     def at(self, values: Array) -> Array:
         """All rows (rows, n); NaN where the motion or its derivatives do not exist."""
-        found = np.empty((self.count, len(values)))
+        rows = np.empty((self.count, len(values)))
         # backwards first: the state of the forward sense is used for all that does not depend on it
         for first, sense in ((BACKWARDS, -1.0), (FORWARDS, 1.0)):
             state, known = self.state(values, sense)
             for k, sort in enumerate(SORTS):
-                placed = [one for one in self.efforts if one.placed and one.sort == sort]
-                found[first + k] = sum((_moment(one, state, known) for one in placed), np.zeros(len(values)))
+                placed = [term for term in self.efforts if term.is_positional and term.sort == sort]
+                rows[first + k] = sum((_moment(term, state, known) for term in placed), np.zeros(len(values)))
         inertia, slope = shares(state, self.reducer.burden.masses, (1, len(values)))
-        found[INERTIA], found[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]
-        for j, one in enumerate(self.formulas):
-            row, effort = FORMULAS + EACH * j, one.effort
+        rows[INERTIA], rows[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]
+        for j, term in enumerate(self.formulas):
+            row, effort = FORMULAS + EACH * j, term.effort
             # some turnings on the sphere have no value, and nothing that asks for it
-            found[row + COORDINATE] = effort.coordinate.value(state) if "x" in effort.amount.uses else 0.0
-            found[row + SPEED] = effort.coordinate.slope(state).value
-            found[row + ALONG] = effort.along(state)
-            found[row + GATE] = 1.0 if effort.gate is None else effort.gate.slope(state).value
+            rows[row + COORDINATE] = effort.coordinate.value(state) if "x" in effort.amount.uses else 0.0
+            rows[row + SPEED] = effort.coordinate.slope(state).value
+            rows[row + ALONG] = effort.along(state)
+            rows[row + GATE] = 1.0 if effort.gate is None else effort.gate.slope(state).value
         # of both senses the positions are the same, so one mask serves
-        found[:, ~known] = np.nan
-        return found
+        rows[:, ~known] = np.nan
+        return rows
 
     def state(self, values: Array, sense: float = 1.0) -> tuple[State, Known]:
         """Positions at values of the drive, and where they exist with their derivatives."""
@@ -197,21 +197,22 @@ class ReducedFunctions:
 
     def scales(self, peaks: Array) -> Array:
         """What counts as the greatest value of each row, where one may be nothing but rounding beside others."""
-        found = peaks.copy()
+        scales = peaks.copy()
         # J' may be rounding beside J, whose derivative it is
-        found[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
+        scales[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
         moments = slice(FORWARDS, FORMULAS)
-        found[moments] = np.maximum(peaks[moments], FLOOR * np.max(peaks[moments]))
+        scales[moments] = np.maximum(peaks[moments], FLOOR * np.max(peaks[moments]))
         along = FLOOR * max(1.0, self.reducer.ready.kinematics.path.scale)
-        found[FORMULAS:] = np.maximum(peaks[FORMULAS:], along)
-        return np.where(found > 0.0, found, 1.0)
+        scales[FORMULAS:] = np.maximum(peaks[FORMULAS:], along)
+        return np.where(scales > 0.0, scales, 1.0)
 
     def energy(self, values: Array) -> Array:
         """Potential energy [J] of weights and springs (n), zero where their coordinates are."""
         state, _known = self.state(values)
-        stored = [one for one in self.efforts if one.sort == SORTS[0]]
+        stored = [term for term in self.efforts if term.sort == SORTS[0]]
         return sum(
-            (np.broadcast_to(one.energy(state), (1, len(values)))[0] for one in stored), np.zeros(len(values))
+            (np.broadcast_to(term.energy(state), (1, len(values)))[0] for term in stored),
+            np.zeros(len(values)),
         )
 
 
@@ -304,10 +305,10 @@ class PanelTracks:
 
     def stretch(self, number: int) -> TrackStretch:
         """The stretch that begins that many lengths from the initial value."""
-        found = self._stretches.get(number)
-        if found is None:
-            found = self._stretches[number] = self._new(number)
-        return found
+        stretch = self._stretches.get(number)
+        if stretch is None:
+            stretch = self._stretches[number] = self._new(number)
+        return stretch
 
     def place(self, value: float, upwards: bool) -> tuple[int, int]:
         # a value on an edge belongs to the stretch that the motion enters
@@ -586,8 +587,8 @@ class FieldLeg:
         low, high = edges[panel], edges[panel + 1]
         # a stretch that begins where the motion ends is empty
         share = (2.0 * inside - low - high) / (high - low) if high > low else 0.0
-        found: Array = self.powers[panel] @ share**_ORDERS
-        return found if self.grown is None else found + self.grown
+        rows: Array = self.powers[panel] @ share**_ORDERS
+        return rows if self.grown is None else rows + self.grown
 
 
 class Field:
@@ -602,7 +603,7 @@ class Field:
     def turns_count(self) -> bool:
         """Whether it matters in which sense the drive moves, so that a standstill is an event."""
         rows = self.tracks.rows
-        return self.driving.of_speed or any(one.one_sided for one in rows.efforts)
+        return self.driving.of_speed or any(term.one_sided for term in rows.efforts)
 
     @cached_property
     def of_time(self) -> bool:
@@ -635,7 +636,7 @@ class Field:
         # in the middle of the leg, where nothing turns round: signs there hold for the whole leg
         grows = [middle[FORMULAS + EACH * j :] * sense >= 0.0 for j in range(len(formulas))]
         gates = tuple(
-            bool(up[GATE]) or one.effort.gate is None for up, one in zip(grows, formulas, strict=True)
+            bool(up[GATE]) or term.effort.gate is None for up, term in zip(grows, formulas, strict=True)
         )
         return replace(leg, gates=gates, senses=tuple(1.0 if up[SPEED] else -1.0 for up in grows))
 
@@ -656,17 +657,17 @@ class Field:
         rows = leg.rows(value)
         first = FORWARDS if leg.sense > 0.0 else BACKWARDS
         moments = dict(zip(SORTS, rows[first : first + len(SORTS)].tolist(), strict=True))
-        for j, one in enumerate(self.tracks.rows.formulas):
+        for j, term in enumerate(self.tracks.rows.formulas):
             if not leg.gates[j]:
                 continue
             x, slope, along = rows[FORMULAS + EACH * j : FORMULAS + EACH * j + GATE].tolist()
-            if one.effort.works is not None:
+            if term.effort.works is not None:
                 along *= leg.sense  # it resists the drive, whichever way
             now = Situation(t, value, x, slope * rate, leg.senses[j], SCALARS)
             try:
-                moments[one.sort] += float(one.effort.amount(now)) * along
+                moments[term.sort] += float(term.effort.amount(now)) * along
             except (ArithmeticError, ValueError):
-                moments[one.sort] = NAN
+                moments[term.sort] = NAN
         return DriveForces(
             float(rows[INERTIA]),
             float(rows[SLOPE]),
@@ -772,10 +773,10 @@ class Trajectory:
 
     def at(self, times: Array) -> tuple[Array, Array]:
         """States (STATES, n) at growing times, and the sense of the motion (n): 0.0 where it rests."""
-        found, senses = np.empty((STATES, len(times))), np.empty(len(times))
+        states, senses = np.empty((STATES, len(times))), np.empty(len(times))
         ends = [piece.last for piece in self.pieces]
         which = np.array([min(bisect_left(ends, t), len(ends) - 1) for t in times], dtype=np.intp)
         for k in np.unique(which):
             some = which == k
-            found[:, some], senses[some] = self.pieces[k].at(times[some]), self.pieces[k].sense
-        return found, senses
+            states[:, some], senses[some] = self.pieces[k].at(times[some]), self.pieces[k].sense
+        return states, senses

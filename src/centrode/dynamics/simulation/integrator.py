@@ -73,28 +73,28 @@ def fixed_steps(
 ) -> Trajectory:
     """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
     step = duration / steps
-    found = np.empty((STATES, steps + 1))
+    states = np.empty((STATES, steps + 1))
     y: States = np.array([value, rate, *[0.0] * (STATES - 2)])
-    found[:, 0] = y
+    states[:, 0] = y
     done = 0
     ended: Ending = "duration"
     try:
         for k in range(steps):
             y = next_state(field, k * step, y, step)
             if not np.isfinite(y).all():
-                ended = field.tracks.ending(float(found[VALUE, done]))
+                ended = field.tracks.ending(float(states[VALUE, done]))
                 break
             if field.is_too_far(float(y[VALUE]), value):
                 raise too_far((k + 1) * step)
             done = k + 1
-            found[:, done] = y
+            states[:, done] = y
             if tell is not None and done % TOLD == 0:
                 tell(done / steps)
     except KeyboardInterrupt:
         if not done:
             raise
         ended = "interrupted"
-    return trajectory_of_states(field, found[:, : done + 1], step, ended, 4 * steps)
+    return trajectory_of_states(field, states[:, : done + 1], step, ended, 4 * steps)
 
 
 def trajectory_of_states(
@@ -135,9 +135,9 @@ def next_state(field: Field, t: float, y: States, step: float) -> States:
     k2 = _rates(field, t + 0.5 * step, y + 0.5 * step * k1)
     k3 = _rates(field, t + 0.5 * step, y + 0.5 * step * k2)
     k4 = _rates(field, t + step, y + step * k3)
-    found = np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
+    states = np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
     # beyond the range there is no mechanism: NaN tells that the last step was one too many
-    return found if field.tracks.low <= found[VALUE] <= field.tracks.high else np.full(STATES, np.nan)
+    return states if field.tracks.low <= states[VALUE] <= field.tracks.high else np.full(STATES, np.nan)
 
 
 def _rates(field: Field, t: float, y: States) -> States:
@@ -149,12 +149,12 @@ def _rates(field: Field, t: float, y: States) -> States:
     # at rest loads act as they would when the drive sets out in its own sense
     sense = 1.0 if rate > 0.0 else -1.0 if rate < 0.0 else tracks.rows.sense
     forces = field.forces(field.leg_at(value, sense), t, value, rate)
-    found = np.array(
+    rates = np.array(
         [rate, forces.acceleration(rate), forces.driving * rate, forces.friction * rate, forces.other * rate]
     )
-    if not np.isfinite(found).all():
+    if not np.isfinite(rates).all():
         raise without_value(t, value)
-    return found
+    return rates
 
 
 # The fixed-step scheme as one scan over expressions: machine code where llvmlite is there.
@@ -246,21 +246,21 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     reducer = rows.reducer
     # two samples whose times and rates differ: then these are variables
     span = SampleGrid(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
-    found = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
-    if found.steps:
+    traced = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
+    if traced.steps:
         raise Untraceable(mark("groups of higher class"))
     time, value, rate = (variable(name) for name in (TIME, PARAMETER, RATE_VARIABLE))
     mechanism = reducer.ready.mechanism
     burden = MassesAndLoads.of(mechanism, None, EXPRESSIONS)
-    state = state_of_nodes(found.solved, burden, DriveMotion(time, value, rate))  # type: ignore[arg-type]
+    state = state_of_nodes(traced.solved, burden, DriveMotion(time, value, rate))  # type: ignore[arg-type]
     inertia: Number = rows.added
     slope: Number = 0.0
     for mass in burden.masses:
         inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
     moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for one in sort_load_terms(burden.loads):
-        along = one.effort.along(state)
-        moments[one.sort] = moments[one.sort] + one.effort.strength(state) * along
+    for term in sort_load_terms(burden.loads):
+        along = term.effort.along(state)
+        moments[term.sort] = moments[term.sort] + term.effort.strength(state) * along
     driven = driving.over(EXPRESSIONS, time, value, rate)
     total = moments["stored"] + moments["friction"] + moments["other"] + driven
     powers = {"of drive": driven, "of friction": moments["friction"], "of others": moments["other"]}
@@ -288,7 +288,7 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
     reducer = rows.reducer
     path = reducer.ready.kinematics.path
     values = path.initial + np.linspace(0.0, tau, 721)
-    found: dict[str, float] = {}
+    turns: dict[str, float] = {}
     drive = path.driven[0].drive.id
     for link in reducer.ready.mechanism.link_names:
         names = centre_of(link), winding_of(link, drive)
@@ -301,8 +301,8 @@ def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
         # around a fixed centre only less than half a turn either way is unambiguous
         if np.ptp(rest) >= tau / 2:
             raise Untraceable(mark("links that swing by half a turn or more"))
-        found |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
-    return found
+        turns |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
+    return turns
 
 
 # Where a step meets the end of its leg or a standstill, and when a mechanism at rest breaks loose.
@@ -331,7 +331,7 @@ def first_event(
     dense: Any, before: float, solver: Any, low: float, high: float, sense: float
 ) -> tuple[float, int, float] | None:
     """The first time in a step at which the value leaves its range or the rate (where a sense counts) its sense."""
-    found: list[tuple[float, int, float]] = []
+    events: list[tuple[float, int, float]] = []
     y = solver.y
     # at an end of its range a value that does not move outwards has not left it: from rest it may stay there for long
     above = y[VALUE] > high or (y[VALUE] == high and y[RATE] > 0.0)
@@ -355,8 +355,8 @@ def first_event(
             )
         else:
             when = root(distance_to_target, before, solver.t)
-        found.append((when, component, target))
-    return min(found, default=None)
+        events.append((when, component, target))
+    return min(events, default=None)
 
 
 def _behind_start(missed: Callable[[float], float], first: float, last: float) -> float:
@@ -735,8 +735,8 @@ class Stepper:
 
     def _add(self, first: float, last: float, dense: Any, begun: State, sense: float) -> None:
         def at(times: Array) -> Array:
-            found: Array = dense(times) + (begun * _RELATIVE)[:, None]
-            return found
+            states: Array = dense(times) + (begun * _RELATIVE)[:, None]
+            return states
 
         self.course.pieces.append(TrajectoryPiece(first, last, at, sense))
 

@@ -43,14 +43,14 @@ class Interpolant:
         count = self.states.shape[1] - 1
         places = times / self.step
         nearest = np.clip(np.rint(places).astype(np.intp), 0, count)
-        found = np.asarray(self.states[:, nearest])
+        states = np.asarray(self.states[:, nearest])
         # at steps the states themselves: the interpolant would differ by rounding
         between = np.flatnonzero(np.abs(times - nearest * self.step) > 4.0 * np.spacing(times))
         steps = np.clip(np.floor(places[between]).astype(np.intp), 0, max(count - 1, 0))
         for k in np.unique(steps) if count else ():
             some = between[steps == k]
-            found[:, some] = self._on_step(int(k), places[some] - k)
-        return found
+            states[:, some] = self._on_step(int(k), places[some] - k)
+        return states
 
     def _on_step(self, number: int, shares: Array) -> Array:
         """States at shares of a step."""

@@ -71,7 +71,16 @@ def simulation_results(
     duration
     """
     used = changed_settings(mechanism, samples, settings=settings, **changes)
-    run = simulate(mechanism, used, motion=motion, progress=progress)
+    return _with_regime(mechanism, used, simulate(mechanism, used, motion=motion, progress=progress))
+
+
+def results_of_simulation(mechanism: Mechanism, run: xr.Dataset) -> SimulationResults:
+    """A dataset of `simulate`, whose mechanism has the settings that it ran by, with the regime that it ran up to."""
+    return _with_regime(mechanism, changed_settings(mechanism), run)
+
+
+def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> SimulationResults:
+    """A simulation with the regime of a drive that has turned all the way round."""
     regime, reason = None, ""
     if _has_turned(mechanism, run):
         try:

@@ -92,7 +92,7 @@ class Setting:
     def is_conservative(self) -> bool:
         """Whether nothing drives it but weights and springs, and nothing takes energy."""
         undriven = not self.driving.formula.used and self.driving.at(0.0, 0.0, 0.0) == 0.0
-        return undriven and all(one.sort == STORED for one in self.rows.efforts)
+        return undriven and all(term.sort == STORED for term in self.rows.efforts)
 
     @property
     def until(self) -> Until:
@@ -237,14 +237,14 @@ def _coordinates(solved: Solved) -> dict[str, object]:
 
 def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> DriveForces:
     """What acts at every instant; at rest as if it were about to go on in the sense of the drive."""
-    field, found = setting.field, np.empty((len(times), len(fields(DriveForces))))
+    field, forces = setting.field, np.empty((len(times), len(fields(DriveForces))))
     rows = zip(times, states[VALUE], states[RATE], senses, strict=True)
     for k, (t, value, rate, sense) in enumerate(rows):
         # at rest in the sense in which it would go on
         way = (1.0 if rate > 0.0 else -1.0) if rate else sense or setting.rows.sense
         leg = field.leg_at(float(value), way)
-        found[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
-    return DriveForces(*found.T)
+        forces[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
+    return DriveForces(*forces.T)
 
 
 def _curves(
@@ -290,17 +290,17 @@ def inertia_at(setting: Setting, value: float) -> float:
 
 
 def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
-    found = course.occasions
-    kinds = np.array([OCCASIONS.index(one.kind) for one in found], dtype=np.int8)
+    occasions = course.occasions
+    kinds = np.array([OCCASIONS.index(occasion.kind) for occasion in occasions], dtype=np.int8)
     dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
     attributes["flag_values"] = np.arange(len(OCCASIONS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in OCCASIONS)
     return {
         "occasion_time": vocabulary_variable(
-            "occasion_time", ("occasion",), np.array([one.time for one in found])
+            "occasion_time", ("occasion",), np.array([occasion.time for occasion in occasions])
         ),
         "occasion_value": vocabulary_variable(
-            "occasion_value", ("occasion",), np.array([one.value for one in found]), unit
+            "occasion_value", ("occasion",), np.array([occasion.value for occasion in occasions]), unit
         ),
         "occasion_kind": (dimensions, values, attributes),
     }
@@ -309,13 +309,15 @@ def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
 def _facts(setting: Setting, course: Trajectory, curves: dict[str, Array]) -> dict[str, float | str]:
     """Attributes: what holds for the whole course."""
     return {
+        "topic": "simulate",
         "ended": course.ended,
         "scheme": course.scheme,
         "executor": course.executor,
         "evaluations": course.evaluations,
         "driving": setting.settings.law,
         "speed_at_start": setting.settings.speed,
-        "mechanism": mechanism_text(setting.mechanism),
+        # with the settings that it ran by: what is read back says how it was driven
+        "mechanism": mechanism_text(setting.mechanism.model_copy(update={"simulation": setting.settings})),
         "worst_energy_residual": float(np.nanmax(np.abs(curves["energy_residual"]), initial=0.0)),
         "representation_error": setting.field.tracks.error,
     }

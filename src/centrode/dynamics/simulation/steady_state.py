@@ -235,14 +235,14 @@ def steady_state_of(setting: Setting) -> Regime:
     if setting.is_conservative:
         # with the place the energy comes back, and with it any speed
         return _steady_state(setting, maps.course(speed), speed, 1.0, maps)
-    found = fixed_point(maps, speed)
-    course = maps.course(found)
-    slightly = found * (1.0 + 1e-5)
+    fixed_speed = fixed_point(maps, speed)
+    course = maps.course(fixed_speed)
+    slightly = fixed_speed * (1.0 + 1e-5)
     # the multiplier by a difference of 1e-5: rounding of the maps, some 1e-11, leaves six digits of it
-    multiplier = (maps(slightly) - maps(found)) / (slightly - found)
-    if abs(found - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
-        raise unsettled_error(speed, found)  # it went so far that rounding hides how it grows
-    return _steady_state(setting, course, found, multiplier, maps)
+    multiplier = (maps(slightly) - maps(fixed_speed)) / (slightly - fixed_speed)
+    if abs(fixed_speed - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
+        raise unsettled_error(speed, fixed_speed)  # it went so far that rounding hides how it grows
+    return _steady_state(setting, course, fixed_speed, multiplier, maps)
 
 
 def _steady_state(

@@ -82,8 +82,8 @@ class PanelSeries:
     def at(self, places: Array) -> Array:
         """Values at places within the range; at a jump the one behind it."""
         panel, inner = self._inside(places)
-        found = np.einsum("...k,...k->...", legendre.legvander(inner, NODES - 1), self.coefficients[panel])
-        return np.asarray(found)
+        values = np.einsum("...k,...k->...", legendre.legvander(inner, NODES - 1), self.coefficients[panel])
+        return np.asarray(values)
 
     def integral(self, places: Array) -> Array:
         """Integrals from the first edge to places within the range."""
@@ -113,12 +113,12 @@ class PanelSeries:
         """Coefficients (panels, NODES + 1) of the integral from each panel's beginning."""
         half = 0.5 * np.diff(self.panels.edges)[:, None]
         shares = half * self.coefficients / (2 * _ORDERS + 1)
-        found = np.zeros((len(shares), NODES + 1))
+        integrals = np.zeros((len(shares), NODES + 1))
         # the integral of P_k is (P_(k+1) - P_(k-1)) / (2 k + 1)
-        found[:, 1:] += shares
-        found[:, : NODES - 1] -= shares[:, 1:]
-        found[:, 0] += shares[:, 0]  # of P_0 the integral is P_1 + 1
-        return found
+        integrals[:, 1:] += shares
+        integrals[:, : NODES - 1] -= shares[:, 1:]
+        integrals[:, 0] += shares[:, 0]  # of P_0 the integral is P_1 + 1
+        return integrals
 
     @cached_property
     def _before(self) -> Array:
@@ -209,15 +209,15 @@ class MomentShape:
         # one speed as an array too: plain numbers would raise where arrays have infinities
         speeds = np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape)
         with np.errstate(all="ignore"):
-            found = self.formula(ARRAYS, q=values, v=speeds)
-        found = np.broadcast_to(np.asarray(found, dtype=np.float64), values.shape)
-        if not np.isfinite(found).all():
+            moments = self.formula(ARRAYS, q=values, v=speeds)
+        moments = np.broadcast_to(np.asarray(moments, dtype=np.float64), values.shape)
+        if not np.isfinite(moments).all():
             raise InputError(
                 "[machine] driving",
                 _("the driving moment has no finite value everywhere in the cycle"),
                 _("correct the formula"),
             )
-        return found
+        return moments
 
 
 PANELS_PER_TURN = 72
@@ -303,11 +303,11 @@ def cycle_of(prepared: Ready, reduction: CycleReduction, shape: MomentShape | No
     turns = _turns(prepared, reduction, speed)
 
     def functions(turned: Array) -> Array:
-        found = _reduce_in_sense(reduction, first, sense, turned, np.full(len(turned), speed))
-        if not np.isfinite(found).all():
-            raise _locks(prepared, turned[~np.isfinite(found).all(axis=0)])
+        rows = _reduce_in_sense(reduction, first, sense, turned, np.full(len(turned), speed))
+        if not np.isfinite(rows).all():
+            raise _locks(prepared, turned[~np.isfinite(rows).all(axis=0)])
         drive = np.ones(len(turned)) if shape is None else shape.at(first + sense * turned, speed)
-        return np.concatenate([found, drive[None]])
+        return np.concatenate([rows, drive[None]])
 
     def scales(peaks: Array) -> Array:
         """Moments and slopes count beside what the links' inertia makes of the speed."""
@@ -434,13 +434,13 @@ class ReducedCycle:
 
     def at(self, values: Array, rate: Array) -> tuple[Array, Array, Array]:
         """Inertia, its derivative and moment at values and rates of the drive."""
-        found = self.reducer.at(values, rate, time=(values - self.first) / self.steady)
-        return found.inertia, found.inertia_slope, found.moment
+        reduced = self.reducer.at(values, rate, time=(values - self.first) / self.steady)
+        return reduced.inertia, reduced.inertia_slope, reduced.moment
 
     def jumps(self, low: float, high: float) -> Sequence[float]:
         """Values of the drive between two where one-sided loads jump."""
-        found: list[float] = self.reducer.jumps(low, high).tolist()
-        return found
+        jumps: list[float] = self.reducer.jumps(low, high).tolist()
+        return jumps
 
 
 def reduction_of(mechanism: Mechanism) -> CycleReduction:

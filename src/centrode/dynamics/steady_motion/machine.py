@@ -61,6 +61,12 @@ def machine_results(
     return MachineResults(mechanism, flywheel_of(solution), steady, at_instants)
 
 
+def results_of_steady_motion(mechanism: Mechanism, steady: xr.Dataset) -> MachineResults:
+    """A dataset of `steady_motion` with the energies and the flywheel of the machine."""
+    solution = solution_of(mechanism, steady.attrs["mean"])
+    return MachineResults(mechanism, flywheel_of(solution), steady, None)
+
+
 def is_machine(mechanism: Mechanism) -> bool:
     """Whether a description has a machine, and masses or loads that move it unevenly."""
     return mechanism.machine is not None and has_masses_or_loads(mechanism)

@@ -163,8 +163,8 @@ class Speed:
     def mean(self, kind: MeanSpeed) -> float:
         """Mean speed [rad/s]: half of greatest plus least ("middle"), or turns over time ("time")."""
         if kind == "middle":
-            found = self.extremes()
-            return 0.5 * (found.least + found.greatest)
+            extremes = self.extremes()
+            return 0.5 * (extremes.least + extremes.greatest)
         panels = self.balance.cycle.panels
         return self.balance.cycle.period / float(np.sum(panels.weights / self.at(panels.nodes)))
 
@@ -215,12 +215,12 @@ def with_fluctuation(
     spread = 0.5 * fluctuation * mean
 
     def about(middle: float) -> tuple[Speed, Tangents]:
-        found = tangents(balance, middle + spread, middle - spread)
-        return Speed(balance, found.inertia, found.energy), found
+        result = tangents(balance, middle + spread, middle - spread)
+        return Speed(balance, result.inertia, result.energy), result
 
-    found = about(mean)
-    if kind == "middle" or not found[0].inertia > 0.0:
-        return found
+    result = about(mean)
+    if kind == "middle" or not result[0].inertia > 0.0:
+        return result
 
     def excess(middle: float) -> float:
         return about(middle)[0].mean("time") - mean

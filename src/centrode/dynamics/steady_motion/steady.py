@@ -223,18 +223,18 @@ def _settle(
         return None, with_inertia(balance, machine.mean_speed, present, kind)
 
     # as asked first; only where that does not settle the inertia that is there is tried
-    found = _iterate(cycle, shape, machine.mean_speed, as_asked)
-    if found is None and machine.fluctuation is not None:
+    settled = _iterate(cycle, shape, machine.mean_speed, as_asked)
+    if settled is None and machine.fluctuation is not None:
         # loads that damp may keep the speed more even than asked, whatever the inertia: then none is needed
         with suppress(InputError):  # it stands still on the way to an answer
-            found = _iterate(cycle, shape, machine.mean_speed, as_present)
-        if found is not None:
-            speed = found[1]
+            settled = _iterate(cycle, shape, machine.mean_speed, as_present)
+        if settled is not None:
+            speed = settled[1]
             needed = with_fluctuation(speed.balance, machine.mean_speed, machine.fluctuation, kind)[0].inertia
             # the machine as it is keeps its speed even enough: the answer is that none is needed
-            found = (needed, speed, found[2]) if needed <= present else None
-    if found is not None:
-        return found
+            settled = (needed, speed, settled[2]) if needed <= present else None
+    if settled is not None:
+        return settled
     raise MotionError(
         "[machine]",
         _("loads that depend on the speed and the speed itself do not settle after {count} rounds").format(
@@ -256,12 +256,12 @@ def _iterate(
     for iteration in range(1, MOST_ITERATIONS + 1):
         balance = balance_of(cycle, shape, speeds)
         needed, speed = speed_of(balance)
-        found = speed.at(nodes)
-        if _agrees(balance, balance_of(cycle.at_speed(found), shape, found), nodes):
+        next_speeds = speed.at(nodes)
+        if _agrees(balance, balance_of(cycle.at_speed(next_speeds), shape, next_speeds), nodes):
             return needed, speed, iteration
-        mixed = mixing.following(speeds, found)
+        mixed = mixing.following(speeds, next_speeds)
         # a speed that is not positive is no speed: then the plain step is taken
-        speeds = mixed if mixed.min() > 0.0 else found
+        speeds = mixed if mixed.min() > 0.0 else next_speeds
         cycle = cycle.at_speed(speeds)
     return None
 
@@ -321,8 +321,8 @@ def steady_motion(
     InputError, MotionError
         As `flywheel`; without `fluctuation` the machine has the inertia of its shafts alone.
     """
-    found = solution_of(mechanism, mean)
-    return steady_dataset(found, turned_at(found, samples, at), method)
+    solution = solution_of(mechanism, mean)
+    return steady_dataset(solution, turned_at(solution, samples, at), method)
 
 
 def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLike | None = None) -> Array:
@@ -400,6 +400,7 @@ def _facts(found: SteadySolution, method: Method) -> dict[str, float | str | lis
         }
     )
     return {
+        "topic": "flywheel",
         "speed_by": method,
         "mean": found.kind,
         "mean_speed": found.machine.mean_speed,

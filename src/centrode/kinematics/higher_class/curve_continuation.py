@@ -281,7 +281,7 @@ class Rounds:
         begun = np.full((len(lane), width), np.nan)
         return cls(around, lane, forward, initial, begun, np.zeros(len(lane), dtype=np.intp))
 
-    def closed(
+    def closings(
         self, who: Lanes, origin: Array, pieces: Array, reached: Array
     ) -> list[tuple[np.intp, Period]]:
         """Walkers that have come round, of those whose last pieces brought them from an origin to what is reached."""
@@ -307,9 +307,9 @@ class Rounds:
         self.passed[who] += 1
         before = self.around.before(places, lane)
         system = self.around.system(needed_positions(self.around.equations, before), lane)
-        found = newton(system, system.normalise(foretold))
+        converged = newton(system, system.normalise(foretold))
         # a place that is not found compares with nothing, and closes nothing
-        state = np.where(found.found[:, None], found.state, np.nan)
+        state = np.where(converged.found[:, None], converged.state, np.nan)
         first = turns == 0
         self.begun[who[first]] = state[first]
         grown = state - self.begun[who]
@@ -445,15 +445,15 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     weight = np.full(numbers.shape, 1.0 / around.unit)
     weight[:, :-1] = around.blank(both).weights()
     base = CurvePlaces(numbers, direction, direction, along, forward, weight)
-    found = reach(around, both, base, along, parameter, state)
-    here = found.places
+    first_places = reach(around, both, base, along, parameter, state)
+    here = first_places.places
     width = start.shape[1] + 1
     walkers = Walkers(
         both, forward, np.where(forward < 0.0, *extent), here, np.full(2 * lanes, FIRST),
         np.sign(here.size), np.full((2 * lanes, 6, width), np.nan), np.zeros((2 * lanes, 2)),
-        [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1]), found.found.copy(),
+        [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1]), first_places.found.copy(),
     )  # fmt: skip
-    for walker in np.nonzero(~found.found)[0]:
+    for walker in np.nonzero(~first_places.found)[0]:
         walkers.stop(walker, lost=True)
     return walkers
 
@@ -479,8 +479,8 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     events: list[Event] = []
     passed = np.full(len(who), np.nan)
     for k in np.nonzero(crossed & good)[0]:
-        one = np.array([k])
-        at = curve_crossing(around, walkers.lane[who[one]], here.of(one), there.of(one))
+        walker = np.array([k])
+        at = curve_crossing(around, walkers.lane[who[walker]], here.of(walker), there.of(walker))
         if at is None:
             good[k] = False  # the curves only come near each other
         else:
@@ -553,7 +553,7 @@ def _go_on(
         # hence the fifth root
         longer = np.clip((TARGET * walkers.step[who] / there.wrong) ** (1.0 / 5.0), 0.3, 2.0)
     walkers.step[who] = np.minimum(walkers.step[who] * longer, GREATEST)
-    for walker, period in walkers.rounds.closed(who, here.parameter, pieces, there.places.parameter):
+    for walker, period in walkers.rounds.closings(who, here.parameter, pieces, there.places.parameter):
         if walkers.trails[walker].end == "on":
             walkers.trails[walker].period = period
             walkers.stop(walker)

@@ -117,7 +117,7 @@ def reach(
     They are as good as it takes to foretell others at such strides; without these, to the last digit.
     """
     count, free = len(parameter), along.shape[1] - 1
-    found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
+    arrived, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, FAR), np.full(count, np.nan)
     for k in range(STEPS):
         system, linear, moved, rest, follow, matrix = bordered_equations(
@@ -143,7 +143,7 @@ def reach(
             )
         # steps have to shrink, or the place belongs to another curve; tiny ones are rounding and need not
         done = good & enough
-        found |= done
+        arrived |= done
         active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
         last = size
         if not active.any():
@@ -164,8 +164,8 @@ def reach(
         )
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
-    found &= np.isfinite(inward[1]).all(axis=1)
-    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, found)
+    arrived &= np.isfinite(inward[1]).all(axis=1)
+    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, arrived)
 
 
 def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:
@@ -199,7 +199,7 @@ def _coefficients(
         [Jet((zero, x, zero)) for x in one.free],
     )
     values = system.residual(JETS, system.at(JETS, known, state, straight))
-    moved, rest = linear.reduced([-x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+    moved, rest = linear.reduce([-x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
     right = np.concatenate([system.stack(rest), zero[:, None]], axis=1)
     bend = solve_places(matrix, right[:, :, None])[:, :, 0]
     two = motion_along(linear, moved, follow, bend)
@@ -282,22 +282,22 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
 def _first_turn(coefficients: Array) -> Array:
     """The first share in [0, 1] at which polynomials (k, 6) turn back."""
     # where the polynomial has no turn, its middle: Newton's method goes on from there
-    found = np.full(len(coefficients), 0.5)
+    earliest = np.full(len(coefficients), 0.5)
     for k, c in enumerate(coefficients):
         roots = np.polynomial.Polynomial(c).deriv().roots()
         real = np.sort(roots.real[np.abs(roots.imag) < 1e-6])
         inside = real[(real >= -1e-6) & (real <= 1.0 + 1e-6)]
-        found[k] = inside[0] if len(inside) else 0.5
-    return found
+        earliest[k] = inside[0] if len(inside) else 0.5
+    return earliest
 
 
 def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:
     """By how much rounding of the equations may shift a limit along the path."""
     parameter, state = places.parameter, places.state
     system, linear, _moved, _rest, _follow, matrix = bordered_equations(around, lanes, parameter, state, None)
-    values = system.residual(ROUNDED, system.at(ROUNDED, around.bounded(parameter, lanes), state))
+    values = system.residual(ROUNDED, system.at(ROUNDED, around.with_bounds(parameter, lanes), state))
     zero = np.zeros(len(parameter))
-    _moved, rest = linear.reduced([Rounded(zero, zero + Rounded.of(x).bound) for x in values])
+    _moved, rest = linear.reduce([Rounded(zero, zero + Rounded.of(x).bound) for x in values])
     bounds = system.stack([Rounded.of(x).bound for x in rest])
     with np.errstate(all="ignore"):
         # the combination of equations that does not feel the group's own motion there tells the parameter
@@ -371,7 +371,7 @@ class _Saddle:
         ahead = Jet((self.parameter, zero + self.around.unit * direction[-1], zero))
         known = self.around.known(ahead, self.lane)
         values = system.residual(JETS, system.at(JETS, known, self.state, straight))
-        _moved, rest = linear.reduced([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+        _moved, rest = linear.reduce([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
         return 2.0 * float(least @ system.stack(rest)[0])
 
     def value(self) -> tuple[float, float]:
@@ -380,9 +380,9 @@ class _Saddle:
             self.around, self.lane, self.parameter, self.state, None
         )
         least = np.linalg.svd(matrix[0])[0][:, -1]
-        known = self.around.bounded(self.parameter, self.lane)
+        known = self.around.with_bounds(self.parameter, self.lane)
         values = system.residual(ROUNDED, system.at(ROUNDED, known, self.state))
-        _moved, bounds = linear.reduced([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
+        _moved, bounds = linear.reduce([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
         bound = float(np.abs(least) @ np.array([float(np.max(Rounded.of(x).bound)) for x in bounds]))
         return float(least @ rest[0]), bound
 

@@ -77,12 +77,12 @@ def close(
                 linear = system.linear(system.at(ARRAYS, system.known, state))
                 state = system.move(state, step_at(system, state, linear)[0])
         else:
-            found = newton(system, start)
-            linear = system.linear(system.at(ARRAYS, system.known, found.state))
+            converged = newton(system, start)
+            linear = system.linear(system.at(ARRAYS, system.known, converged.state))
             # the sign of the determinant tells the two assemblies apart that meet in a limit: Newton's method
             # may find the other
-            right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
-            state = np.where(right[:, None], found.state, np.nan)
+            right = converged.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
+            state = np.where(right[:, None], converged.state, np.nan)
         # at a limit the matrix is singular and nothing converges: its state is known from the track
         state[foretold.limit] = foretold.state[foretold.limit]
         add_in_shape(_lift_states(system, m, known, state, linear), group, shape, at)
@@ -107,9 +107,9 @@ def follow(
     state = system.take(first).normalise(state)
     states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
     for k in range(steps):
-        found = newton(system.take(first + k), state)
+        converged = newton(system.take(first + k), state)
         # each place starts from the one before: along a way there is no track to start from
-        state = np.where(found.found[:, None], found.state, np.nan)
+        state = np.where(converged.found[:, None], converged.state, np.nan)
         states[first + k] = state
     add_in_shape(system.at(ARRAYS, known, states), group, parameter.shape, at)
 
@@ -157,9 +157,11 @@ def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial:
         known = between.known_at(np.full(len(going), initial), everyone)
         system = between.system(known, everyone)
         with np.errstate(all="ignore"):
-            found = newton(system, state[going])
-            good = found.found & (sense_of(system, found.state) == sense) & (found.sizes[0] < NEAR)
-        state[going[good]] = found.state[good]
+            converged = newton(system, state[going])
+            good = (
+                converged.found & (sense_of(system, converged.state) == sense) & (converged.sizes[0] < NEAR)
+            )
+        state[going[good]] = converged.state[good]
         done[going[good]] = aim[good]
         # as a step size: doubled after success, halved after failure
         part[going] *= np.where(good, 2.0, 0.5)
@@ -175,14 +177,14 @@ def sense_of(system: GroupSystem, state: Array) -> Array:
 
 def numbers_of(numbers: Dimensions) -> list[Number]:
     """Every number of the dimensions, in one order."""
-    found: list[Number] = []
+    used: list[Number] = []
 
     def note(x: Number) -> Number:
-        found.append(x)
+        used.append(x)
         return x
 
     numbers.map_numbers(note)
-    return found
+    return used
 
 
 def blend_dimensions(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:

@@ -61,10 +61,10 @@ def closing_states(
     # all starts are places of one system, so that Newton's method runs once
     many = GroupSystem(system.group, system.numbers, system.known, len(starts))
     with np.errstate(all="ignore"):
-        found = newton(many, np.concatenate(starts), steps)
+        converged = newton(many, np.concatenate(starts), steps)
     states: list[Array] = []
-    for k in np.nonzero(found.found)[0]:
-        state = found.state[k : k + 1]
+    for k in np.nonzero(converged.found)[0]:
+        state = converged.state[k : k + 1]
         # several starts lead to the same position
         if all(_apart(system, state, other) > SAME for other in states):
             states.append(state)
@@ -108,10 +108,10 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     system = GroupSystem(group, numbers, at.copy(), 1)
     start = _start(mechanism, system, at)
     with np.errstate(all="ignore"):
-        found = newton(system, start, STEPS)
-        if not found.found[0]:
+        converged = newton(system, start, STEPS)
+        if not converged.found[0]:
             raise _does_not_close(system, start)
-        closed = system.at(ARRAYS, at, found.state)
+        closed = system.at(ARRAYS, at, converged.state)
         values = np.linalg.svd(system.linear(closed).matrix[0], compute_uv=False)
     if values[-1] <= SINGULAR * values[0]:
         raise InputError(
@@ -136,10 +136,12 @@ def bound_higher(system: GroupSystem, at: Positions, bounded: Positions) -> None
     known = bounded.map_numbers(
         lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
     )
-    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).map_numbers(within(_single))
-    bounded.points.update(found.points)
-    bounded.poses.update(found.poses)
-    bounded.angles.update(found.angles)
+    with_bounds = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).map_numbers(
+        within(_single)
+    )
+    bounded.points.update(with_bounds.points)
+    bounded.poses.update(with_bounds.poses)
+    bounded.angles.update(with_bounds.angles)
 
 
 def _as_float(x: Number) -> float:
@@ -173,7 +175,7 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
         return [guess]
     if _adrift(mechanism, left) is None:
         raise _missing_angle_error(mechanism, group, left or list(group.links))
-    found = []
+    trials = []
     origin = (0.0, 0.0) if mechanism.space == "plane" else (1.0, 0.0, 0.0)
     for place in scatter_places(numbers, at, origin):
         trial, rest = guess.copy(), left
@@ -189,8 +191,8 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
                 trial.points.setdefault(point, place)
         if rest or any(point not in trial.points for point in group.points):
             raise _missing_angle_error(mechanism, group, rest or left)
-        found.append(trial)
-    return found
+        trials.append(trial)
+    return trials
 
 
 def _adrift(mechanism: Mechanism, links: Sequence[str]) -> str | None:

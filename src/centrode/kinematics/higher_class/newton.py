@@ -49,7 +49,7 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
     state = start.copy()
     going = np.nonzero(np.isfinite(start).all(axis=1))[0]
-    found = np.zeros(len(start), dtype=bool)
+    converged = np.zeros(len(start), dtype=bool)
     sizes = np.full((steps, len(start)), np.nan)
     last = np.full(len(start), np.inf)
     for k in range(steps):
@@ -67,16 +67,16 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
             | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
         )
         last[going] = size
-        found[going[done]] = True
+        converged[going[done]] = True
         going = going[good & ~done]
-    return Converged(state, found, sizes)
+    return Converged(state, converged, sizes)
 
 
 def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> tuple[GroupMotion, Array]:
     """A Newton step from a state, and its size."""
     at = system.at(ARRAYS, system.known, state)
     linear = system.linear(at) if linear is None else linear
-    moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
+    moved, rest = linear.reduce([-x for x in system.residual(ARRAYS, at)])
     free = solve_places(linear.matrix, system.stack(rest)[:, :, None])[:, :, 0]
     return GroupMotion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
 
@@ -122,10 +122,10 @@ def bordered_equations(
     values = system.residual(JETS, system.at(JETS, known, state))
     # jets of first order: values are the residual, slopes how the equations move with the parameter
     jets = [x if isinstance(x, Jet) else Jet((x, 0.0)) for x in values]
-    moved, rest = linear.reduced([-x.coefficients[0] for x in jets])
+    moved, rest = linear.reduce([-x.coefficients[0] for x in jets])
     # how unknowns and right sides move with one unit of the parameter in units of the path, so that the
     # parameter's column is of the size of the others
-    follow, pushed = linear.reduced([_times(x.coefficients[1], -around.unit) for x in jets])
+    follow, pushed = linear.reduce([_times(x.coefficients[1], -around.unit) for x in jets])
     count, free = len(parameter), linear.pattern.free
     rows = free if along is None else free + 1
     matrix = np.empty((count, rows, free + 1))

@@ -96,9 +96,9 @@ def pattern_of(group: Newton) -> Pattern:
     while left:
         # what follows from something known goes first; without such, the coordinates of the next unknown are
         # free
-        found = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
-        entity = left[0] if found is None else found[0]
-        by = None if found is None else found[1]
+        hinge = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
+        entity = left[0] if hinge is None else hinge[0]
+        by = None if hinge is None else hinge[1]
         follows.append(Follow(entity, by, free))
         left.remove(entity)
         if by is None:
@@ -132,8 +132,8 @@ class Linear:
     def __init__(self, group: Newton, numbers: Dimensions, at: Positions, places: int) -> None:
         self.group, self.numbers, self.places = group, numbers, places
         self.pattern = pattern_of(group)
-        found = {c: c.rows(numbers, at) for c, _row in group.equations}
-        self.rows = [found[c][row] for c, row in group.equations]
+        rows = {c: c.rows(numbers, at) for c, _row in group.equations}
+        self.rows = [rows[c][row] for c, row in group.equations]
         self.number = {equation: i for i, equation in enumerate(group.equations)}
         self.tangents: dict[Entity, dict[int, Shift]] = {}
         self._inverses: dict[Entity, Block] = {}
@@ -196,7 +196,7 @@ class Linear:
                     matrix[:, i, j] += _dot(slopes, shift) * unit
         return matrix
 
-    def reduced(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
+    def reduce(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
         """What right sides of all equations ask for at no free motion, and the right sides left over."""
         moved: dict[Entity, Shift] = {}
         for entity, by, _first in self.pattern.follows:
@@ -219,13 +219,13 @@ class Linear:
 
     def whole(self, moved: Mapping[Entity, Shift], free: Sequence[Number]) -> dict[Entity, Shift]:
         """How all unknowns move: as requested at no free motion, and with free coordinates."""
-        found: dict[Entity, Shift] = {}
+        shifts: dict[Entity, Shift] = {}
         for entity, tangents in self.tangents.items():
             total = moved.get(entity, (0.0,) * entity.unknowns)
             for j, shift in tangents.items():
                 total = tuple(_sum(t, _dot((x,), (free[j],))) for t, x in zip(total, shift, strict=True))
-            found[entity] = total
-        return found
+            shifts[entity] = total
+        return shifts
 
 
 def solve_places(matrix: Array, right: Array) -> Array:
@@ -235,9 +235,9 @@ def solve_places(matrix: Array, right: Array) -> Array:
         return np.asarray(np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError:
         sign, _size = np.linalg.slogdet(matrix)
-        found = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
-        found[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
-        return found
+        solution = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
+        solution[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
+        return solution
 
 
 def _sum(a: Number, b: Number) -> Number:
@@ -396,12 +396,12 @@ class GroupSystem:
 
     def residual(self, m: Namespace, at: Positions) -> list[Number]:
         """Left sides of the equations."""
-        found: dict[Constraint, list[Number]] = {}
+        residuals: dict[Constraint, list[Number]] = {}
         values = []
         for constraint, row in self.group.equations:
-            if constraint not in found:
-                found[constraint] = constraint.residual(m, self.numbers, at)
-            values.append(found[constraint][row])
+            if constraint not in residuals:
+                residuals[constraint] = constraint.residual(m, self.numbers, at)
+            values.append(residuals[constraint][row])
         return values
 
     def linear(self, at: Positions) -> Linear:
@@ -417,12 +417,12 @@ class GroupSystem:
 
     def stack(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""
-        found = np.empty(
+        stacked = np.empty(
             (len(values), self.places), dtype=np.result_type(np.float64, *map(np.asarray, values))
         )
-        for row, value in zip(found, values, strict=True):
+        for row, value in zip(stacked, values, strict=True):
             row[:] = value
-        return found.T
+        return stacked.T
 
     def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> GroupMotion:
         """Taylor coefficients of the motion from a converged state, by the variable of the known jets."""
@@ -435,7 +435,7 @@ class GroupSystem:
             motion = _as_jets(shifts, free, k)
             below = known.map_numbers(lambda x, k=k: truncate_jet(x, k))  # type: ignore[misc]
             values = self.residual(JETS, self.at(JETS, below, state, motion))
-            moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
+            moved, rest = linear.reduce([_minus_coefficient(x, k) for x in values])
             freely = list(times(inverse, self.stack(rest)).T)
             for entity, shift in linear.whole(moved, freely).items():
                 for c, x in zip(shifts[entity], shift, strict=True):
@@ -449,7 +449,7 @@ class GroupSystem:
         values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
         zero = np.zeros(self.places)
         # a converged state leaves a residual: that is part of the error as well
-        moved, rest = linear.reduced([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
+        moved, rest = linear.reduce([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         bound = times(np.abs(inverse), self.stack([Rounded.of(x).bound for x in rest]))
         free = [Rounded(zero, column) for column in bound.T]
@@ -480,10 +480,10 @@ def _minus_coefficient(x: Number, k: int) -> Number:
 
 def total(columns: Array) -> Array:
     """Sum over the second axis, added up in one order whatever the number of places."""
-    found = columns[:, 0].copy()
+    summed = columns[:, 0].copy()
     for j in range(1, columns.shape[1]):
-        found += columns[:, j]
-    return found
+        summed += columns[:, j]
+    return summed
 
 
 def times(matrix: Array, vector: Array) -> Array:
@@ -552,7 +552,7 @@ class LinkChain:
         """The links whose turns are found last."""
         follows = {f.entity.name: f for f in self.pattern.follows if f.entity.kind == "link" and f.by}
         spoken = [body for c, row in self.group.equations if row == 0 for body in c.bodies]
-        found = []
+        leaves = []
         for number, (c, row) in enumerate(self.kept):
             if row or not isinstance(c, PointInLink) or c.link not in follows or (c, 1) not in self.kept:
                 # of two rows of the point both have to be left over, and the link one that follows from a
@@ -560,9 +560,9 @@ class LinkChain:
                 continue
             # the link is spoken of by its hinge and by this constraint, and by nothing else
             if sum(body.kind == "link" and body.name == c.link for body in spoken) == 2:
-                found.append(Leaf(c, follows[c.link].turn, (number, self.kept.index((c, 1)))))
+                leaves.append(Leaf(c, follows[c.link].turn, (number, self.kept.index((c, 1)))))
         # by the hinge and by the point it has to reach: two constraints speak of it
-        return tuple(found)
+        return tuple(leaves)
 
     def posture(self, at: Positions) -> Posture:
         """The free coordinates of positions."""
@@ -621,11 +621,11 @@ class LinkChain:
     def arms(self, posture: Posture) -> list[Vector]:
         """The arms of all leaves as they lie, in `unit`."""
         over = 1.0 / self.unit
-        found = []
+        arms = []
         for leaf in self.leaves:
             x, y = rotate_vector(self.arm(leaf), posture.rotors[leaf.constraint.link])
-            found.append((x * over, y * over))
-        return found
+            arms.append((x * over, y * over))
+        return arms
 
     def equations(self, m: Namespace, at: Positions, arms: Sequence[Vector]) -> list[Number]:
         """Left sides of the equations left over, those of leaves along and across given arms, in rad and `unit`."""
@@ -699,7 +699,7 @@ class Surroundings:
             used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
         return at
 
-    def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
+    def with_bounds(self, parameter: Array, lanes: Lanes) -> Positions:
         """Positions that the group's equations need, with bounds of their rounding errors, at parameters (k,)."""
         used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):

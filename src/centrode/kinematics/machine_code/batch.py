@@ -86,7 +86,7 @@ def solve_many(
     judged = judging.judge(values)
     if plan.steps and np.mean(judged.clear) < WORTH_WALKING:
         return solve(ready, span, numbers, lanes, progress)
-    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solved(
+    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solve(
         progress
     )
 
@@ -103,36 +103,36 @@ class _Many:
     judging: EventScreening
     judged: ScreenedEvents
 
-    def solved(self, progress: Progress | None) -> Solved:
+    def solve(self, progress: Progress | None) -> Solved:
         writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
         room = writer.room(self.lanes)
         sure = self._write(writer, room, progress)
-        found = writer.placed(room)
-        residual = found["residual"]
+        arrays = writer.views(room)
+        residual = arrays["residual"]
         # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes to
         # the arrays
         clear = sure & (residual.max(axis=1) <= 0.5 * CLOSED)
-        if SLACK in found:
+        if SLACK in arrays:
             # any radicand this near to zero has to be compared with its rounding error, which is the arrays'
             # work
-            clear &= found[SLACK].min(axis=1) > 0.0
-        if SINES in found:
+            clear &= arrays[SLACK].min(axis=1) > 0.0
+        if SINES in arrays:
             # the arc tangent is NumPy's, so that angles have the bits of `solve`
-            self._angles(found["angles"], found[SINES])
+            self._angles(arrays["angles"], arrays[SINES])
         status = np.full(residual.shape, Status.OK, dtype=np.int8)
         branches = self._branches()
         left = np.nonzero(~clear)[0]
         if len(left):
-            self._fill(left, found, status, branches)
+            self._fill(left, arrays, status, branches)
         solved = solved_of(
-            self.plan.solved, found, status, ready=self.ready, span=self.span, branches=branches
+            self.plan.solved, arrays, status, ready=self.ready, span=self.span, branches=branches
         )
         return replace(solved, worst_constraint=self._worst(residual))
 
     def _outputs(self) -> dict[str, Nodes]:
-        found = nodes_of(self.plan)
+        nodes = nodes_of(self.plan)
         slack = self.judging.slack_at_samples
-        return found if slack is None else {**found, SLACK: box_array([slack]).reshape(1, 1)}
+        return nodes if slack is None else {**nodes, SLACK: box_array([slack]).reshape(1, 1)}
 
     @cached_property
     def _inputs(self) -> dict[str, Array]:
@@ -207,7 +207,7 @@ class _Many:
             self._events.unclosed.update(left[opened].tolist())  # nobody has looked
             yield left, some
         else:
-            yield from self._events.solved(self.numbers, left)
+            yield from self._events.solve_lanes(self.numbers, left)
 
     @cached_property
     def _events(self) -> Eventful:

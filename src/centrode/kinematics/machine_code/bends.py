@@ -81,8 +81,8 @@ def _driven(drive: str, value: Number, cells: Cells) -> Number:
         return value
     # a drive at constant speed has no bend, and its literal zero saves the operations behind it
     still = all(type(x) is float and x == 0.0 for x in value.coefficients[2:])
-    found, slope = value.coefficients[:2]
-    return Bent(found, slope, 0.0 if still else variable(_name(drive)), cells)
+    first, slope = value.coefficients[:2]
+    return Bent(first, slope, 0.0 if still else variable(_name(drive)), cells)
 
 
 def bends_of(path: Path, mesh: Array) -> dict[str, Array]:
@@ -90,12 +90,12 @@ def bends_of(path: Path, mesh: Array) -> dict[str, Array]:
     if not path.by_time:
         return {}
     half = half_widths(mesh)
-    found = {HALF: np.broadcast_to(half, mesh.shape)}
+    bends = {HALF: np.broadcast_to(half, mesh.shape)}
     with np.errstate(all="ignore"):
         for drive, value in bent_drives(path, mesh, half).items():
             if isinstance(value, Bent):
-                found[_name(drive)] = np.broadcast_to(value.bend, mesh.shape)
-    return found
+                bends[_name(drive)] = np.broadcast_to(value.bend, mesh.shape)
+    return bends
 
 
 def _name(drive: str) -> str:

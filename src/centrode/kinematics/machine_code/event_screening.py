@@ -72,8 +72,8 @@ class Centring:
 
     def centres(self, values: Mapping[str, Array], kernels: str, threads: int) -> tuple[Mask, Values]:
         """The mechanisms whose links all stay near enough to their centres; these with their windings."""
-        found, further = self._over_nodes.run(values, kernels, threads), Values()
-        near = [self._add_centre(link, found, further) for link in self.links]
+        clear, further = self._over_nodes.run(values, kernels, threads), Values()
+        near = [self._add_centre(link, clear, further) for link in self.links]
         return np.logical_and.reduce(near), further
 
     @cached_property
@@ -199,16 +199,16 @@ class EventScreening:
 
         What a walk along the samples finds out about these groups themselves is not looked at here.
         """
-        found = self._events(values)
+        events = self._events(values)
         lanes = len(next(iter(values.values())))
         clear = np.ones(lanes, dtype=bool)
-        for slack in {SLACK, SURE} & found.keys():
-            clear &= found[slack] > 0.0
+        for slack in {SLACK, SURE} & events.keys():
+            clear &= events[slack] > 0.0
         for group in self.traced.divisors:
-            if f"least {group}" in found:
+            if f"least {group}" in events:
                 # NaN fails both comparisons: what is not known is not clear
-                clear &= (found[f"least {group}"] > 0.0) | (found[f"most {group}"] < 0.0)
-        further = {name: array for name, array in found.items() if name.startswith("largest")}
+                clear &= (events[f"least {group}"] > 0.0) | (events[f"most {group}"] < 0.0)
+        further = {name: array for name, array in events.items() if name.startswith("largest")}
         if self.links and not self.traced.steps:
             near, centres = self._centring.centres(values, self.executor, self.threads)
             clear &= near
@@ -221,7 +221,7 @@ class EventScreening:
         # need no walk
         if walk.moves(list(self._of_events.state.values())):
             way = way_of(self._path, {PARAMETER: self._near})
-            return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
+            return Walking(walk, self._of_events).reduce(way, values, self.executor, self.threads)
         return self._over_nodes.run(values, self.executor, self.threads)
 
     @property
@@ -245,8 +245,8 @@ class EventScreening:
         gaps = np.diff(self.mesh)
         # the next node on either side: the farther one counts
         either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
-        found = self._places(self.mesh) | bends_of(self._path, self.mesh)
-        return found | ({GAP: either} if self._path.by_time else {})
+        values = self._places(self.mesh) | bends_of(self._path, self.mesh)
+        return values | ({GAP: either} if self._path.by_time else {})
 
     @cached_property
     def _of_events(self) -> Reduction:

@@ -130,7 +130,7 @@ class Patches:
         room.fill_frame(kinematics.numbers)
         arrays = {
             "all_points": room.all_points,
-            "angles": room.turned,
+            "angles": room.all_angles,
             "slides": room.slides,
             "contacts": contacts,
             "residual": residual,
@@ -169,7 +169,7 @@ def signs_of(ready: Ready, crossings: Mapping[int, int]) -> dict[int, Operand]:
 
 
 def _sign(group: int, sign: float, initial: float, count: int) -> Operand:
-    m, found = EXPRESSIONS, sign
+    m, branch = EXPRESSIONS, sign
     if not count:
         return sign
     # a sign flips for a sample if the change point lies between the initial position and the sample
@@ -178,8 +178,8 @@ def _sign(group: int, sign: float, initial: float, count: int) -> Operand:
         at = variable(crossing_of(group, k))
         # a change point that is not there is NaN, and lies nowhere between
         between = m.both(m.less(low, at), m.less(at, high))
-        found = m.where(between, -found, found)  # type: ignore[assignment]
-    return found
+        branch = m.where(between, -branch, branch)  # type: ignore[assignment]
+    return branch
 
 
 def crossing_of(group: int, k: int) -> str:
@@ -198,13 +198,13 @@ def counts_of(branches: Branches) -> dict[int, int]:
 
 def values_of(branches: Branches, counts: Mapping[int, int]) -> dict[str, Array]:
     """The places of the change points: name -> (lanes,), NaN where there is none."""
-    found = {}
+    values = {}
     for group, count in counts.items():
         table = branches.crossings[group]
         for k in range(count):
             known = table[:, k] if k < table.shape[1] else np.full(branches.lanes, np.nan)
-            found[crossing_of(group, k)] = known
-    return found
+            values[crossing_of(group, k)] = known
+    return values
 
 
 # The search for events on a mesh that machine code has filled: what is found, and its bits, are those of
@@ -221,12 +221,12 @@ Writers: TypeAlias = Callable[[Mapping[int, int]], tuple[Traced, Writer]]
 
 def of_mesh(plan: Traced) -> dict[str, Nodes]:
     """What is written on the mesh: radicands and divisors with slopes and bends, cosines and sines of angles."""
-    found = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
-    found |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
+    nodes = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
+    nodes |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
     for (kind, group), bent in plan.bends.items():
-        if f"{kind} {group}" in found:
-            found[f"bend of {kind} {group}"] = box_array([bent.bend])
-    return found | {f"rotor {link}": box_array(rotor) for link, rotor in plan.turning.items()}
+        if f"{kind} {group}" in nodes:
+            nodes[f"bend of {kind} {group}"] = box_array([bent.bend])
+    return nodes | {f"rotor {link}": box_array(rotor) for link, rotor in plan.turning.items()}
 
 
 def _angle_of(link: str, numbers: Dimensions, at: Positions) -> Any:
@@ -281,7 +281,7 @@ class EventSearch:
             # right one
             cosine[self._repaired_nodes], sine[self._repaired_nodes] = self._rotors_mended[link]
         start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
-        quick = self._quick.measured(partial(_angle_of, link))
+        quick = self._quick.measure(partial(_angle_of, link))
         return node_turns((cosine, sine), initial, start, len(self.mesh), quick)
 
     @cached_property
@@ -377,7 +377,7 @@ class Eventful:
     _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer, Writer]] = field(default_factory=dict)
     _memory: tuple[list[Array], list[Array]] = field(default_factory=lambda: ([], []))
 
-    def solved(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
+    def solve_lanes(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
         """The motions of some mechanisms of a batch, part by part; arrays stay as they are until the next part."""
         ready = fit_for(self.ready, self.span)
         kinematics = of_batch(ready.kinematics, numbers)
@@ -416,22 +416,22 @@ class Eventful:
         values = {**search.values, **values_of(branches, counts)}
         values |= {largest_of(group): largest for group, largest in branches.largest.items()}
         writer.write(values, room)
-        found = writer.placed(room)
-        turns = self._turns(plan, search, found)
-        status, doubtful = self._judge_samples(continuation, found[JUDGED], found["residual"])
+        arrays = writer.views(room)
+        turns = self._turns(plan, search, arrays)
+        status, doubtful = self._judge_samples(continuation, arrays[JUDGED], arrays["residual"])
         # samples that do not close although no radicand says so: their numbers go, as the arrays take theirs
         # out
-        broken = (status == Status.OPEN) & (found[JUDGED] != OPEN)
+        broken = (status == Status.OPEN) & (arrays[JUDGED] != OPEN)
         if broken.any():
             self.unclosed.update(some[broken.any(axis=1)].tolist())
             for name in ROOMS:
-                if name in found:
-                    found[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
+                if name in arrays:
+                    arrays[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
         lanes, places = np.nonzero(doubtful)
         if len(lanes):
             patches = Patches(continuation, self.span, plan.solved, turns, self.mesh)
-            self.unclosed.update(some[patches.put(lanes, places, found, status)].tolist())
-        return solved_of(plan.solved, found, status, ready=self.ready, span=self.span, branches=branches)
+            self.unclosed.update(some[patches.put(lanes, places, arrays, status)].tolist())
+        return solved_of(plan.solved, arrays, status, ready=self.ready, span=self.span, branches=branches)
 
     def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:
         key = tuple(sorted(counts.items()))
@@ -490,7 +490,7 @@ def largest_of(group: int) -> str:
 
 def _outputs(plan: Traced) -> dict[str, Nodes]:
     """What is written: nothing where a group is open, and what is to be said of the sample."""
-    found = nodes_of(plan)
+    outputs = nodes_of(plan)
     lowest: Operand | None = None
     near: Node | None = None
     for group, radicand in plan.radicands.items():
@@ -499,7 +499,7 @@ def _outputs(plan: Traced) -> dict[str, Nodes]:
         close = m.less_equal(m.abs(value), SUSPECT * variable(largest_of(group)))
         near = close if near is None else m.either(near, close)
     total: Operand = 0.0
-    for nodes in found.values():
+    for nodes in outputs.values():
         for node in nodes.ravel():
             total = total + node
     # zero times a finite number is zero; times infinity or NaN it is NaN: one comparison looks at all numbers
@@ -508,8 +508,8 @@ def _outputs(plan: Traced) -> dict[str, Nodes]:
         opened = m.less(lowest, 0.0)
         # near zero first: there the sign of a radicand is not to be trusted
         judged = m.where(near, DOUBTFUL, m.where(opened, OPEN, judged))
-        found = {
+        outputs = {
             name: box_array([m.where(opened, np.nan, node) for node in nodes.ravel()]).reshape(nodes.shape)
-            for name, nodes in found.items()
+            for name, nodes in outputs.items()
         }
-    return {**found, JUDGED: box_array([judged]).reshape(1, 1)}
+    return {**outputs, JUDGED: box_array([judged]).reshape(1, 1)}

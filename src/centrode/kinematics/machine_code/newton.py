@@ -190,11 +190,11 @@ def _cofactor(matrix: Rows, i: int, j: int) -> Operand:
     if not rest:
         return 1.0
     if len(rest) == 1:
-        found: Operand = rest[0][0]
+        minor: Operand = rest[0][0]
     else:
         (a, b), (c, d) = rest
-        found = minus(times(a, d), times(b, c))
-    return minus(0.0, found) if (i + j) % 2 else found
+        minor = minus(times(a, d), times(b, c))
+    return minus(0.0, minor) if (i + j) % 2 else minor
 
 
 def _by_elimination(matrix: Rows) -> list[list[Operand]]:
@@ -294,26 +294,26 @@ class Matrix:
     @property
     def numbers(self) -> list[Operand]:
         """All that solving takes."""
-        found = [x for rows in (self.inverse, self.across) for row in rows for x in row]
+        numbers = [x for rows in (self.inverse, self.across) for row in rows for x in row]
         return [
-            *found,
+            *numbers,
             *(over for _row, _column, over in self.leaves),
             *(x for arm in self.arms for x in arm),
         ]
 
-    def solved(self, right: Sequence[Operand]) -> list[Operand]:
+    def solve(self, right: Sequence[Operand]) -> list[Operand]:
         """The free coordinates that answer right sides."""
-        found: list[Operand] = [0.0] * len(right)
+        solution: list[Operand] = [0.0] * len(right)
         core = product(self.inverse, [right[i] for i in self.rows])
         for j, x in zip(self.columns, core, strict=True):
             # the core first, then each leaf's turn from its own equation across the arm
-            found[j] = x
+            solution[j] = x
         for (row, column, over), across in zip(self.leaves, self.across, strict=True):
             rest = right[row]
             for a, x in zip(across, core, strict=True):
                 rest = minus(rest, times(a, x))
-            found[column] = times(rest, over)
-        return found
+            solution[column] = times(rest, over)
+        return solution
 
 
 # Whether a step of Newton's method on a group of higher class stays on the group's own curve, and that is
@@ -424,22 +424,22 @@ class _Stepping:
         foretold = move_posture(chain, start, ahead, far=True)
         # a matrix at the foretold place; it is kept for a second step, which shows whether steps shrink
         matrix = self._matrix(foretold)
-        one = matrix.solved(self._gaps(foretold, matrix.arms))
+        one = matrix.solve(self._gaps(foretold, matrix.arms))
         near = move_posture(chain, foretold, one)
-        two = matrix.solved(self._gaps(near, matrix.arms))
+        two = matrix.solve(self._gaps(near, matrix.arms))
         nearer = move_posture(chain, near, two)
         # the third step has the matrix of where it starts, so that what is left is of the square of a small
         # number
         matrix = self._matrix(nearer)
-        three = matrix.solved(self._gaps(nearer, matrix.arms))
-        found = move_posture(chain, nearer, three)
+        three = matrix.solve(self._gaps(nearer, matrix.arms))
+        posture = move_posture(chain, nearer, three)
         # derivatives first near the place, then righted at the place found: one pass of each suffices, as
         # they are linear
         rates, bends = self._rates(nearer, matrix, self.rests, self.rests)
-        rates, bends = self._rates(found, matrix, rates, bends)
-        state = self._state(found, rates, bends, matrix)
+        rates, bends = self._rates(posture, matrix, rates, bends)
+        state = self._state(posture, rates, bends, matrix)
         slack = slack_of(names, matrix, ahead, (one, two, three))
-        whole = with_turns(found)
+        whole = with_turns(posture)
         standing: dict[str, Node] = {}
         if self.differentiable:
             standing = self._standing(whole, rates, bends, matrix)
@@ -482,7 +482,7 @@ class _Stepping:
         motion = [0.0 if all(map(is_literal_zero, c)) else Jet(c) for c in coefficients]
         at = self.chain.positions(known, with_turns(posture), motion)
         equations = self.chain.equations(NODE_JETS, at, matrix.arms)
-        off = matrix.solved(
+        off = matrix.solve(
             [minus(0.0, x.coefficients[order]) if isinstance(x, Jet) else 0.0 for x in equations]
         )
         return [plus(c[order], x) for c, x in zip(coefficients, off, strict=True)]
@@ -514,5 +514,5 @@ class _Stepping:
         """Posture and coefficients after one more step of Newton's method: equal values, which depend on dimensions."""
         at = self.chain.positions(self.values, found, self.rests)
         gaps = [minus(0.0, x) for x in self.chain.equations(m, at, matrix.arms)]
-        posture = move_posture(self.chain, found, matrix.solved(gaps))
+        posture = move_posture(self.chain, found, matrix.solve(gaps))
         return posture, *self._rates(posture, matrix, rates, bends)

@@ -38,16 +38,16 @@ def nodes_of(plan: Traced) -> dict[str, Nodes]:
     Walks know the turns of angles, so these are written at once.
     """
     solved = plan.solved
-    found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
+    outputs: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
     if not plan.steps:
         # the arc tangent of these is taken afterwards, on NumPy
         angles: Nodes = solved.angles.copy()
         for k, link in enumerate(solved.layout.angles):
             if link in plan.turning:
                 angles[0, 0, 0, k] = plan.turning[link][0]
-        found["angles"] = angles
-        found[SINES] = box_array([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
-    return {name: nodes for name, nodes in found.items() if nodes is not None}
+        outputs["angles"] = angles
+        outputs[SINES] = box_array([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
+    return {name: nodes for name, nodes in outputs.items() if nodes is not None}
 
 
 @dataclass(frozen=True)
@@ -130,13 +130,13 @@ class Writer:
 
     def streams(self, room: Array) -> dict[str, Array]:
         """What is written by name, views of the room: (numbers, lanes, n)."""
-        found, first = {}, 0
+        streams, first = {}, 0
         for name, nodes in self.outputs.items():
-            found[name] = room[first : first + nodes.size]
+            streams[name] = room[first : first + nodes.size]
             first += nodes.size
-        return found
+        return streams
 
-    def placed(self, room: Array) -> dict[str, Array]:
+    def views(self, room: Array) -> dict[str, Array]:
         """What is written by name, as views of the room with the shapes of a `Solved`: (..., lanes, samples, ...)."""
         return {
             name: _shape_numbers(name, stream, self.outputs[name].shape)

@@ -72,7 +72,7 @@ def beginnings(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array
 
 def _of_some(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array]:
     kinematics = of_batch(ready.kinematics, numbers)
-    initial, found = kinematics.path.initial, dict[str, Array]()
+    initial, columns = kinematics.path.initial, dict[str, Array]()
     everyone = np.arange(lanes)
     hooks = _Beginning(ready)
     for group, chain in chains_of(ready, kinematics.take(everyone).numbers).items():
@@ -84,8 +84,8 @@ def _of_some(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array]:
         posture = chain.posture(at)
         labels = Names(group, chain).labels
         for name, values in zip(numbers_of(labels), numbers_of(posture), strict=True):
-            found[name] = np.array(np.broadcast_to(values, lanes), dtype=np.float64)
-    return found
+            columns[name] = np.array(np.broadcast_to(values, lanes), dtype=np.float64)
+    return columns
 
 
 class _Beginning:
@@ -117,9 +117,9 @@ class _OfLanes(EvaluationPolicy):
         equations, shape = around.equations, self.lanes.shape
         known = flatten_positions(needed_positions(equations, at), shape)
         system = GroupSystem(equations, around.kinematics.take(self.lanes).numbers, known, len(self.lanes))
-        found = newton(system, states[self.lanes])
+        converged = newton(system, states[self.lanes])
         # NaN goes on into all that stands on the group, so that the mechanism is not clear
-        state = np.where(found.found[:, None], found.state, np.nan)
+        state = np.where(converged.found[:, None], converged.state, np.nan)
         add_in_shape(system.at(m, known, state), equations, shape, at)
 
 
@@ -183,19 +183,19 @@ def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
 
 def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Places) -> PathLeg:
     parameter, places = _fill_places(initial, longest, inputs[PARAMETER][asked])
-    found = {name: np.zeros(len(parameter)) for name in (*inputs, STEP, SHARE, FIRST, SAMPLE)}
+    rows = {name: np.zeros(len(parameter)) for name in (*inputs, STEP, SHARE, FIRST, SAMPLE)}
     for name, values in inputs.items():
-        found[name][places] = values[asked]
-    found[PARAMETER] = parameter
-    found[STEP][1:] = np.diff(parameter)
+        rows[name][places] = values[asked]
+    rows[PARAMETER] = parameter
+    rows[STEP][1:] = np.diff(parameter)
     with np.errstate(divide="ignore"):
         # differences of the matrix are scaled as if every step were the longest; those of very short steps
         # are rounding alone
-        share = longest / found[STEP]
-    found[SHARE][:] = np.where(np.abs(share) < MOST_SHARE, share, 0.0)
-    found[FIRST][0] = 1.0
-    found[SAMPLE][places] = 1.0
-    return PathLeg(found, places, asked)
+        share = longest / rows[STEP]
+    rows[SHARE][:] = np.where(np.abs(share) < MOST_SHARE, share, 0.0)
+    rows[FIRST][0] = 1.0
+    rows[SAMPLE][places] = 1.0
+    return PathLeg(rows, places, asked)
 
 
 def _fill_places(initial: float, longest: float, asked: Array) -> tuple[Array, Places]:
@@ -243,36 +243,36 @@ class Walk:
     @cached_property
     def state(self) -> dict[str, Node]:
         """Name -> its next value."""
-        found: dict[str, Node] = {}
+        states: dict[str, Node] = {}
         slacks = [step.slack for step in self.traced.steps.values()]
         for step in self.traced.steps.values():
-            found |= step.state
+            states |= step.state
         for name, angle in self._angles.items():
             # at the initial position the angle before is that of the description's own dimensions, from which
             # those of a mechanism may differ by more than in a step
             most = m.where(m.equal(variable(FIRST), 1.0), np.pi - AWAY, MOST)
             slacks.append(as_node(most - m.abs(angle - variable(name))))
-            found[name] = angle
+            states[name] = angle
         least: Operand = variable(SURE)
-        found[SURE] = as_node(functools.reduce(m.min, slacks, least))
-        return found
+        states[SURE] = as_node(functools.reduce(m.min, slacks, least))
+        return states
 
     @property
     def _angles(self) -> dict[str, Node]:
         """Angles whose turns are counted, by the names of what they were at the place before."""
-        found = {before_of(f"counted {key}"): angle for key, (_turns, angle) in self.traced.counted.items()}
+        angles = {before_of(f"counted {key}"): angle for key, (_turns, angle) in self.traced.counted.items()}
         for link in self.links:
             angle = m.atan2(*reversed(self.traced.turning[link]))
-            found[before_of(link)] = as_node(angle + TURN * self.traced.turns[link])
-        return found
+            angles[before_of(link)] = as_node(angle + TURN * self.traced.turns[link])
+        return angles
 
     @cached_property
     def start(self) -> dict[str, float]:
         """Name -> its first value, where that is the same for all mechanisms and known here."""
         angles = self.traced.solved.ready.assembled.angles
-        found = dict.fromkeys(self.state, 0.0) | {before_of(link): angles[link] for link in self.links}
-        found |= {before_of(f"counted {key}"): angles.get(key, 0.0) for key in self.traced.counted}
-        return found | {SURE: np.inf}
+        states = dict.fromkeys(self.state, 0.0) | {before_of(link): angles[link] for link in self.links}
+        states |= {before_of(f"counted {key}"): angles.get(key, 0.0) for key in self.traced.counted}
+        return states | {SURE: np.inf}
 
     def moves(self, nodes: Sequence[Node]) -> bool:
         """Whether nodes depend on what is handed on."""
@@ -311,7 +311,7 @@ class Walking:
             states,
         )
 
-    def reduced(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
+    def reduce(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
         """What is left of all samples at the end, and how sure that is: name -> (lanes,)."""
         state: dict[str, Array] = {}
         for leg in way.legs:
@@ -371,5 +371,5 @@ class Walking:
         parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
         inputs = np.stack([leg.inputs[name] for name in scan.inputs])
         run = runner(scan, kernels, threads=threads)
-        found = run(parameters, inputs, np.stack([state[name] for name in scan.state]), out=out).state
-        return dict(zip(scan.state, found, strict=True))
+        results = run(parameters, inputs, np.stack([state[name] for name in scan.state]), out=out).state
+        return dict(zip(scan.state, results, strict=True))

@@ -190,11 +190,11 @@ class Traced:
     @property
     def standing(self) -> dict[str, Node]:
         """Name -> what jumps, or is found by iteration: derivatives by dimensions take it as given."""
-        found = {f"turns {link}": node for link, node in self.turns.items()}
-        found |= {f"turns counted {key}": turns for key, (turns, _angle) in self.counted.items()}
+        nodes = {f"turns {link}": node for link, node in self.turns.items()}
+        nodes |= {f"turns counted {key}": turns for key, (turns, _angle) in self.counted.items()}
         for step in self.steps.values():
-            found |= step.standing
-        return found
+            nodes |= step.standing
+        return nodes
 
 
 def trace_motion(
@@ -249,8 +249,8 @@ def _columns(numbers: Sequence[Number]) -> Nodes:
 
 
 def _derivative(x: Number, order: int) -> Operand:
-    found: Operand = x.derivative(order) if isinstance(x, Jet) else x if order == 0 else 0.0
-    return found
+    value: Operand = x.derivative(order) if isinstance(x, Jet) else x if order == 0 else 0.0
+    return value
 
 
 def _angles(
@@ -261,24 +261,24 @@ def _angles(
     turns: Turns,
 ) -> tuple[Nodes, dict[str, tuple[Operand, Operand]]]:
     """Angles with their derivatives as `turning.fill_angles` has them: (3, angles); rotors of those that may turn."""
-    found = np.empty((ORDERS, len(layout.angles)), dtype=object)
+    nodes = np.empty((ORDERS, len(layout.angles)), dtype=object)
     turning: dict[str, tuple[Operand, Operand]] = {}
     for k, link in enumerate(layout.angles):
         # on some layouts the plan counts the turns itself
         if layout.runs_on and link in at.angles:
-            found[:, k] = [_derivative(at.angles[link], order) for order in range(ORDERS)]
+            nodes[:, k] = [_derivative(at.angles[link], order) for order in range(ORDERS)]
             continue
         cosine, sine = columns[:, layout.rotor(link)].T
         if isinstance(cosine[0], float) and isinstance(sine[0], float):
-            found[:, k] = 0.0
-            found[0, k] = _constant_angle(cosine[0], sine[0], start[link])
+            nodes[:, k] = 0.0
+            nodes[0, k] = _constant_angle(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
-        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
+        nodes[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
         for order in (1, 2):
             # with c c + s s = 1 the angle's derivatives are c s' - s c' and c s'' - s c''
-            found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
-    return found, turning
+            nodes[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
+    return nodes, turning
 
 
 def _constant_angle(cosine: float, sine: float, start: float) -> float:
@@ -323,11 +323,11 @@ def _motion_of_parts(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
 
 def _worst(kinematics: Kinematics, at: Positions, scale: Operand) -> Operand:
     """The greatest residual. Lengths are divided together: a greater number has no lesser quotient, to the last bit."""
-    found: dict[bool, Operand] = {}
+    worst: dict[bool, Operand] = {}
     for _kept, size, angular in each_residual(kinematics, EXPRESSIONS, at):
-        found[angular] = EXPRESSIONS.max(found[angular], size) if angular in found else size
-    if False in found:
+        worst[angular] = EXPRESSIONS.max(worst[angular], size) if angular in worst else size
+    if False in worst:
         # one division by the scale for all lengths, see above
-        found[False] = found[False] / scale
+        worst[False] = worst[False] / scale
     least: Operand = 0.0
-    return functools.reduce(EXPRESSIONS.max, found.values(), least)
+    return functools.reduce(EXPRESSIONS.max, worst.values(), least)

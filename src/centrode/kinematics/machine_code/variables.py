@@ -34,10 +34,10 @@ ALONG = (PARAMETER, TIME, RATE, SECOND_RATE, STEP, SHARE, FIRST, SAMPLE)
 
 def box_array(values: Sequence[Any]) -> Nodes:
     """An array of nodes and floats."""
-    found = np.empty(len(values), dtype=object)
+    boxed = np.empty(len(values), dtype=object)
     for k, value in enumerate(values):
-        found[k] = value
-    return found
+        boxed[k] = value
+    return boxed
 
 
 @dataclass(frozen=True)
@@ -57,10 +57,10 @@ class Varied:
 
     def values(self, numbers: Dimensions) -> dict[str, Array]:
         """What the variables stand for in a batch of the same kind: name -> (lanes,)."""
-        found = dict(zip(self.names, arrays_of(numbers), strict=True))
+        values = dict(zip(self.names, arrays_of(numbers), strict=True))
         if not isinstance(self.scale, float):
-            found[SCALE] = np.asarray(numbers.scale, dtype=np.float64)
-        return found
+            values[SCALE] = np.asarray(numbers.scale, dtype=np.float64)
+        return values
 
 
 def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
@@ -88,15 +88,15 @@ def take_lanes(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
 
 def arrays_of(numbers: Dimensions) -> list[Array]:
     """The arrays of a batch's numbers, in the order in which `map_numbers` meets them."""
-    found: list[Array] = []
+    arrays: list[Array] = []
 
     def seen(x: Number) -> Number:
         if not isinstance(x, float):
-            found.append(x)
+            arrays.append(x)
         return x
 
     numbers.map_numbers(seen)
-    return found
+    return arrays
 
 
 @dataclass(frozen=True)
@@ -171,14 +171,14 @@ def traced_path(path: Path, parameter: Array, order: int) -> Path:
 
 def places_of(path: Path, parameter: Array, order: int) -> dict[str, Array]:
     """What the variables of places on the path stand for at parameters: name -> (n,)."""
-    found = {PARAMETER: parameter}
+    places = {PARAMETER: parameter}
     if not path.by_time:
-        return found
+        return places
     for drive, value in _jets(path, parameter, order).items():
         if isinstance(value, Jet):
             rows = (np.broadcast_to(x, parameter.shape) for x in value.coefficients)
-            found |= {_name(drive, k): row for k, row in enumerate(rows)}
-    return found
+            places |= {_name(drive, k): row for k, row in enumerate(rows)}
+    return places
 
 
 def inputs_of(path: Path, span: SampleGrid) -> dict[str, Array]:
@@ -191,7 +191,9 @@ def winders_of(path: Path) -> dict[str, Operand]:
     if not path.by_time:
         return {path.driven[0].drive.id: variable(PARAMETER)}
     values = path.drive_values(None, variable(PARAMETER))
-    return {one.drive.id: values[one.drive.id] for one in path.driven if one.drive.kind == "angle"}
+    return {
+        driven.drive.id: values[driven.drive.id] for driven in path.driven if driven.drive.kind == "angle"
+    }
 
 
 def _jets(path: Path, parameter: Array, order: int) -> dict[str, Number]:
@@ -314,7 +316,7 @@ def least(name: str, value: Node) -> Reduction:
 
 def least_of(values: Sequence[Node]) -> Node:
     """The least of several; NaN where one is."""
-    found = values[0]
+    least = values[0]
     for value in values[1:]:
-        found = as_node(m.min(found, value))
-    return found
+        least = as_node(m.min(least, value))
+    return least

@@ -68,7 +68,7 @@ class Partials:
 def partials(solved: Solved) -> Partials:
     """Partial derivatives of a single mechanism's motion at its samples."""
     path = solved.ready.kinematics.path
-    drives = [one.drive for one in path.driven]
+    drives = [driven.drive for driven in path.driven]
     if not path.by_time:
         return Partials(solved, {drives[0].id: 1.0}, {(0, 0): solved})
     # the direction's length is the size of the drive's own unit, so that derivatives of all drives are alike
@@ -109,8 +109,8 @@ class _Straight(SampleJudging):
 
     # a series runs along the motion's own path, and says nothing of other directions
     def after(self, group: int, at: Positions) -> None:
-        for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
-            np.logical_or(total, found, out=total)
+        for total, mask in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
+            np.logical_or(total, mask, out=total)
 
 
 def _along(
@@ -205,11 +205,11 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
             _("{asked} positions were asked for").format(asked=solved.status.size),
             _("ask for at most {most} at once, samples times mechanisms").format(most=most_samples(solved)),
         )
-    found = partials(solved)
-    variables = {"status": judgements_of(found.solved, ())["status"]}
+    coefficients = partials(solved)
+    variables = {"status": judgements_of(coefficients.solved, ())["status"]}
     units, length = solved.ready.parameter.units, solved.layout.space.unit
     for number, kind in enumerate(kinds_of(solved)):
-        first, second = _tensors(found, number)
+        first, second = _tensors(coefficients, number)
         for word, values, drives in (("velocity", first, 1), ("acceleration", second, 2)):
             name = f"{kind.prefix}{word}_coefficient"
             dimensions = ("sample", *("drive", "drive_2")[:drives], *kind.dimensions)
@@ -217,7 +217,7 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
                 vocabulary_variable(name, dimensions, values, length_unit=length), name, units
             )
     coordinates = coordinates_of(solved)
-    coordinates["drive_2"] = labels_of(tuple(found.units))
+    coordinates["drive_2"] = labels_of(tuple(coefficients.units))
     return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
 
 

@@ -44,22 +44,22 @@ def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
 
 def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
     """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg"); not too far away."""
-    found = ready.parameter.drive(drive.id).read(value, where)
+    reading = ready.parameter.drive(drive.id).read(value, where)
     # as for samples: the mesh of nodes between both has to stay small
-    way = abs(found - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
+    way = abs(reading - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
     if way > tau * MAX_TURNS:
         raise InputError(
             where,
             _("it reaches too far: {turns:.3g} turns").format(turns=way / tau),
             _("ask for at most {most:g}").format(most=MAX_TURNS),
         )
-    return found
+    return reading
 
 
 def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value] | None) -> dict[str, float]:
     """Values of all drives but the moving ones; those not named keep their initial ones."""
     mechanism = ready.mechanism
-    found = {name: value for name, value in initial_values(ready).items() if name not in moving}
+    values = {name: value for name, value in initial_values(ready).items() if name not in moving}
     for name, value in (held or {}).items():
         drive = named_drive(mechanism, name, "hold")
         if name in moving:
@@ -68,12 +68,12 @@ def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value]
                 _("drive {name} is the one that moves").format(name=name),
                 _("hold the others"),
             )
-        found[name] = value_of(ready, drive, value, f"hold {name}")
-        if drive.kind == "distance" and found[name] <= 0.0:
+        values[name] = value_of(ready, drive, value, f"hold {name}")
+        if drive.kind == "distance" and values[name] <= 0.0:
             raise InputError(
                 f"hold {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
             )
-    return found
+    return values
 
 
 def initial_values(ready: Ready) -> dict[str, float]:
@@ -84,9 +84,9 @@ def initial_values(ready: Ready) -> dict[str, float]:
 def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float | Array]) -> Path:
     """The path of one drive's value; the values held may be arrays (lanes, 1)."""
     path = ready.kinematics.path
-    one = next(one for one in path.driven if one.drive.id == drive)
-    unit, parameter = unit_of(one.drive, path.scale), path.parameter.along(drive)
-    return Path((one,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
+    driven = next(driven for driven in path.driven if driven.drive.id == drive)
+    unit, parameter = unit_of(driven.drive, path.scale), path.parameter.along(drive)
+    return Path((driven,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
 
 
 def starting_at(ready: Ready, path: Path) -> BranchedPlan:
@@ -314,8 +314,8 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
         if event.kind == "change point" and low <= event.at <= high and abs(event.at - about) <= extent
     ]
     unit = path.parameter.variable.unit
-    found = tuple(sorted(inside, key=lambda one: one.value))
-    return Limits(prepared.mechanism, drive, unit, about, dict(held), end(low), end(high), found)
+    limits = tuple(sorted(inside, key=lambda one: one.value))
+    return Limits(prepared.mechanism, drive, unit, about, dict(held), end(low), end(high), limits)
 
 
 def _groups(prepared: Ready, events: list[Event], value: float) -> str:

@@ -132,11 +132,11 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
 def _limits(
     events: list[Event], nodes: Array, first: int
 ) -> tuple[npt.NDArray[np.intp], Array, npt.NDArray[np.intp]]:
-    found = [e for e in events if e.kind == "limit" and nodes[0] <= e.at <= nodes[-1]]
+    limits = [e for e in events if e.kind == "limit" and nodes[0] <= e.at <= nodes[-1]]
     return (
-        np.array([event.lane + first for event in found], dtype=np.intp),
-        np.array([event.at for event in found], dtype=np.float64),
-        np.array([event.group for event in found], dtype=np.intp),
+        np.array([event.lane + first for event in limits], dtype=np.intp),
+        np.array([event.at for event in limits], dtype=np.float64),
+        np.array([event.group for event in limits], dtype=np.intp),
     )
 
 
@@ -395,7 +395,11 @@ def region_results(
     held: Mapping[str, Value] | None = None,
 ) -> RegionResults:
     """The reachable region with the mechanism and its motion; raises as `reachable_region` does."""
-    region = reachable_region(mechanism, drives, ranges, samples, held)
+    return results_of_region(mechanism, reachable_region(mechanism, drives, ranges, samples, held))
+
+
+def results_of_region(mechanism: Mechanism, region: xr.Dataset) -> RegionResults:
+    """A dataset of `reachable_region` with the motion whose path leads through it."""
     try:
         return RegionResults(mechanism, region, motion(mechanism))
     except InputError:  # laws of several drives may not say how long the motion lasts
@@ -445,8 +449,8 @@ def _border(
 ) -> dict[str, Any]:
     """Limits on all grid lines, those along the first drive before those along the second."""
     places, groups, touching = [], [], []
-    for k, found in enumerate(lines):
-        line, value, group = found.limits
+    for k, points in enumerate(lines):
+        line, value, group = points.limits
         across = nodes[1 - k][line]
         # points are in the order of the drives, whichever runs along the line
         places.append(np.stack([value, across] if k == 0 else [across, value], axis=-1))
@@ -493,6 +497,7 @@ def _dataset(
         "drive": labels_of(pair),
     }
     attributes = {
+        "topic": "region",
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,

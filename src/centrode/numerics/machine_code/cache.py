@@ -105,8 +105,8 @@ def _open_entry(place: Path, entry: str) -> IO[bytes]:
     finally:
         os.close(inside)
     file = os.fdopen(handle, "rb")
-    found = os.fstat(handle)
-    if stat.S_ISREG(found.st_mode) and _is_private(found):
+    facts = os.fstat(handle)
+    if stat.S_ISREG(facts.st_mode) and _is_private(facts):
         return file
     file.close()
     raise PermissionError(f"others may write {entry}")

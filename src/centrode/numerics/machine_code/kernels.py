@@ -78,7 +78,7 @@ class Kernel:
         return self._run(call, threads)
 
     def _run(self, call: Call, threads: int) -> Scanned:
-        prepared = self.tables.added(call)
+        prepared = self.tables.split_call(call)
         state = np.empty_like(call.state)
         if threads == 1:
             self._call(prepared, state)

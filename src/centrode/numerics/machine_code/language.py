@@ -209,7 +209,7 @@ def by_library(code: Code, name: str, *arguments: Value) -> Value:
     result = "poison"
     for lane in range(vector.width):
         ones = [block.put(f"extractelement {vector.name} {x}, i32 {lane}") for x in arguments]
-        value = block.put(f"call double @{name}({', '.join(f'double {one}' for one in ones)})")
+        value = block.put(f"call double @{name}({', '.join(f'double {argument}' for argument in ones)})")
         result = block.put(f"insertelement {vector.name} {result}, double {value}, i32 {lane}")
     return result
 
@@ -225,7 +225,7 @@ def by_library_where(
     some = block.put(f"icmp ne {truth} {block.put(f'bitcast {vector.truth} {condition} to {truth}')}, 0")
     block.line(f"br i1 {some}, label %{far}, label %{after}, !prof !0")
     block.begin(far)
-    found = [
+    lanes = [
         code.select(condition, by_library(code, name, *arguments), value)
         for name, value in zip(names, near, strict=True)
     ]
@@ -233,5 +233,5 @@ def by_library_where(
     block.begin(after)
     return [
         block.put(f"phi {vector.name} [ {value}, %{before} ], [ {other}, %{far} ]")
-        for value, other in zip(near, found, strict=True)
+        for value, other in zip(near, lanes, strict=True)
     ]

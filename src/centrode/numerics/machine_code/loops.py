@@ -61,8 +61,8 @@ class ColumnRows:
         """One number in every lane."""
         vector, block = self.vector, self.block
         # one load and a shuffle: the number of a step is the same for all lanes
-        one = block.put(f"load {vector.number}, ptr {place}, align {vector.bits // 8}")
-        first = block.put(f"insertelement {vector.name} poison, {vector.number} {one}, i32 0")
+        scalar = block.put(f"load {vector.number}, ptr {place}, align {vector.bits // 8}")
+        first = block.put(f"insertelement {vector.name} poison, {vector.number} {scalar}, i32 0")
         lanes = f"<{vector.width} x i32> zeroinitializer"
         return block.put(f"shufflevector {vector.name} {first}, {vector.name} poison, {lanes}")
 
@@ -82,7 +82,7 @@ class ColumnRows:
         more = self.block.put(f"icmp slt i64 {axis}.next, {end}")
         self.block.line(f"br i1 {more}, label %{again}, label %{done}")
 
-    def carried(self, axis: str, first: Value, before: str, after: str) -> str:
+    def counter_line(self, axis: str, first: Value, before: str, after: str) -> str:
         """The line at a loop's head that says where it stands."""
         return f"  {axis} = phi i64 [ {first}, %{before} ], [ {axis}.next, %{after} ]"
 
@@ -122,11 +122,11 @@ def stages_of(order: Sequence[Node]) -> list[LoopStage]:
     # what waits is written as a number, and a condition is none
     if count == 1 or len(waiting) > MOST_LEFT or any(x.is_condition for x in waiting):
         return [LoopStage(tuple(order), ())]
-    found = []
+    stages = []
     for number in range(count):
         nodes = tuple(node for node in order if numbers[node] == number)
-        found.append(LoopStage(nodes, tuple(x for x in waiting if numbers[x] == number)))
-    return found
+        stages.append(LoopStage(nodes, tuple(x for x in waiting if numbers[x] == number)))
+    return stages
 
 
 def _numbers(order: Sequence[Node]) -> dict[Node, int]:
@@ -197,11 +197,11 @@ def with_reciprocals(scan: Scan, inner: Sequence[str]) -> Scan:
 
 def _inner_loop_nodes(graph: Graph, names: set[str]) -> set[Node]:
     """Nodes that depend on variables of the inner loop."""
-    found: set[Node] = set()
+    inner: set[Node] = set()
     for node in graph.order:
-        if (node.operation == VARIABLE and node.detail in names) or any(x in found for x in node.arguments):
-            found.add(node)
-    return found
+        if (node.operation == VARIABLE and node.detail in names) or any(x in inner for x in node.arguments):
+            inner.add(node)
+    return inner
 
 
 FUNCTION = "centrode_scan"
@@ -293,7 +293,7 @@ class _Writer:
         block.begin("end")
         block.line("ret void")
         # what a loop carries is known only at its end
-        block.lines[head:head] = [self.rows.carried(outer, "0", "entry", "outer_end")]
+        block.lines[head:head] = [self.rows.counter_line(outer, "0", "entry", "outer_end")]
 
     def _begin_rows(self) -> list[Value]:
         """Where rows begin, known before the loops; returns that of the outputs."""
@@ -319,7 +319,7 @@ class _Writer:
         after = block.label
         self.rows.advance(axis, "%lanes" if axis == "%lane" else "%steps", "inner", "outer_end")
         block.lines[head:head] = [
-            self.rows.carried(axis, "0", before, after), *self._carried_state(before, after)
+            self.rows.counter_line(axis, "0", before, after), *self._carried_state(before, after)
         ]  # fmt: skip
 
     def _room(self, stages: list[LoopStage]) -> dict[Node, int]:
@@ -386,7 +386,7 @@ class _Writer:
         after = block.label
         self.rows.advance(lane, end, f"stage{i}", f"behind{i}")
         block.begin(f"behind{i}")
-        block.lines[head:head] = [self.rows.carried(lane, "%first", before, after)]
+        block.lines[head:head] = [self.rows.counter_line(lane, "%first", before, after)]
 
     def _waiting(self, place: int, from_first: Value) -> Value:
         index = self.block.put(f"add i64 {from_first}, {place}")
@@ -395,11 +395,11 @@ class _Writer:
     def _independent_of(self, names: tuple[str, ...]) -> set[Node]:
         """Nodes that depend on none of the variables of the inner loop."""
         inner = {variable(name) for name in names}
-        found: set[Node] = set()
+        independent: set[Node] = set()
         for node in self.scan.graph.order:
-            if node not in inner and all(x in found for x in node.arguments):
-                found.add(node)
-        return found
+            if node not in inner and all(x in independent for x in node.arguments):
+                independent.add(node)
+        return independent
 
     def _compute(self, nodes: list[Node], places: dict[Node, list[Value]] | None = None) -> None:
         """Nodes in order; outputs are written at once: a number that waits to be written takes a register."""
@@ -427,14 +427,14 @@ class _Writer:
 
     def _places(self, bases: list[Value]) -> dict[Node, list[Value]]:
         """Where outputs are written."""
-        found: dict[Node, list[Value]] = {}
+        places: dict[Node, list[Value]] = {}
         if bases:
             of_step = self.block.put("mul i64 %step, %output_row")
             index = self.block.put(f"add i64 {of_step}, {self.rows.at}")
             # one node may be several outputs, each with a place of its own
             for base, node in zip(bases, self.scan.outputs.values(), strict=True):
-                found.setdefault(node, []).append(self.rows.place(base, index))
-        return found
+                places.setdefault(node, []).append(self.rows.place(base, index))
+        return places
 
     def _write(self, nodes: list[Node], places: dict[Node, list[Value]]) -> None:
         for node in nodes:
@@ -489,8 +489,8 @@ class ConstantTable:
     def _compute_rows(self, rows: Array) -> Array:
         whole = room_of(len(rows) + len(self.graph.outputs), 1, rows.shape[1], rows.dtype)[:, 0]
         whole[: len(rows)] = rows
-        found = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
-        for i, values in enumerate(found.values(), len(rows)):
+        constants = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
+        for i, values in enumerate(constants.values(), len(rows)):
             whole[i] = values
         return whole
 
@@ -526,7 +526,7 @@ class Tables:
         rest = scan.with_graph(graph, (*scan.parameters, *lanes.outputs), (*scan.inputs, *steps.outputs))
         return cls(ConstantTable(scan.inputs, steps), ConstantTable(scan.parameters, lanes), rest)
 
-    def added(self, call: Call) -> Call:
+    def split_call(self, call: Call) -> Call:
         """The arrays of a call of the scan as those of the rest."""
         parameters, inputs = self.of_lanes.below(call.parameters), self.of_steps.below(call.inputs)
         return Call(parameters, inputs, call.state, call.outputs)

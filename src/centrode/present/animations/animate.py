@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 
     from centrode.analysis.instant_centres.results import CentrodeResults
     from centrode.cams.followers.geometry import FollowerCam
+    from centrode.cams.followers.profile_results import FollowerProfileResults
     from centrode.cams.profiles import ProfileBody
     from centrode.cams.walking_wheel import WheelMover
     from centrode.model.mechanism import Mechanism
@@ -370,3 +371,9 @@ def animate_follower(
     """Write an animation (GIF or MP4) of one turn of a cam, that of `follower_cam`, below its follower."""
     stage = follower_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
     write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)
+
+
+def animate_turning_cam(results: FollowerProfileResults, path: Path, dark: bool = False) -> None:
+    """Write an animation (GIF or MP4) of one turn of a cam below its follower, of the results of its profile."""
+    cam = results.cam
+    animate_follower(results.body, path, _(cam.title), cam.display, dark=dark)

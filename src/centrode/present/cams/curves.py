@@ -1,8 +1,7 @@
-"""Figures of a cam: the roller's path about its centre, curves over the carrier's angle, what parts the routes."""
+"""Figures of a cam over its angle."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -11,89 +10,20 @@ import xarray
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from centrode.locale import _
 from centrode.present.curves import (
-    DrawnAbscissa,
-    Panel,
     angle_ticks,
     legend_width,
-    sheet,
     write_legend,
     write_title,
 )
 from centrode.present.displayed_units import formula, label_with_unit, shown_as
-from centrode.present.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
-from centrode.quantities import QUANTITIES
+from centrode.present.style import DASHES, INK, PALETTE, Decimals, house_style
 
 if TYPE_CHECKING:
     from centrode.model.cam_files import AnyCam
-    from centrode.model.follower_cam import PlateCam
     from centrode.present.scene import Array
-
-# Pressure angle and radius of curvature of a profile under a follower, over the angle of the cam.
-
-WIDTH, PANEL = 7.6, 2.4
-"""Inches of the figure, and of the height of each panel."""
-SHOWN = 4.0
-"""Radii of curvature are shown up to so many base radii: where the profile is straight they are infinite."""
-BOUND = (0, (6, 2, 1.5, 2))
-
-
-def plate_curves_figure(cam: PlateCam, dataset: xarray.Dataset) -> Figure:
-    """Pressure angle and radius of curvature of a cam's profile (`ct.cam_profile`), with what is admissible."""
-    with house_style():
-        steep, bend = cam.bounds.pressure_angle, cam.bounds.curvature_radius
-        back = cam.bounds.return_pressure_angle or steep
-        rows = [("profile_bend", [bend])]
-        if "face_place" in dataset:
-            rows.append(("face_place", []))
-        if cam.follower.contact != "flat" or cam.follower.kind == "oscillating":
-            rows.insert(0, ("cam_pressure_angle", [steep, None if back is None else -back]))
-        figure = Figure(figsize=(WIDTH, 1.3 + PANEL * len(rows)), layout="constrained")
-        grid = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
-        factor, unit = shown_as("rad", cam.display)
-        phi = factor * dataset["cam_angle"].to_numpy()
-        for axes, (name, bounds) in zip(grid, rows, strict=True):
-            _panel(axes, cam, dataset, name, [one for one in bounds if one is not None], phi)
-        grid[-1].set_xlabel(label_with_unit(_("angle of the cam") + " " + formula("φ"), unit))
-        grid[-1].set_xlim(float(phi[0]), float(phi[-1]))
-        angle_ticks(grid[-1].xaxis, float(phi[0]), float(phi[-1]), unit, 12)
-        write_title(figure, _("Pressure angle and curvature of the cam"), _(cam.title))
-        return figure
-
-
-def _panel(
-    axes: Axes, cam: PlateCam, dataset: xarray.Dataset, name: str, bounds: list[float], phi: Array
-) -> None:
-    quantity = QUANTITIES[name]
-    factor, unit = shown_as(quantity.unit, cam.display)
-    values = factor * dataset[name].to_numpy()
-    if name == "profile_bend":
-        values = _cut_at(values, SHOWN * factor * float(dataset.attrs["base_radius"]))
-    axes.plot(phi, values, color=PALETTE[0])
-    for bound in bounds:
-        axes.axhline(factor * bound, color=PALETTE[1], linewidth=0.9, linestyle=BOUND)
-        axes.annotate(
-            _("admissible"), (1.0, factor * bound), xycoords=("axes fraction", "data"), xytext=(-4, 2),
-            textcoords="offset points", ha="right", va="bottom", color=GROUND, fontsize=8.5,
-        )  # fmt: skip
-    if name != "face_place" or np.nanmin(values) < 0.0:
-        axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
-    turn, _unit = shown_as("rad", cam.display)
-    ends = turn * np.cumsum([one.angle for one in cam.segments])[:-1]
-    for end in ends:
-        axes.axvline(float(end), color=MUTED, linewidth=0.6, zorder=1.6)
-    axes.set_title(quantity.title, fontsize=9.5)
-    axes.set_ylabel(label_with_unit(formula(quantity.symbol), unit))
-    axes.yaxis.set_major_formatter(Decimals())
-    axes.margins(y=0.1)
-
-
-def _cut_at(values: Array, most: float) -> Array:
-    """Values up to a size; beyond it a gap, as between opposite signs of a radius that passes infinity."""
-    return np.where(np.abs(values) <= most, values, math.nan)
 
 
 # Contact stress of a cam over the angle of the carrier, with what the roller leans on.
@@ -171,207 +101,8 @@ def _draw_strip(axes: Axes, contact: xarray.Dataset, phi: Array) -> None:
     write_legend(axes, key, inches=LOW)
 
 
-# Forces between cam and follower over the angle of the cam.
-
-PANELS = ("follower_push", "follower_moment", "contact_force", "cam_torque", "contact_stress")
-SCALES = {"Pa": (1e-6, "MPa")}
-"""Factors and units of what no display names."""
-
-
-def cam_forces_figure(cam: AnyCam, forces: xarray.Dataset) -> Figure:
-    """Push, contact force, torque and contact stress over a turn of the cam (`ct.cam_forces`)."""
-    with house_style():
-        rows = []
-        for name in PANELS:
-            if name not in forces:
-                continue
-            quantity = QUANTITIES[name]
-            factor, unit = SCALES.get(quantity.unit, (1.0, quantity.unit))
-            title = _(quantity.title)
-            curves = {title: factor * forces[name].to_numpy()}
-            text = label_with_unit(formula(quantity.symbol), unit)
-            rows.append([Panel(text, unit, curves, pens(curves))])
-        return sheet(_("Forces on cam and follower"), _(cam.title), rows, _over_turn(cam, forces))
-
-
-def _over_turn(cam: AnyCam, forces: xarray.Dataset) -> DrawnAbscissa:
-    """The cam's angle, in the unit of the display."""
-    factor, unit = shown_as("rad", cam.display)
-    phi = forces["cam_angle"].to_numpy() * factor
-    order = np.argsort(phi, kind="stable")
-    none = np.zeros(0, dtype=np.intp)
-    quantity = QUANTITIES["cam_angle"]
-    label = label_with_unit(f"{_(quantity.title)} {formula(quantity.symbol)}", unit)
-    return DrawnAbscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
-
-
-CURVES = ("path_radius", "cam_pressure_angle", "law_curvature")
-RAYS = 15.0
-"""Degrees between the rays of the path's figure."""
-
-INCHES = 5.6
-"""Length on paper of the longer side of the path."""
-
-NORMAL = 0.5
-"""Length of a drawn normal over rho."""
-
-ROUNDING = 1e-17
-"""Differences [m] below this are not drawn."""
-
-
-def over_carrier(cam: AnyCam, dataset: xarray.Dataset) -> DrawnAbscissa:
-    """The carrier's angle, in the unit of the display."""
-    factor, unit = shown_as("rad", cam.display)
-    phi = dataset["carrier_angle"].to_numpy() * factor
-    order = np.argsort(phi, kind="stable")
-    none = np.zeros(0, dtype=np.intp)
-    quantity = QUANTITIES["carrier_angle"]
-    label = label_with_unit(f"{quantity.title} {formula(quantity.symbol)}", unit)
-    return DrawnAbscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
-
-
-def cam_curves_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
-    """Radius, pressure angle and curvature of a cam's path (`ct.cam`) over the carrier's angle."""
-    with house_style():
-        rows = []
-        for variable in CURVES:
-            quantity = QUANTITIES[variable]
-            factor, unit = shown_as(quantity.unit, cam.display)
-            values = factor * dataset[variable].to_numpy()
-            curves = {quantity.title: values}
-            text = label_with_unit(formula(quantity.symbol), unit)
-            rows.append([Panel(text, unit, curves, pens(curves), legend=False)])
-        figure = sheet(_("Path of the roller's centre"), _(cam.title), rows, over_carrier(cam, dataset))
-        _mark_stall(figure.axes, cam, dataset)
-        return figure
-
-
-def _mark_stall(panels: list[Axes], cam: AnyCam, dataset: xarray.Dataset) -> None:
-    stall = float(dataset.attrs["stall"])
-    if not math.isfinite(stall):
-        return
-    factor, _unit = shown_as("rad", cam.display)
-    for axes in panels:
-        axes.axvline(stall * factor, color=INK, linewidth=0.9, linestyle=(0, (6, 2, 1.5, 2)))
-    panels[0].annotate(
-        _("stall"), (stall * factor, 1.0), xycoords=("data", "axes fraction"), xytext=(-4, -3),
-        textcoords="offset points", ha="right", va="top", color=INK,
-    )  # fmt: skip
-
-
-def cam_path_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
-    """The path of a cam's roller about its centre, with rays to it and the normals that the pressure angle is from."""
-    with house_style():
-        factor, unit = shown_as("m", cam.display)
-        x, y = (factor * dataset["roller_centre"].sel(axis=axis).to_numpy() for axis in ("x", "y"))
-        width, height = (float(np.nanmax([*one, 0.0]) - np.nanmin([*one, 0.0])) for one in (x, y))
-        scale = INCHES / (max(width, height) or 1.0)
-        figure = Figure(figsize=(scale * width + 4.2, max(scale * height + 1.5, 3.2)), layout="constrained")
-        axes = figure.subplots()
-        _draw_rays(axes, dataset, factor)
-        (line,) = axes.plot(x, y, color=PALETTE[0], linewidth=2.0)
-        handles: list[tuple[Artist, str]] = [
-            (line, _("path of the roller's centre")),
-            (Line2D([], [], color=MUTED, linewidth=0.7), _("ray from the cam's centre")),
-            (Line2D([], [], color=PALETTE[1], linewidth=1.1), _("normal of the path")),
-        ]
-        axes.plot([0.0], [0.0], marker="+", markersize=11, color=INK, markeredgewidth=1.4)
-        axes.set_aspect("equal")
-        axes.margins(0.14)
-        for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
-            axis.set_major_formatter(Decimals())
-            axis.set_label_text(label_with_unit(formula(name), unit))
-        write_legend(axes, handles)
-        write_title(figure, _("Path of the roller's centre, and its normals"), _(cam.title))
-        return figure
-
-
-def _draw_rays(axes: Axes, dataset: xarray.Dataset, factor: float) -> None:
-    """Rays from the cam's centre with their angles, and normals of the path: between them is the pressure angle."""
-    phi = dataset["carrier_angle"].to_numpy()
-    radius = factor * dataset["path_radius"].to_numpy()
-    gamma = dataset["cam_pressure_angle"].to_numpy()
-    known = np.isfinite(radius)
-    if not known.any():
-        return
-    low, high = np.degrees(phi[known].min()), np.degrees(phi[known].max())
-    greatest = float(radius[known].max())
-    for degrees in np.arange(RAYS * math.ceil(low / RAYS - 1e-9), high + 1e-9, RAYS):
-        if degrees >= low + 360.0 - 1e-9:
-            break
-        nearest = int(np.argmin(np.abs(np.degrees(phi) - degrees) + np.where(known, 0.0, np.inf)))
-        if abs(np.degrees(phi[nearest]) - degrees) > RAYS / 4:
-            continue
-        turn, rho = phi[nearest], radius[nearest]
-        ray = np.array([math.sin(turn), math.cos(turn)])
-        normal = np.array([math.sin(turn - gamma[nearest]), math.cos(turn - gamma[nearest])])
-        inwards = rho * ray - NORMAL * rho * normal
-        x, y = (ray * (rho + 0.075 * greatest)).tolist()
-        axes.plot(*zip((0.0, 0.0), rho * ray, strict=True), color=MUTED, linewidth=0.7)
-        axes.plot(*zip(inwards, rho * ray, strict=True), color=PALETTE[1], linewidth=1.1)
-        axes.text(
-            x, y, f"{degrees:.0f}°".replace("-", "−"), color=GROUND, ha="center", va="center", fontsize=8
-        )
-
-
-def cam_routes_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
-    """What parts the three routes to a cam's path (`ct.cam_routes`), on a logarithmic scale."""
-    with house_style():
-        factor, unit = shown_as("m", cam.display)
-        abscissa = over_carrier(cam, dataset)
-        figure = Figure(figsize=(8.6, 5.2), layout="constrained")
-        axes = figure.subplots()
-        words = {
-            "parting": _("series: (16) less (15)"),
-            "foretold_error": _("series: foretold by its next terms"),
-            "series_error": _("series less steps"),
-            "routes_difference": _("integrated less steps"),
-        }
-        kept = pens(words)
-        handles = []
-        for name, text in words.items():
-            sizes = np.abs(dataset[name].to_numpy()[abscissa.order])
-            shown = np.where(sizes > ROUNDING, factor * sizes, np.nan)
-            pen = kept[name]
-            (line,) = axes.plot(abscissa.values, shown, color=pen.colour, linestyle=pen.dashes)
-            handles.append((line, text))
-        axes.set_yscale("log")
-        axes.set_ylim(bottom=factor * ROUNDING)
-        axes.set_xlim(float(abscissa.values[0]), float(abscissa.values[-1]))
-        angle_ticks(axes.xaxis, float(abscissa.values[0]), float(abscissa.values[-1]), abscissa.unit, 9)
-        axes.set_xlabel(abscissa.label)
-        axes.set_ylabel(label_with_unit(formula("|Δρ|").replace("ρ", r"\rho "), unit))
-        _mark_circle(axes, cam, dataset)
-        write_legend(axes, handles)
-        title = _("Differences of the radius, series cut after {last}").format(
-            last=f"$a_{{{int(dataset.attrs['terms'])}}}$"
-        )
-        write_title(figure, title, _(cam.title))
-        return figure
-
-
-def _mark_circle(axes: Axes, cam: AnyCam, dataset: xarray.Dataset) -> None:
-    """Where the series ends to converge."""
-    factor, _unit = shown_as("rad", cam.display)
-    radius = float(dataset.attrs["radius_of_convergence"]) * factor
-    low, high = axes.get_xlim()
-    for place in (-radius, radius):
-        if low < place < high:
-            axes.axvline(place, color=INK, linewidth=0.9, linestyle=(0, (6, 2, 1.5, 2)))
-            axes.annotate(
-                _("circle of convergence"), (place, 0.34), xycoords=("data", "axes fraction"),
-                xytext=(-4 if place > 0 else 12, 0), textcoords="offset points", rotation=90, ha="right", va="center",
-                color=INK, fontsize=8.5,
-            )  # fmt: skip
-
-
 CAM_FIGURES: Mapping[str, tuple[str, Callable[[Any, xarray.Dataset], Figure]]] = {
-    "cam-path": ("cam-path", cam_path_figure),
-    "cam-curves": ("cam-path", cam_curves_figure),
-    "cam-routes": ("cam-routes", cam_routes_figure),
     "cam-contact": ("cam-contact", contact_figure),
-    "cam-forces": ("cam-forces", cam_forces_figure),
-    "cam-curvature": ("cam-profile", plate_curves_figure),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
 

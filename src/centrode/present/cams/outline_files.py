@@ -26,7 +26,7 @@ def write_cam_outlines(
     Parameters
     ----------
     objects : mapping
-        `CamPart.objects` of all parts: "body", "wheel" and "plate_outlines" are written where they are there.
+        `CamPart.objects` of all parts: "body" and "wheel" are written where they are there.
     groove : bool
         Also the outer wall.
     dxf : bool
@@ -37,8 +37,6 @@ def write_cam_outlines(
         found["cam-profile"] = cam_outlines(objects["body"], SAMPLES, groove=groove)
     if "wheel" in objects:
         found["shoe-profile"] = shoe_outlines(objects["wheel"].shoe, SAMPLES // 4)
-    if "plate_outlines" in objects:
-        found["cam-profile"] = objects["plate_outlines"]
     title = _(cam.title)
     for name, outlines in found.items():
         write_outlines_svg(outlines, folder / f"{name}.svg", title)

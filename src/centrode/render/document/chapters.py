@@ -30,11 +30,13 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
+    LinearEquations,
     Listing,
     Paragraph,
     Picture,
     Section,
     Sheet,
+    SymbolList,
     Table,
 )
 
@@ -46,6 +48,11 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapte
     chapter, spelling = sheet.chapters[name], DocumentSpelling(numbers)
     sections = tuple(_section(section, sheet.pictures, spelling) for section in chapter.sections)
     return blocks.ChapterBlocks(name, spelling.text(chapter.title), sections)
+
+
+def document_block(block: Block, numbers: Numbers) -> blocks.Block:
+    """A block without a picture of a sheet, spelled."""
+    return _block(block, {}, DocumentSpelling(numbers))
 
 
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.SectionBlocks:
@@ -93,6 +100,21 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.ItemsBlock(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):
             return blocks.ParagraphBlock(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
+        case LinearEquations(matrix, unknowns, right):
+            rows = tuple(tuple(map(spelling.mathematics, row)) for row in matrix)
+            sides = (tuple(map(spelling.mathematics, side)) for side in (unknowns, right))
+            return blocks.SystemBlock(rows, *sides)
+        case SymbolList(symbols):
+            entries = tuple(
+                (
+                    f"${spelling.mathematics(one.symbol)}$",
+                    spelling.text(one.value),
+                    spelling.text(one.meaning),
+                )
+                for one in symbols
+            )
+            heads = (_("symbol"), _("value"), _("meaning"))
+            return blocks.TableBlock(heads, entries, "", (False, True, False))
         case _:
             assert_never(block)
 

@@ -6,11 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.present.equations.typst import quote, shown
-from centrode.render.document.formulas import in_si
+from centrode.present.equations.typst import TypstSpelling, quote, shown
+from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
+from centrode.render.symbolic import spell_symbolic
+from centrode.sheets.symbolic import FactoredFormula, SymbolicLeaf
 from centrode.sheets.texts import (
     Expression,
     Factor,
@@ -101,12 +103,18 @@ class DocumentSpelling(Spelling):
         """What belongs to the entry above it, behind a dash."""
         return f"– {text}"
 
+    def symbolic(self, leaf: SymbolicLeaf) -> str:
+        """A formula in letters, as mathematics."""
+        return f"${self.mathematics(leaf)}$"
+
     def vectors(self, notation: str) -> str:
         """A relation of a construction on paper, as mathematics."""
         return f"${vector_mathematics(notation)}$"
 
     def mathematics(self, leaf: Leaf) -> str:
         """Mathematics without the dollar signs, numbers with their units."""
+        if isinstance(leaf, SymbolicLeaf):
+            return spell_symbolic(leaf, self._letters(leaf))
         match leaf:
             case str():
                 return leaf
@@ -130,6 +138,12 @@ class DocumentSpelling(Spelling):
                 return vector_mathematics(filled_notation(leaf))
             case _:
                 assert_never(leaf)
+
+    def _letters(self, leaf: SymbolicLeaf) -> TypstSpelling:
+        """How the letters of a formula are written: as letters, or as the numbers that it brings along."""
+        if isinstance(leaf, FactoredFormula) and leaf.values is not None:
+            return NumberSpelling(leaf.values, self.numbers)
+        return TypstSpelling()
 
     def _size(self, number: Number) -> tuple[str, str]:
         """A number as mathematics, and the label of its unit."""

@@ -15,26 +15,17 @@ from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
     cam_choice_chapter,
     cam_contact_chapter,
-    cam_data_chapter,
     cam_motion_chapter,
-    cam_path_chapter,
     cam_profile_chapter,
-    cam_routes_chapter,
     cam_walking_chapter,
 )
-from centrode.report.chapters.followers.base_radius import base_radius_chapter
-from centrode.report.chapters.followers.forces import cam_forces_chapter
-from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.motion import follower_motion_chapter
-from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.linkages.data import data_chapter
-from centrode.report.chapters.linkages.equations import constraints_chapter, derivation_chapter
 from centrode.report.chapters.linkages.motion import motion_chapter, plots_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
 from centrode.report.chapters.spherical_linkages import (
     sphere_data_chapter,
-    sphere_equations_chapter,
     sphere_plots_chapter,
     sphere_tables_chapter,
 )
@@ -64,34 +55,29 @@ def either(*makers: Make) -> Make:
 
 
 OWN: Mapping[str, Kind] = {
-    "data": Kind(
-        mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
-    ),
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter)),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "structure": Kind(mark("Structure"), structure_chapter),
-    "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
-    "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
-    "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
-    "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
-    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
-    "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
+    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
-CHAPTERS: Mapping[str, Kind] = in_order(
-    {
-        **OWN,
-        **{
-            chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
-            for topic in TOPICS
-            for chapter in topic.document.chapters
-        },
-    },
-    order.CHAPTERS,
-)
+
+def with_topics(own: Mapping[str, Kind]) -> dict[str, Kind]:
+    """Chapters with those of the topics; a chapter that several make is that of the first with something to tell."""
+    kinds = dict(own)
+    for topic in TOPICS:
+        for chapter in topic.document.chapters:
+            make: Make = functools.partial(topic_chapter, topic, chapter)
+            if chapter.name in kinds:
+                make = either(kinds[chapter.name].make, make)
+            kinds[chapter.name] = Kind(chapter.title, make)
+    return kinds
+
+
+CHAPTERS: Mapping[str, Kind] = in_order(with_topics(OWN), order.CHAPTERS)
 """Those of the topics among the others."""

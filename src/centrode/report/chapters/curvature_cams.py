@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from centrode.locale import _
 from centrode.present.cams.choice import choice_figures
-from centrode.present.cams.curves import cam_curves_figure, cam_path_figure, cam_routes_figure, contact_figure
+from centrode.present.cams.curves import contact_figure
 from centrode.present.cams.profiles import cam_body_figures, profile_figure
 from centrode.render.document.blocks import (
     Block,
@@ -22,7 +21,6 @@ from centrode.render.document.blocks import (
     shown,
 )
 from centrode.render.document.figures import picture
-from centrode.render.document.numbers import Numbers
 from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.forces.tables import ForceColumn, over_samples
 from centrode.report.player_cams import moving_wheel
@@ -88,73 +86,8 @@ def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[SectionBlocks, 
 # What a cam's description gives, as a table.
 
 
-def given_of(study: ReportStudy) -> tuple[Block, ...]:
-    """What the cam is, and every number of its description."""
-    text = _(
-        "A roller rides on a fixed cam, led by a carrier that turns about the cam's centre. The curvature of the path"
-        " of its centre is given."
-    )
-    return ParagraphBlock(text), TableBlock((_("what"), _("value")), tuple(_rows(study.cam, study.numbers)))
-
-
-def _rows(cam: Cam, numbers: Numbers) -> Iterator[tuple[str, str]]:
-    yield _("curvature law"), _law(cam, numbers)
-    if cam.curvature.symmetric:
-        yield _("symmetry"), _("the same on both sides of $phi = 0$")
-    yield _("radius at the start"), numbers.measured(cam.start.radius, "m")
-    yield _("pressure angle at the start"), numbers.measured(cam.start.pressure_angle, "rad")
-    first, last = (numbers.measured(one, "rad") for one in (cam.range.start, cam.range.stop))
-    yield _("range"), _("{first} to {last}").format(first=first, last=last)
-    if cam.roller is not None:
-        yield _("radius of the roller"), numbers.measured(cam.roller.radius, "m")
-    if cam.mover is not None:
-        yield _("legs of the wheel"), str(cam.mover.legs)
-        yield _("post of a shoe"), numbers.measured(cam.mover.post, "m")
-    if cam.return_arc is not None:
-        kinds = {"designed": _("designed, without a kink"), "mirrored": _("mirrored")}
-        yield _("return arc"), kinds[cam.return_arc.kind]
-    yield from _contact(cam, numbers)
-
-
-def _law(cam: Cam, numbers: Numbers) -> str:
-    """The law as mathematics with its numbers, a formula of the user's own as it is written."""
-    given = cam.curvature
-    k0 = "" if given.k0 is None else f"$k_0$ = {numbers.measured(given.k0, '1/m')}"
-    if given.law == "constant":
-        return f"$K = k_0$, {k0}"
-    if given.law == "exponential":
-        return f"$K = k_0 e^(k_1 phi)$, {k0}, $k_1$ = {numbers.measured(given.k1 or 0.0, '1/rad')}"
-    if given.law == "linear":
-        return f"$K = k_0 + k_1 phi$, {k0}, $k_1$ = {numbers.measured(given.k1 or 0.0, '1/m/rad')}"
-    if given.law == "spline":
-        return _("spline through {count} points").format(count=len(given.points or ()))
-    return shown(f"K = {given.formula}, 1/m")
-
-
-def _contact(cam: Cam, numbers: Numbers) -> Iterator[tuple[str, str]]:
-    contact = cam.contact
-    if contact is None:
-        return
-    yield _("force along the follower"), numbers.measured(contact.force, "N")
-    yield _("length of the line of contact"), numbers.measured(contact.width, "m")
-    materials = ((_("material of the cam"), contact.cam), (_("material of the roller"), contact.roller))
-    for label, material in materials:
-        if material is not None:
-            modulus = numbers.measured(material.elasticity * 1e-9, "GPa")
-            yield label, f"$E$ = {modulus}, $nu$ = {numbers.plain(material.poisson)}"
-    if contact.admissible is not None:
-        yield _("admissible contact stress"), numbers.measured(contact.admissible * 1e-6, "MPa")
-
-
 ROUNDED = float(np.finfo(float).eps) * (1 << 16)
 """What rounding may leave of sums that are to vanish: series of some twenty terms, quotients near a stall."""
-
-
-def cam_data_chapter(study: ReportStudy) -> ChapterBlocks | None:
-    """What the description gives."""
-    if not study.is_cam or study.is_plate_cam:
-        return None
-    return ChapterBlocks("data", _("Data"), (SectionBlocks("", given_of(study)),))
 
 
 def cam_motion_chapter(study: ReportStudy) -> ChapterBlocks | None:
@@ -165,93 +98,6 @@ def cam_motion_chapter(study: ReportStudy) -> ChapterBlocks | None:
         return None
     moving = moving_wheel(part.objects["wheel"], _(study.cam.title))
     return ChapterBlocks("motion", _("Motion"), (SectionBlocks("", (moving,)),))
-
-
-def cam_path_chapter(study: ReportStudy) -> ChapterBlocks | None:
-    """Curvature law, equations, path, pressure angle, stall."""
-    part = part_of(study, "path")
-    if part is None:
-        return None
-    cam, data = cam_of(study), part.datasets["cam-path"]
-    text = _(
-        "The curvature $K$ of the path of the roller's centre is given over the angle $phi$ of the carrier. With the"
-        " pressure angle $gamma$ and $eta = sin gamma$ the path follows from"
-    )
-    lines = (
-        ("tan gamma", "frac(rho', rho)"),
-        ("K eta'' - K' eta' + K eta + K' sqrt(1 - eta^2)", "0"),
-        ("rho", "frac(sqrt(1 - eta^2) - eta', K)"),
-        ("x", "rho sin phi"),
-        ("y", "rho cos phi"),
-    )
-    columns = [
-        ("path_radius", "rho"), ("path_radius_slope", "rho'"), ("cam_pressure_angle", "gamma"),
-        ("pressure_sine", "eta"), ("pressure_sine_slope", "eta'"), ("law_curvature", "K"),
-    ]  # fmt: skip
-    table = course(study, data, columns, _("The path at even steps of the carrier"))
-    figures = (
-        picture(cam_path_figure(cam, data), _("Path of the roller's centre")),
-        picture(cam_curves_figure(cam, data), _("Radius, pressure angle and curvature of the path")),
-    )
-    sections = sections_of(
-        ("", (ParagraphBlock(text), FormulaBlock(lines), *told_part(study, part))),
-        (_("Over the range"), (table, _equation_check(study))),
-        (_("Figures"), figures),
-    )
-    return ChapterBlocks("path", _("Path of the roller's centre"), sections)
-
-
-def _equation_check(study: ReportStudy) -> CheckBlock:
-    """The differential equation with the path's own derivatives put in."""
-    part = part_of(study, "path")
-    assert part is not None
-    data = part.datasets["cam-path"]
-    names = (
-        "pressure_sine",
-        "pressure_sine_slope",
-        "pressure_sine_second",
-        "law_curvature",
-        "law_curvature_slope",
-    )
-    eta, slope, second, bend, bent = (data[name].to_numpy() for name in names)
-    terms = np.array([bend * second, -bent * slope, bend * eta, bent * data["pressure_cosine"].to_numpy()])
-    known = np.isfinite(terms).all(axis=0)
-    off = float(np.abs(terms[:, known].sum(axis=0)).max(initial=0.0))
-    text = _("The equation of $eta$ holds along the path to {share} of its greatest term.")
-    return difference_check(text, off, float(np.abs(terms[:, known]).max(initial=0.0)), ROUNDED)
-
-
-def cam_routes_chapter(study: ReportStudy) -> ChapterBlocks | None:
-    """One power series, series expanded anew, an integrator, beside each other."""
-    part = part_of(study, "routes")
-    if part is None:
-        return None
-    cam, data = cam_of(study), part.datasets["cam-routes"]
-    text = _(
-        "(a) one power series about $phi = 0$, cut off; (b) series expanded anew step by step, by which everything else"
-        " is computed; (c) a Runge-Kutta method along the arc of the path, which shares neither variable nor method"
-        " with the others."
-    )
-    lines = (
-        ("eta", "sum_(n = 0)^N a_n phi^n"),
-        ("sqrt(1 - eta^2)", "sum_(n = 0)^N b_n phi^n"),
-        ("rho_((15))", "frac(sqrt(1 - eta^2) - eta', K)"),
-        ("rho_((16))", "-frac(eta'' + eta, K')"),
-    )
-    steps, tolerance = float(data.attrs["steps"]), float(data.attrs["tolerance"])
-    agree = _("The integrated path is off from the one by steps by {share} of its radius.")
-    check = difference_check(
-        agree, float(data.attrs["worst_difference"]), 1.0, tolerance * (1.0 + steps) + ROUNDED
-    )
-    figure = picture(cam_routes_figure(cam, data), _("Differences between the routes"))
-    blocks: tuple[Block, ...] = (
-        ParagraphBlock(text),
-        FormulaBlock(lines),
-        *told_part(study, part),
-        check,
-        figure,
-    )
-    return ChapterBlocks("routes", _("Three routes to the path"), (SectionBlocks("", blocks),))
 
 
 def cam_profile_chapter(study: ReportStudy) -> ChapterBlocks | None:

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.errors import CentrodeError, Status
+from centrode.errors import Status
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Drive, Link, Mechanism
-from centrode.present.equations import page
-from centrode.present.equations.typst import TypstSpelling
 from centrode.present.figures import motion_figures
 from centrode.render.document.blocks import (
     Block,
@@ -27,10 +25,8 @@ from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers
 from centrode.report.chapters.forces.places import head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.tables import ForceColumn, over_samples
-from centrode.report.equations import section_of
 from centrode.report.study import Moment, ReportStudy, moments_of
 from centrode.report.texts import difference_check, facts
-from centrode.report.topics import left_out
 from centrode.study.summary import motion_rows
 from centrode.views.columns import rows_shown
 
@@ -201,24 +197,6 @@ def sphere_plots_chapter(study: ReportStudy) -> ChapterBlocks | None:
 
 
 # Equations of a linkage on the sphere, as `centrode equations` prints them.
-
-
-def sphere_equations_chapter(study: ReportStudy) -> ChapterBlocks | None:
-    """Closures of the dyads, their derivatives, Cramer's rule, normal form, accelerations."""
-    if not study.is_spherical:
-        return None
-    try:
-        found = page.sections(study.equations, TypstSpelling(), study.points)
-    except CentrodeError as reason:
-        if study.wishes.chapters is not None:
-            raise
-        return left_out("equations", _("Constraint equations"), reason)
-    text = _(
-        "Each dyad brings a new point: the law of cosines in the triangle of its two centres and that point gives its"
-        " angle, the angle of its other arc to its path follows."
-    )
-    sections = [SectionBlocks("", (ParagraphBlock(text),)), *map(section_of, found)]
-    return ChapterBlocks("equations", _("Constraint equations"), tuple(sections))
 
 
 # Tables of a motion on the sphere: the instants, the whole motion, and what every sample has to keep.

@@ -12,13 +12,10 @@ from typing import Any, Protocol
 
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
-from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
-from centrode.study.cams.follower_cam import forces_part, plate_part
 from centrode.study.cams.parts import Asked, CamPart
-from centrode.study.cams.paths import path_part, routes_part
 from centrode.study.cams.profiles import profile_part, walking_part
 
 
@@ -28,27 +25,13 @@ class MakesPart(Protocol):
     def __call__(self, cam: Cam, asked: Asked) -> CamPart | None: ...
 
 
-class MakesFollowerPart(Protocol):
-    """The same of a cam that is given by its follower's lift."""
-
-    def __call__(self, cam: PlateCam, asked: Asked) -> CamPart | None: ...
-
-
 PARTS: Mapping[str, MakesPart] = {
-    "path": path_part,
-    "routes": routes_part,
     "profile": profile_part,
     "walking": walking_part,
     "contact": contact_part,
     "choice": choice_part,
 }
 """Parts by name, in the order in which they are computed and shown."""
-
-FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
-    "profile": plate_part,
-    "forces": forces_part,
-}
-"""The same of a cam that is given by its follower's lift."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +65,7 @@ def cam_results(
     groove: bool = False,
     front: bool = False,
 ) -> CamResults:
-    """Everything about the cam of a description but for the motion of its follower.
+    """Everything about the cam of a description but for what its follower gives.
 
     Parameters
     ----------
@@ -102,9 +85,7 @@ def cam_results(
         What `ct.cam` and `ct.cam_routes` refuse.
     """
     asked = Asked(samples, terms, groove, front)
-    found: dict[str, CamPart | None]
-    if isinstance(cam, PlateCam):
-        found = {name: make(cam, asked) for name, make in FOLLOWER_PARTS.items()}
-    else:
+    found: dict[str, CamPart | None] = {}
+    if isinstance(cam, Cam):
         found = {name: make(cam, asked) for name, make in PARTS.items()}
     return CamResults(cam, {name: part for name, part in found.items() if part is not None})

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from centrode.cams.followers.base_circle import follower_cam, has_size
 from centrode.locale import _
 from centrode.render.document.blocks import ChapterBlocks, SectionBlocks
-from centrode.report.chapters.followers.parts import body_of
 from centrode.report.player_cams import moving_follower
 
 if TYPE_CHECKING:
@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 def follower_motion_chapter(study: ReportStudy) -> ChapterBlocks | None:
     """A turn of the cam; nothing where its size is not given."""
-    body = body_of(study) if study.is_plate_cam else None
-    if body is None:
+    if not study.is_plate_cam or not has_size(study.plate):
         return None
-    moving = moving_follower(body, _(study.plate.title))
+    moving = moving_follower(follower_cam(study.plate), _(study.plate.title))
     return ChapterBlocks("motion", _("Motion"), (SectionBlocks("", (moving,)),))

@@ -9,9 +9,10 @@ from centrode.locale import _
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
 from centrode.render.document.blocks import Block, ChapterBlocks, SectionBlocks, TableBlock, shown
+from centrode.render.document.chapters import document_block
 from centrode.render.document.numbers import Numbers
-from centrode.report.chapters.followers.given import given_rows, segment_tables, turning_text
 from centrode.report.study import ReportStudy
+from centrode.views.follower_data import driving_cam
 
 
 def data_chapter(study: ReportStudy) -> ChapterBlocks | None:
@@ -131,7 +132,7 @@ class _Data:
         on = _("frame") if wheel.on == FRAME else shown(wheel.on)
         return shown(wheel.id), on, self.length(float(wheel.radius))
 
-    def drives(self) -> Iterator[TableBlock]:
+    def drives(self) -> Iterator[Block]:
         """What is given of the motion."""
         head = (_("drive"), _("what is given"), _("initial value"), _("law"))
         rows = tuple(self._drive(drive) for drive in self.mechanism.drives)
@@ -141,23 +142,10 @@ class _Data:
             if drive.cam is not None:
                 yield from self._cam(drive, drive.cam)
 
-    def _cam(self, drive: Drive, cam: PlateCam) -> Iterator[TableBlock]:
+    def _cam(self, drive: Drive, cam: PlateCam) -> Iterator[Block]:
         """A cam that drives, with its follower's motion."""
-        rows = [*given_rows(cam, self.numbers)]
-        speed = next((k for k, row in enumerate(rows) if row[0] == _("speed of the cam")), None)
-        turning = (_("speed of the cam"), turning_text(drive.turning or 0.0, self.numbers))
-        rows = [row for k, row in enumerate(rows) if k != speed] + [turning]
-        rows.append((_("angle of the cam at $t = 0$"), self.numbers.measured(drive.cam_angle, "rad")))
-        if drive.cam_point is not None:
-            rows.append((_("point of the link that the cam moves"), shown(drive.cam_point)))
-        lift = _("lowers the value of the drive") if drive.lowers else _("raises the value of the drive")
-        rows.append((_("lift"), lift))
-        name = {"drive": shown(drive.id), "title": shown(_(cam.title))}
-        caption = (
-            _("Cam {title}, which moves drive {drive}") if cam.title else _("Cam that moves drive {drive}")
-        )
-        yield TableBlock((_("what"), _("value")), tuple(rows), caption.format(**name))
-        yield from segment_tables(cam, self.numbers)
+        for block in driving_cam(drive, cam):
+            yield document_block(block, self.numbers)
 
     def _drive(self, drive: Drive) -> tuple[str, ...]:
         coordinate = self.mechanism.motion_parameter.drive(drive.id)

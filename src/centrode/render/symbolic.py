@@ -1,0 +1,59 @@
+"""Formulas in letters as strings: one walk over their leaves, a table of operations for each medium."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from centrode.equations.spelling import SymbolFormula, spell_formula, spelled_sum
+from centrode.equations.symbols import Sum, SumTerm
+from centrode.sheets.symbolic import (
+    AbsoluteProduct,
+    FactoredFormula,
+    GivenNumber,
+    InitialValue,
+    SumFormula,
+    SymbolicLeaf,
+    TimeDerivative,
+    UniformMotion,
+)
+
+if TYPE_CHECKING:
+    from centrode.equations.spelling import FormulaSpelling
+
+
+def spell_symbolic(leaf: SymbolicLeaf, spelling: FormulaSpelling) -> str:
+    """A leaf by the operations of a medium; letters stand where the medium puts in no numbers."""
+    match leaf:
+        case SumFormula(total):
+            return spelled_sum(total, spelling)
+        case FactoredFormula(formula, differences_first, turned):
+            return spell_formula(formula, spelling, differences_first, turned)
+        case InitialValue(letter):
+            return spelling.initial(spelling.letter(letter))
+        case TimeDerivative(letter):
+            return spelling.derivative(letter)
+        case UniformMotion():
+            return _uniform_motion(leaf, spelling)
+        case GivenNumber(value):
+            return spelling.decimal(value)
+        case AbsoluteProduct():
+            return _absolute_product(leaf, spelling)
+        case _:
+            assert_never(leaf)
+
+
+def _uniform_motion(leaf: UniformMotion, spelling: FormulaSpelling) -> str:
+    size = [spelling.decimal(abs(leaf.speed))] if abs(leaf.speed) != 1.0 else []
+    way, minus = spelling.join([*size, "t"]), leaf.speed < 0
+    if leaf.start:
+        return f"{spelling.decimal(leaf.start)} {'-' if minus else '+'} {way}"
+    return f"-{way}" if minus else way
+
+
+def _absolute_product(leaf: AbsoluteProduct, spelling: FormulaSpelling) -> str:
+    """Lengths first, then rates, which may be negative, between bars."""
+    texts = []
+    for letter, power, signed in sorted(leaf.factors, key=lambda factor: factor[2]):
+        factor = spell_formula(SymbolFormula(1, SumTerm(((letter, power),)), Sum.number(1)), spelling)
+        texts.append(spelling.bars(factor) if signed else factor)
+    return spelling.join(texts) or spelling.number(1)
