@@ -209,8 +209,6 @@ from .sweeps.sweep import sweep as sweep
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
 from .sweeps.sweep import read_sweep as read_sweep
-from .sweeps.sweep import sweep_results as sweep_results
-from .sweeps.sweep import SweepResults as SweepResults
 
 # Any result, shown
 from .topics.presentation import summary as summary

@@ -96,7 +96,7 @@ def test_formulas_samples_and_a_mechanism_beside_the_study(centrode: Centrode, f
     ranges = {"links.AB.length": (3.4, 3.6), "links.DB.length": (2.9, 3.1)}
     design = ct.sample(ranges, 8, "sobol", seed=2)
     found = ct.sweep(ct.example("crank-rocker"), design, samples=9, reduce={"swing": "range(angle_DB)"})
-    ct.write(ct.SweepResults(ct.example("crank-rocker"), found), folder / "again")
+    ct.write(found, folder / "again")
     assert (folder / "r.csv").read_bytes() == (folder / "again" / "sweep.csv").read_bytes()
 
 

@@ -8,21 +8,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import centrode as ct
 from centrode.present.spelled_tables import TableSpelling
 from centrode.render.files import write_table
 from centrode.study.variant_results import VariantRow, Variants
 from centrode.sweeps import sweep
-from centrode.sweeps.sweep import SweepResults
 
 CRANK_ROCKER = ct.example("crank-rocker")
 
 
-def swept(**options: object) -> SweepResults:
+def swept(**options: object) -> xr.Dataset:
     """Three mechanisms, the last of which does not assemble."""
     lengths = {"links.AB.length": [3.4, 3.5, 20.0]}
-    return ct.sweep_results(CRANK_ROCKER, lengths, ["position.B", "angle.DB"], samples=9, **options)  # type: ignore[arg-type]
+    return ct.sweep(CRANK_ROCKER, lengths, ["position.B", "angle.DB"], samples=9, **options)  # type: ignore[arg-type]
 
 
 def test_a_sweep_is_a_table_of_its_own_numbers(tmp_path: Path) -> None:
@@ -31,7 +31,7 @@ def test_a_sweep_is_a_table_of_its_own_numbers(tmp_path: Path) -> None:
     assert list(columns) == [
         "links.AB.length", "position_B_x", "position_B_y", "angle_DB", "samples_ok", "worst_residual",
     ]  # fmt: skip
-    angles = results.data["angle.DB"].to_numpy()
+    angles = results["angle.DB"].to_numpy()
     assert np.array_equal(np.asarray(columns["angle_DB"].values), angles, equal_nan=True)
     assert columns["angle_DB"].unit == "rad" and math.isnan(angles[2])
     ct.write(results, tmp_path / "out")

@@ -20,7 +20,9 @@ from centrode.errors import DamageWarning, InputError, MotionError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
-    from centrode.sweeps.sweep import SweepResults, SweepStudy
+    import xarray as xr
+
+    from centrode.sweeps.sweep import SweepStudy
 
 TABLE, STORE = ".csv", ".zarr"
 
@@ -41,14 +43,14 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
     target = out if out is not None else Path(Path(study).stem + STORE)
     need_table(target)
     if target.suffix == TABLE:
-        results = _as_table(asked, study, target, force)
+        data = _as_table(asked, study, target, force)
     elif target.suffix == STORE:
-        results = _as_store(asked, study, target)
+        data = _as_store(asked, study, target)
     else:
         raise InputError(
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
-    sheet, display = ct.sheet_of(results), results.mechanism.display
+    sheet, display = ct.sheet_of(data), asked.mechanism.display
     click.echo(render.sheet_text(sheet, display))
     click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
     if sheet.failure is not None:
@@ -58,7 +60,7 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
         raise MotionError(study, what, repair)
 
 
-def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> SweepResults:
+def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
     if asked.reduce is None:
         raise InputError(
             str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
@@ -68,26 +70,26 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> Sweep
             warnings.simplefilter(
                 "ignore", RuntimeWarning
             )  # an interruption is told in the command's own words
-            results = _compute(asked, study, None)
-        if results.data.attrs["mechanisms"] < results.data["samples_ok"].size:
+            data = _compute(asked, study, None)
+        if data.attrs["mechanisms"] < data["samples_ok"].size:
             raise KeyboardInterrupt  # a part of a table looks like a whole one
-        (table,) = ct.tables(results).values()
-        render.write_table(table, draft, results.mechanism.display)
-    return results
+        (table,) = ct.tables(data).values()
+        render.write_table(table, draft, asked.mechanism.display)
+    return data
 
 
-def _as_store(asked: SweepStudy, study: str, target: Path) -> SweepResults:
+def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
     try:
         with _damage_told():
-            results = _compute(asked, study, target)
+            data = _compute(asked, study, target)
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
         output.tell(note.format(folder=target))
         raise
-    found = results.data.attrs["mechanisms_found"]
+    found = data.attrs["mechanisms_found"]
     if found:
         output.tell(_("{found} mechanisms were there from an earlier run").format(found=found))
-    return results
+    return data
 
 
 @contextmanager
@@ -114,7 +116,7 @@ def _damage_told() -> Iterator[None]:
         yield
 
 
-def _compute(asked: SweepStudy, study: str, store: Path | None) -> SweepResults:
+def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
     with about(study), Progress() as progress:
         start, stop = (
             None if end is None else ct.range_value(asked.mechanism, end, key)
@@ -124,7 +126,7 @@ def _compute(asked: SweepStudy, study: str, store: Path | None) -> SweepResults:
         def tell(done: int, of: int) -> None:
             progress.say(_("computing mechanisms"), done, of)
 
-        return ct.sweep_results(
+        return ct.sweep(
             asked.mechanism,
             asked.vary,
             asked.outputs,

@@ -582,6 +582,7 @@ SWEEP = Topic(
     result=Lazily("centrode.sweeps.sweep", "SweepResults"),
     view=Lazily("centrode.views.sweeps", "sheet"),
     subject="mechanisms",
+    restore=Lazily("centrode.sweeps.sweep", "SweepResults"),
 )
 
 VARIANTS = Topic(
