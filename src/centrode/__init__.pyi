@@ -113,31 +113,20 @@ from .cams.cam import cam as cam
 from .cams.cam import cam_routes as cam_routes
 from .cams.cam import roller_path_results as roller_path_results
 from .cams.cam import path_routes_results as path_routes_results
+from .cams.results import cam_profile_results as cam_profile_results
+from .cams.results import walking_wheel_results as walking_wheel_results
+from .cams.results import cam_contact_results as cam_contact_results
 from .cams.path_series import path_of as path_of
-from .study.cams.results import cam_results as cam_results
 from .cams.followers.motion_results import follower_motion_results as follower_motion_results
 from .cams.followers.motion_results import motion_law_results as motion_law_results
 from .cams.followers.motion import follower_motion as follower_motion
 from .cams.followers.motion import cam_laws as cam_laws
-from .cams.followers.motion import compare_laws as compare_laws
-from .present import write_cam_tables as write_cam_tables
-from .present import cam_figures as cam_figures
 from .cams.followers.base_circle import follower_cam as follower_cam
-from .cams.followers.base_circle import least_cam as least_cam
-from .cams.followers.manufacture import follower_outlines as follower_outlines
-from .cams.followers.manufacture import cam_points as cam_points
 from .cams.followers.base_radius_results import base_radius_results as base_radius_results
 from .cams.followers.profile_results import follower_profile_results as follower_profile_results
 from .cams.followers.force_results import follower_force_results as follower_force_results
 from .cams.followers.forces import cam_forces as cam_forces
-from .cams.followers.forces import follower_forces as follower_forces
-from .cams.followers.forces import Burden as Burden
-from .cams.followers.forces import least_push as least_push
-from .cams.followers.forces import jump_speed as jump_speed
-from .cams.followers.forces import preload_needed as preload_needed
-from .cams.followers.forces import stiffness_needed as stiffness_needed
 from .present import animate_cam_body as animate_cam_body
-from .present import animate_follower as animate_follower
 
 # Profiles of cams, walking wheels
 from .cams.results import cam_profile as cam_profile
@@ -147,25 +136,11 @@ from .cams.profiles import cam_body as cam_body
 from .cams.profiles import cam_outlines as cam_outlines
 from .cams.profiles import shoe_outlines as shoe_outlines
 from .cams.walking_wheel import rolling as rolling
-from .present import write_profile_csv as write_profile_csv
-from .present import write_outlines_svg as write_outlines_svg
-from .present import write_outlines_dxf as write_outlines_dxf
-from .present import write_cam_outlines as write_cam_outlines
-from .present import profile_figure as profile_figure
-from .present import walking_figure as walking_figure
-from .present import cam_body_figures as cam_body_figures
 
 # Contact of roller and cam, choice of parameters
 from .cams.results import cam_contact as cam_contact
-from .study.cams.contact import contact_rows as contact_rows
 from .cams.parameter_choice.search import choose_cam as choose_cam
 from .cams.parameter_choice.search import CamChoice as CamChoice
-from .study.cams.choice import choice_rows as choice_rows
-from .present import write_cam_contact_csv as write_cam_contact_csv
-from .present import write_choice as write_choice
-from .present import contact_figure as contact_figure
-from .present import trade_off_figure as trade_off_figure
-from .present import choice_figures as choice_figures
 
 # Animations
 from .present import animate as animate

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.cams.followers.forces import meeting_of
+from centrode.cams.followers.forces import follower_forces, meeting_of
 from centrode.render import plain_text
 from centrode.topics.presentation import sheet_of
 
@@ -64,7 +64,7 @@ def test_the_profile_touches_where_the_instant_centre_says(name, turn):
 @pytest.mark.parametrize("turn", ["counter-clockwise", "clockwise"])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_torque_is_that_of_virtual_work_and_the_pressure_angle_says_the_force(name, turn):
-    forces = ct.follower_forces(plate(name, turn))
+    forces = follower_forces(plate(name, turn))
     found = forces.at(PHI)
     rows = forces.body.motion.lift(PHI, 2)
     size = np.abs(found.normal) * 0.1
@@ -81,7 +81,7 @@ def test_torque_is_that_of_virtual_work_and_the_pressure_angle_says_the_force(na
 
 def test_stress_by_hertz_on_the_base_circle():
     # On a dwell everything is plain: a roller of 9 mm on a cylinder of 40 mm, pressed by the spring's preload.
-    forces = ct.follower_forces(plate("roller"))
+    forces = follower_forces(plate("roller"))
     tangent = 0.007 / math.sqrt(0.049**2 - 0.007**2)
     load = 90.0 * math.hypot(1.0, tangent) / 0.012
     modulus = 206e9 / (2 * (1 - 0.3**2))
@@ -90,11 +90,11 @@ def test_stress_by_hertz_on_the_base_circle():
     assert found is not None
     assert abs(found.pressure[0] - expected) <= 64 * EPS * expected
     # A flat face: the cam's curvature alone.
-    face = ct.follower_forces(plate("face")).at(np.array([math.radians(300.0)])).strip
+    face = follower_forces(plate("face")).at(np.array([math.radians(300.0)])).strip
     expected = math.sqrt(90.0 / 0.012 * modulus / math.pi / 0.040)
     assert face is not None
     assert abs(face.pressure[0] - expected) <= 64 * EPS * expected
-    assert ct.follower_forces(plate("edge")).at(PHI).strip is None
+    assert follower_forces(plate("edge")).at(PHI).strip is None
 
 
 def test_the_dataset_says_where_the_contact_is_lost():
@@ -167,7 +167,7 @@ def test_no_greatest_stress_is_told_of_a_profile_that_is_undercut():
             "study": {"show_undercut": True},
         }
     )
-    forces = ct.follower_forces(shown)
+    forces = follower_forces(shown)
     cusp = forces.body.undercuts[0].start
     near = forces.at(cusp - np.array([1e-3, 1e-5, 1e-7])).strip
     assert near is not None and np.all(np.diff(near.pressure) > 2 * near.pressure[:-1])

@@ -19,9 +19,10 @@ from centrode.cams.followers.geometry import (
     oscillating_follower,
     translating_follower,
 )
-from centrode.cams.followers.manufacture import follower_outlines, join_outlines
+from centrode.cams.followers.manufacture import cam_points, follower_outlines, join_outlines
 from centrode.errors import InputError
 from centrode.laws.segments import LawSegment, SegmentedLaw
+from centrode.render.outlines import write_outlines_dxf, write_outlines_svg
 from follower_motions import Array, Lift, lift_of, rise_dwell_fall_dwell
 
 EPS = float(np.finfo(float).eps)
@@ -193,8 +194,8 @@ def test_too_many_points_are_refused() -> None:
 def test_files_of_outlines(tmp_path: Path) -> None:
     ezdxf = pytest.importorskip("ezdxf")
     outlines = follower_outlines(cams()["arm"], 1e-6, 0.01)
-    ct.write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Cam")
-    ct.write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam")
+    write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Cam")
+    write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam")
     document = ezdxf.readfile(tmp_path / "cam.dxf")
     audit = document.audit()
     assert not audit.has_errors and not audit.has_fixes
@@ -213,7 +214,7 @@ def test_files_of_outlines(tmp_path: Path) -> None:
 
 def test_points_of_a_description_have_normals_square_to_their_way() -> None:
     cam = ct.load_cam("indexing-cam")
-    points = ct.cam_points(cam)
+    points = cam_points(cam)
     here = points["curve"].to_numpy() == "path"
     place, normal = points["curve_point"].to_numpy()[here], points["curve_normal"].to_numpy()[here]
     np.testing.assert_allclose(np.hypot(*normal.T), 1.0, rtol=4 * EPS)

@@ -14,7 +14,10 @@ import pytest
 import centrode as ct
 from cam_shapes import exchanged
 from centrode.errors import InputError
+from centrode.model.settings import Display
 from centrode.present import dxf_files
+from centrode.render import write_table
+from centrode.render.outlines import write_outlines_dxf, write_outlines_svg
 
 ezdxf = pytest.importorskip("ezdxf")
 
@@ -29,7 +32,11 @@ def cam() -> ct.Cam:
 
 def test_csv_reads_back_bit_for_bit(cam: ct.Cam, tmp_path: Path) -> None:
     data = ct.cam_profile(cam, 91, groove=True)
-    ct.write_profile_csv(data, tmp_path / "cam.csv")
+    write_table(
+        ct.tables(ct.cam_profile_results(cam, 91, groove=True))["cam-profile"],
+        tmp_path / "cam.csv",
+        Display(),
+    )
     rows = list(csv.DictReader((tmp_path / "cam.csv").read_text(encoding="utf-8").splitlines()))
     assert list(rows[0])[:4] == ["carrier_angle [rad]", "part", "roller_centre_x [m]", "roller_centre_y [m]"]
     for header, values in {
@@ -45,7 +52,9 @@ def test_csv_reads_back_bit_for_bit(cam: ct.Cam, tmp_path: Path) -> None:
 
 
 def test_display_units_stand_in_the_header(cam: ct.Cam, tmp_path: Path) -> None:
-    ct.write_profile_csv(ct.shoe_profile(cam, 5), tmp_path / "shoe.csv", cam.display)
+    write_table(
+        ct.tables(ct.walking_wheel_results(cam, 5))["shoe-profile"], tmp_path / "shoe.csv", cam.display
+    )
     header = (tmp_path / "shoe.csv").read_text(encoding="utf-8").splitlines()[0]
     assert header == (
         "carrier_angle [deg],shoe_radius [mm],shoe_angle [deg],shoe_bend [mm],shoe_along [mm],"
@@ -56,7 +65,7 @@ def test_display_units_stand_in_the_header(cam: ct.Cam, tmp_path: Path) -> None:
 def test_svg_is_in_millimetres_and_its_curves_are_the_profile(cam: ct.Cam, tmp_path: Path) -> None:
     body = ct.cam_body(cam)
     outlines = ct.cam_outlines(body, 360, groove=True)
-    ct.write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam <4> & Кулачок")
+    write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam <4> & Кулачок")
     root = ElementTree.parse(tmp_path / "cam.svg").getroot()
     assert root.find(f"{NAME}title").text == "Cam <4> & Кулачок"  # type: ignore[union-attr]
     width, view = root.get("width"), [float(one) for one in root.get("viewBox", "").split()]
@@ -86,7 +95,7 @@ def test_svg_is_in_millimetres_and_its_curves_are_the_profile(cam: ct.Cam, tmp_p
 def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct.Cam, tmp_path: Path) -> None:
     body, wheel = ct.cam_body(cam), ct.walking_wheel(cam)
     outlines = [*ct.cam_outlines(body, 360, groove=True), *ct.shoe_outlines(wheel.shoe, 90)]
-    ct.write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Кулачок")
+    write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Кулачок")
     document = ezdxf.readfile(tmp_path / "cam.dxf")
     audit = document.audit()
     assert not audit.has_errors and not audit.has_fixes
@@ -122,8 +131,8 @@ def test_files_have_the_same_bytes_each_time(cam: ct.Cam, tmp_path: Path) -> Non
     before = ezdxf.options.write_fixed_meta_data_for_testing
     for name in ("one", "two"):
         outlines = ct.cam_outlines(ct.cam_body(cam), 90)
-        ct.write_outlines_dxf(outlines, tmp_path / f"{name}.dxf", "T")
-        ct.write_outlines_svg(outlines, tmp_path / f"{name}.svg", "T")
+        write_outlines_dxf(outlines, tmp_path / f"{name}.dxf", "T")
+        write_outlines_svg(outlines, tmp_path / f"{name}.svg", "T")
     for kind in ("dxf", "svg"):
         assert (tmp_path / f"one.{kind}").read_bytes() == (tmp_path / f"two.{kind}").read_bytes()
     assert ezdxf.options.write_fixed_meta_data_for_testing == before
@@ -134,7 +143,7 @@ def test_without_ezdxf_the_extra_is_named(
 ) -> None:
     monkeypatch.setattr(dxf_files, "find_spec", lambda _name: None)
     with pytest.raises(InputError, match=r'pip install "centrode\[drawings\]"'):
-        ct.write_outlines_dxf(ct.cam_outlines(ct.cam_body(cam), 90), tmp_path / "cam.dxf")
+        write_outlines_dxf(ct.cam_outlines(ct.cam_body(cam), 90), tmp_path / "cam.dxf")
     assert not list(tmp_path.iterdir())
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.cli.main import build_app
-from centrode.topics.presentation import sheets_of_cam
+from centrode.topics.registry import TOPICS
 
 ROOT = Path(__file__).parents[2]
 MADE = ROOT / "docs" / "reference"
@@ -104,8 +104,12 @@ def test_scalars_are_told(name: str) -> None:
 @pytest.mark.parametrize("name", ct.example_names("cam"))
 def test_scalars_of_cams_are_told(name: str) -> None:
     cam = ct.example(name)
-    sheets = sheets_of_cam(cam, samples=3).values()
-    scalars = [*ct.cam_results(cam, samples=3).scalars, *(one for sheet in sheets for one in sheet.scalars)]
+    topics = [
+        topic
+        for topic in TOPICS
+        if topic.subject == "cam" and (topic.concerns is None or topic.concerns(cam))
+    ]
+    scalars = [scalar for topic in topics for scalar in topic.view(topic.compute(cam)).scalars]
     assert [one for one in scalars if not one.startswith("chosen.") and f"`{one}`" not in EVERYTHING] == []
 
 

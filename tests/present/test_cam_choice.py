@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.present.cams.choice import parameter_symbol, parameter_unit
+from centrode.sheets.texts import Symbol
+from centrode.views.cam_choice import parameter_symbol, parameter_unit
 
 
 @pytest.fixture(scope="module")
@@ -22,8 +23,7 @@ def found(cam: ct.Cam) -> ct.CamChoice:
 
 
 def test_the_front_and_its_parameters(found: ct.CamChoice) -> None:
-    figure = ct.trade_off_figure(found)
-    assert figure is not None
+    figure = ct.figures(found)["cam-choice"]
     assert found.front is not None
     upper, *lower = figure.axes
     line = next(one for one in upper.get_lines() if one.get_label() == "best designs")
@@ -40,7 +40,7 @@ def test_the_front_and_its_parameters(found: ct.CamChoice) -> None:
 
 
 def test_without_a_front_there_is_no_figure(cam: ct.Cam) -> None:
-    assert ct.choice_figures(ct.choose_cam(cam, front=False)) == {}
+    assert ct.figures(ct.choose_cam(cam, front=False)) == {}
 
 
 def test_the_chosen_design_lies_on_the_front(found: ct.CamChoice) -> None:
@@ -53,7 +53,7 @@ def test_the_chosen_design_lies_on_the_front(found: ct.CamChoice) -> None:
 
 def test_contact(cam: ct.Cam) -> None:
     data = ct.cam_contact(cam, 9)
-    figure = ct.contact_figure(cam, data)
+    figure = ct.figures(ct.cam_contact_results(cam, 9))["cam-contact"]
     upper, lower = figure.axes
     np.testing.assert_allclose(upper.get_lines()[0].get_ydata(), 1e-6 * data["contact_stress"], rtol=1e-15)
     np.testing.assert_allclose(lower.get_lines()[0].get_ydata(), 1e3 * data["contact_half_width"], rtol=1e-15)
@@ -65,8 +65,10 @@ def test_contact(cam: ct.Cam) -> None:
 
 
 def test_symbols_of_parameters(cam: ct.Cam) -> None:
-    assert parameter_symbol("curvature.points.3") == ("K", "3", "1/m")
-    assert parameter_symbol("curvature.constants.a") == ("a", "", "1")
+    assert parameter_symbol("curvature.points.3") == Symbol("K", "3", slanted=True)
+    assert parameter_unit(cam, "curvature.points.3") == "1/m"
+    assert parameter_symbol("curvature.constants.a") == Symbol("a")
+    assert parameter_unit(cam, "curvature.constants.a") == "1"
     assert parameter_unit(cam, "curvature.k1") == "1/rad"
     linear = ct.Cam(
         kind="cam", curvature={"law": "linear", "k0": 20, "k1": 1}, start={"radius": 0.05}, range={"to": 1}

@@ -9,6 +9,7 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
+from centrode.present.animations.animate import animate_follower
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.linkage_scene import scene_of
 from centrode.present.tags import cam_lines
@@ -108,7 +109,7 @@ def test_a_turn_is_written_frame_by_frame(name, tmp_path):
     told = []
     body = ct.follower_cam(ct.load_cam(name))
     for number in range(2):
-        ct.animate_follower(
+        animate_follower(
             body, tmp_path / f"{number}.gif", name, frames=4, said=lambda *done: told.append(done)
         )
     with Image.open(tmp_path / "0.gif") as animation:

@@ -201,10 +201,12 @@ def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:
 def test_processes_that_hash_texts_differently_write_the_same_bytes(tmp_path: Path) -> None:
     program = """
 import centrode as ct
+from centrode.cams.followers.manufacture import follower_outlines
+from centrode.render.outlines import write_outlines_dxf
 press = ct.example("six-bar-press")
 ct.write_drawing_dxf(ct.mechanism_drawing(press, ct.motion(press, at=[0.0])), "drawing.dxf")
 cam = ct.follower_cam(ct.example("valve-cam"))
-ct.write_outlines_dxf(ct.follower_outlines(cam), "profile.dxf")
+write_outlines_dxf(follower_outlines(cam), "profile.dxf")
 """
     written = []
     for seed in ("0", "4"):  # they put texts into sets in different orders

@@ -14,6 +14,7 @@ from centrode.cams.followers import motion_results
 from centrode.cams.followers.closed_forms import ClosedForms
 from centrode.cams.followers.curve_formulas import CURVES, PEAKS, shares_of
 from centrode.cams.followers.force_results import virtual_work_difference
+from centrode.cams.followers.forces import follower_forces
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.cams.followers.profile_results import instant_centre_difference, profile_difference
 from centrode.laws import CURVES as LAWS
@@ -299,7 +300,7 @@ def test_a_follower_that_jumps_is_told() -> None:
 
 
 def test_virtual_work_finds_a_wrong_torque(indexing: ReportStudy, monkeypatch: pytest.MonkeyPatch) -> None:
-    forces = ct.follower_forces(indexing.plate)
+    forces = follower_forces(indexing.plate)
 
     def holds() -> bool:
         apart, size = virtual_work_difference(forces)

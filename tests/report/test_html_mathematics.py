@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
-from centrode.present.equations.typst import TypstSpelling
+from centrode.render.document.typst import TypstSpelling
 from centrode.report.html.mathematics import formulas_of, fragments_of
 from equation_pages import Relation, entries
 

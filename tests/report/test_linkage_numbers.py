@@ -12,7 +12,6 @@ import centrode as ct
 from centrode.equations import instants
 from centrode.equations.instants import instant_of, rates_compared
 from centrode.locale import speaking
-from centrode.present.equations.typst import TypstSpelling
 from centrode.render.document.blocks import (
     ChapterBlocks,
     CheckBlock,
@@ -20,6 +19,7 @@ from centrode.render.document.blocks import (
     ParagraphBlock,
     SystemBlock,
 )
+from centrode.render.document.typst import TypstSpelling
 from centrode.report.document import report
 from centrode.report.study import ReportOptions
 from equation_pages import Relation, System, entries

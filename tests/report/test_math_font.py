@@ -11,7 +11,7 @@ from fontTools.ttLib import TTFont
 
 import centrode as ct
 from centrode.locale import speaking
-from centrode.present.equations.typst import TypstSpelling
+from centrode.render.document.typst import TypstSpelling
 from centrode.report.html.mathematics import formulas_of
 from centrode.report.html.page import FONT, HERE
 from equation_pages import Relation, entries

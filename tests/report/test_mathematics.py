@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import centrode as ct
-from centrode.present.equations.typst import TypstSpelling
+from centrode.render.document.typst import TypstSpelling
 from centrode.report.mathematics import check_formula, pieces_of
 from equation_pages import Relation, entries
 

@@ -14,7 +14,7 @@ import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.locale import speaking
-from centrode.present.equations.typst import TypstSpelling, decimal, quote, word
+from centrode.render.document.typst import TypstSpelling, decimal, quote, word
 from equation_pages import formulas
 
 from .typst_reading import read

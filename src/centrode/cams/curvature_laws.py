@@ -256,6 +256,7 @@ class TextCurvature:
             else [self.start, self.stop]
         )
         object.__setattr__(self, "breaks", breaks)
+        # in the middle of a stretch, far from the zeros at its ends
         asked = self._condition_values(0.5 * (edges[:-1] + edges[1:]))
         object.__setattr__(self, "signs", np.sign(asked).T)
 
@@ -332,6 +333,7 @@ def drawn_curvature(phi: Array, radius: Array) -> Array:
     across = np.hypot(x[2:] - x[:-2], y[2:] - y[:-2])
     turned = behind[1] * ahead[0] - behind[0] * ahead[1]  # positive clockwise, as phi is
     with np.errstate(all="ignore"):
+        # four times the area of a triangle over the product of its sides is 1/R of the circle around it
         curvature[1:-1] = 2.0 * turned / (np.hypot(*ahead) * np.hypot(*behind) * across)
     return curvature
 
@@ -365,12 +367,14 @@ def unlawful_place(law: CurvatureLaw, stop: float) -> float | None:
     lows = _lows(law, places, slopes)
     places = np.concatenate([places, lows])
     values = np.concatenate([values, derivatives(law, lows)[0]])
+    # from 0 outwards, as the cam is designed
     order = np.argsort(np.abs(places), kind="stable")
     places, values = places[order], values[order]
     wrong = np.flatnonzero(~_lawful(values))
     if not wrong.size:
         return None
     first = int(wrong[0])
+    # nothing lawful lies before: there is no bracket to bisect
     if not first:
         return float(places[0])
     ends = bisect(
@@ -385,7 +389,7 @@ def lawful(law: CurvatureLaw, phi: float) -> bool:
 
 
 def refusal(law: CurvatureLaw, phi: float) -> InputError:
-    """What is said of a curvature that is not one of a cam at an angle."""
+    """Error for a curvature that is not one of a cam at an angle [rad]."""
     value = float(derivatives(law, np.array([phi]))[0, 0])
     angle = math.degrees(phi)
     if not math.isfinite(value):
@@ -400,6 +404,7 @@ def refusal(law: CurvatureLaw, phi: float) -> InputError:
 def _mesh(law: CurvatureLaw, stop: float) -> Array:
     count = min(MOST_NODES, 3 + math.ceil(abs(stop) / (2 * math.pi) * NODES_OF_A_TURN))
     low, high = min(0.0, stop), max(0.0, stop)
+    # between knots the slope is smooth: a least value lies there or at a knot
     knots = [place for place in law.breaks if low < place < high]
     places = np.unique(np.concatenate([np.linspace(0.0, stop, count), knots]))
     return places if stop >= 0 else places[::-1]

@@ -151,7 +151,7 @@ def _march(
 def _leg(
     law: CurvatureLaw, place: Array, target: float, sense: int, tolerance: float
 ) -> tuple[IntegrationLeg, Array, bool]:
-    """One leg, the state at its end, and whether the follower stalls there."""
+    """Leg of an integration, the state (3,) at its end, and whether the follower stalls there."""
     onwards = _beyond(law, target, sense)
 
     def curvature(angles: Array) -> Array:

@@ -219,7 +219,7 @@ NEWTON = 40
 
 @dataclass(frozen=True)
 class Convergence:
-    """How far the series about phi = 0 converges.
+    """Convergence of the series about phi = 0.
 
     Attributes
     ----------

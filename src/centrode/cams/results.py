@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,8 @@ from centrode.cams.path_series import path_of
 from centrode.cams.profiles import ProfileBody, cam_body
 from centrode.cams.return_arc import ClosedPath
 from centrode.cams.roller_path import Array, angles_of, frames, stalls_of
-from centrode.cams.walking_wheel import Shoe, WheelMover, mover
-from centrode.errors import InputError
+from centrode.cams.walking_wheel import Shoe, WheelMover, WheelRolling, mover, rolling
+from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model import reading
@@ -101,6 +102,54 @@ def _angles(closed: ClosedPath, samples: int) -> Array:
     return np.sort(np.concatenate([even[apart], joints]))
 
 
+@dataclass(frozen=True)
+class CamProfileResults:
+    """The profile that a roller leaves of its cam.
+
+    Attributes
+    ----------
+    cam : Cam
+    groove : whether the outer wall is wanted too
+    body : the closed path with its roller; None where there is none
+    dataset : the labelled profile; None without a body
+    refusal : why there is no body
+    """
+
+    cam: Cam
+    groove: bool
+    body: ProfileBody | None
+    dataset: xr.Dataset | None
+    refusal: MotionError | None = None
+
+
+def cam_profile_results(
+    cam: AnyCam, samples: int | None = None, *, groove: bool = False
+) -> CamProfileResults:
+    """The profile of a cam by a curvature law, also where there is none: then with the reason.
+
+    Parameters
+    ----------
+    cam : Cam
+    samples, groove : as of `cam_profile`
+
+    Raises
+    ------
+    InputError
+        As `cam_body`; a cam that is given by its follower's lift.
+    """
+    cam = require_curvature_cam(cam)
+    try:
+        body = cam_body(cam)
+    except MotionError as refusal:
+        return CamProfileResults(cam, groove, None, None, refusal)
+    return CamProfileResults(cam, groove, body, profile_dataset(body, count_of(cam, samples), groove=groove))
+
+
+def has_roller(cam: AnyCam) -> bool:
+    """Whether a curvature law gives the cam, and a roller its profile."""
+    return isinstance(cam, Cam) and cam.roller is not None
+
+
 def shoe_profile(cam: Cam, samples: int | None = None) -> xr.Dataset:
     """The shoe of a walking wheel and the travel of its hub.
 
@@ -177,7 +226,124 @@ def count_of(cam: Cam, samples: int | None) -> int:
     return count
 
 
+INSTANTS = 6
+"""Instants over a step, where none are chosen."""
+
+
+@dataclass(frozen=True)
+class WalkingWheelResults:
+    """A walking wheel with the proof that it rolls level without slip.
+
+    Attributes
+    ----------
+    cam : Cam
+    wheel : the wheel; None where there is none
+    proof : of the wheel
+    dataset : the labelled shoe, with the travel of the hub
+    uneven : stretches [rad] of a standing leg on which the profile is undercut, so that the roller leaves its path
+    instants : angles [rad] by which the carrier has turned, to show the wheel there
+    refusal : why there is no shoe; None as well where the cam has no profile, which the profile says
+    """
+
+    cam: Cam
+    wheel: WheelMover | None = None
+    proof: WheelRolling | None = None
+    dataset: xr.Dataset | None = None
+    uneven: tuple[tuple[float, float], ...] = ()
+    instants: tuple[float, ...] = ()
+    refusal: MotionError | None = None
+
+
+def walking_wheel_results(
+    cam: AnyCam, samples: int | None = None, *, instants: Sequence[float] = ()
+) -> WalkingWheelResults:
+    """The walking wheel of a description, also where there is none: then with the reason.
+
+    Parameters
+    ----------
+    cam : Cam
+    samples : int
+        As of `shoe_profile`.
+    instants : angles [rad]
+        That the carrier has turned; those of the description, otherwise some over a step, if there are none.
+
+    Raises
+    ------
+    InputError
+        As `walking_wheel`; a cam that is given by its follower's lift.
+    """
+    cam = require_curvature_cam(cam)
+    try:
+        body = cam_body(cam)
+    except MotionError:
+        return WalkingWheelResults(cam)
+    try:
+        wheel = wheel_of(cam, body)
+    except MotionError as refusal:
+        return WalkingWheelResults(cam, refusal=refusal)
+    pitch = math.tau / wheel.legs
+    even = tuple(pitch * (number / (INSTANTS - 1) - 0.5) for number in range(INSTANTS))
+    return WalkingWheelResults(
+        cam,
+        wheel,
+        rolling(wheel),
+        shoe_dataset(wheel, count_of(cam, samples)),
+        tuple(_uneven(body, wheel)),
+        tuple(instants) or cam.study.instants or even,
+    )
+
+
+def _uneven(body: ProfileBody, wheel: WheelMover) -> list[tuple[float, float]]:
+    """Stretches [rad] of a standing leg on which the profile is undercut."""
+    found = []
+    for cut in body.undercuts:
+        for turn in (0.0, math.tau):
+            start, stop = max(cut.start - turn, -wheel.half), min(cut.stop - turn, wheel.half)
+            if stop - start > SAME:
+                found.append((start, stop))
+    return sorted(found)
+
+
+def has_mover(cam: AnyCam) -> bool:
+    """Whether a curvature law gives the cam, and it is that of a wheel with legs."""
+    return isinstance(cam, Cam) and cam.mover is not None
+
+
 # Contact stress of a described cam as a labelled result.
+
+
+@dataclass(frozen=True)
+class CamContactResults:
+    """The contact of roller and cam over the working arc.
+
+    Attributes
+    ----------
+    cam : Cam
+    dataset : of `cam_contact`
+    """
+
+    cam: Cam
+    dataset: xr.Dataset
+
+    @property
+    def missing(self) -> int:
+        """Number of samples at which roller and cam do not touch: the cam is undercut there."""
+        return int(np.isnan(self.dataset["contact_stress"].to_numpy()).sum())
+
+    @property
+    def worst(self) -> int:
+        """Number of the sample with the greatest stress."""
+        return int(np.nanargmax(self.dataset["contact_stress"].to_numpy()))
+
+
+def cam_contact_results(cam: AnyCam, samples: int | None = None) -> CamContactResults:
+    """The contact of roller and cam; parameters and errors are those of `cam_contact`."""
+    return CamContactResults(require_curvature_cam(cam), cam_contact(cam, samples))
+
+
+def has_contact(cam: AnyCam) -> bool:
+    """Whether a curvature law gives the cam, and a force presses its roller on it."""
+    return isinstance(cam, Cam) and cam.contact is not None
 
 
 def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:

@@ -266,7 +266,7 @@ GAUSS_NODES = 96
 
 @dataclass(frozen=True)
 class Ends:
-    """What a return arc has to join: angles [rad] and derivatives of the radius there, from value on [m/rad^k]."""
+    """Ends that a return arc joins: angles [rad] and derivatives of the radius there, from value on [m/rad^k]."""
 
     start: float
     stop: float

@@ -164,7 +164,7 @@ class RollerPath(Protocol):
 
 
 class StatePath:
-    """What follows from the state (rho, eta, cos gamma) at a place: derivatives of any order by the equations.
+    """Derivatives of any order from the state (rho, eta, cos gamma) at a place, by the equations.
 
     So a derivative is as accurate as the state, whatever its order; towards a stall they grow without bound.
     """
@@ -395,7 +395,7 @@ def check_start(rho0: float, gamma0: float, start: float, stop: float) -> None:
 
 
 def no_series(phi: float) -> InputError:
-    """What is said of a path that cannot be expanded at an angle."""
+    """Error for a path that cannot be expanded at an angle [rad]."""
     what = _("the path has no Taylor series at {angle:.6g} deg").format(angle=math.degrees(phi))
     repair = _(
         "roots of what vanishes there are not smooth, and what changes too quickly leaves the range of numbers"
@@ -404,7 +404,7 @@ def no_series(phi: float) -> InputError:
 
 
 def runs_away(phi: float) -> InputError:
-    """What is said of a path that leaves the cam."""
+    """Error for a path that leaves the cam at an angle [rad]."""
     what = _(
         "the path runs away from the cam's centre: at {angle:.6g} deg ρ is {growth:g} times that of the start"
     )

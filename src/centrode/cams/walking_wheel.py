@@ -124,7 +124,7 @@ class Shoe:
 
     @cached_property
     def _near(self) -> float:
-        """How far the series is good to rounding: to no side where the law breaks at 0 without symmetry."""
+        """Angle [rad] up to which the series is good to rounding; 0 where the law breaks at 0 without symmetry."""
         if 0.0 in self.arc.breaks and not isinstance(self.arc.curve, SymmetricPath):
             # the two series differ there, so neither side has one that holds for both
             return 0.0
@@ -272,7 +272,7 @@ class WheelMover:
         return np.asarray(self.height + self.shoe.arc.curve.radius(phi, 1)[1] * np.sin(phi))
 
     def touch(self, phi: Array) -> Array:
-        """How far the contact lies before the hub (n) [m]: -H' cos phi."""
+        """Distance of the contact before the hub (n) [m]: -H' cos phi."""
         return np.asarray(-self.shoe.arc.curve.radius(phi, 1)[1] * np.cos(phi))
 
     @cached_property

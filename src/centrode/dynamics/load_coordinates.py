@@ -223,7 +223,7 @@ class Spin:
 
 @dataclass(frozen=True)
 class Travel:
-    """How far the drive has gone, whichever way: what works along it resists the drive itself."""
+    """Way of the drive, whichever its sense: what works along it resists the drive itself."""
 
     def value(self, state: State) -> Number:
         return float("nan")

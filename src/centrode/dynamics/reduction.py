@@ -142,6 +142,7 @@ class Reducer:
             raise InputError("jumps", _("the range must be finite"))
         mesh = self._along(np.array([low, high])).mesh
         inner = mesh[(mesh > low) & (mesh < high)]
+        # the nodes of the motion itself, so that jumps are the same whatever range is asked about
         nodes = np.concatenate([[low], inner, [high]]) if high > low else np.array([low])
         return jumps_of(
             self.burden.loads if loads is None else loads,
@@ -163,7 +164,7 @@ class Reducer:
     def moving(
         self, values: Array, rate: npt.ArrayLike | None = None, time: npt.ArrayLike | None = None
     ) -> DriveMotion:
-        """How the drive passes values, as `at` takes it."""
+        """Motion of the drive at values (n), with speed and time as `at` takes them."""
         path = self.ready.kinematics.path
         speed = self.default_rate if rate is None else np.asarray(rate, dtype=np.float64)
         if speed is None:
@@ -220,6 +221,7 @@ def _sense_only(reducer: Reducer, values: Array) -> DriveMotion:
 def reduce_state(burden: MassesAndLoads, state: State, status: npt.NDArray[np.int8]) -> Reduced:
     """A state of one mechanism reduced; InputError for a load without a finite value."""
     count = len(state.parameter)
+    # in parts first: sums and parts of a result agree to the last bit
     inertia, slope = shares(state, burden.masses, (1, count))
     moments = np.empty((len(burden.loads), 1, count))
     # where derivatives exist: nothing is reduced at limits

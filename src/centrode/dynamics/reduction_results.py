@@ -143,7 +143,7 @@ def _by_drives(reduction: xr.Dataset, variable: str, along: Array) -> Iterator[P
 
 
 def _along(reduction: xr.Dataset) -> Array:
-    """What means are taken over: the value of the only drive where it runs one way, else time."""
+    """Abscissa of means (n): the value of the only drive where it runs one way, else time [s]."""
     values, time = (np.asarray(reduction[name].to_numpy()) for name in ("drive_value", "time"))
     steps = np.diff(values[:, 0])
     # over time where the drive comes back: over its value the way forth and back would cancel

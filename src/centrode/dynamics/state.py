@@ -110,7 +110,7 @@ class LinkNumbers:
 
     @property
     def where(self) -> str:
-        """What messages call it."""
+        """Place of the link in the description, for messages."""
         return f"[links.{self.name}]"
 
     def number(self, key: str, own: float) -> Number:
@@ -298,7 +298,7 @@ class State:
 
 @dataclass(frozen=True)
 class DriveMotion:
-    """How the path is run through at samples: time [s], parameter, and its derivative by time, each (n)."""
+    """Motion of the drive at samples: time [s], the path's parameter, and its derivative by time, each (n)."""
 
     time: Array
     parameter: Array
@@ -306,7 +306,7 @@ class DriveMotion:
 
 
 def getters_of(solved: Solved, one: Callable[[Any], Any]) -> dict[str, Getter]:
-    """What gives the numbers of a motion, of its arrays seen through a function."""
+    """Functions that give the numbers of a motion by kind, of its arrays seen through the function `one`."""
     axes = solved.layout.axes
     points, angles, slides = one(solved.points), one(solved.angles), one(solved.slides)
     attitudes = None if solved.attitudes is None else one(solved.attitudes)
@@ -324,7 +324,7 @@ def getters_of(solved: Solved, one: Callable[[Any], Any]) -> dict[str, Getter]:
 
 
 def length_unit(mechanism: Mechanism) -> float:
-    """What a length of the description is [m]: on the sphere it is an arc, of a sphere of this radius."""
+    """Metres of one unit of length in the description: on the sphere, where lengths are arcs, its radius."""
     return mechanism.sphere_radius if mechanism.space == "sphere" else 1.0
 
 

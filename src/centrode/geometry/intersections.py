@@ -41,7 +41,7 @@ class MovingLocus(Protocol):
 
     @property
     def gradient(self) -> Place:
-        """What the locus multiplies every coefficient of the point by."""
+        """Gradient of the locus by the coordinates of the point, the factor of each of its coefficients."""
 
     def next(self, k: int) -> Number:
         """The gradient multiplied by the point's k-th coefficient, those before being known."""
@@ -328,7 +328,7 @@ def meet_circles_on_sphere(
 
 
 def _across(loci: Sequence[AtDistance | OnLine], cells: Cells) -> tuple[Number, Number]:
-    """How far each of two loci can move the place it holds: by the length of the other's gradient."""
+    """Reach of each of two loci over a cell: bound on the shift it gives, by the length of the other's gradient."""
     one, other = (locus.reach(cells) for locus in loci)
     return other, one
 

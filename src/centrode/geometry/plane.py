@@ -115,7 +115,7 @@ def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_secon
 
 
 def _inverse(a: Vector) -> Vector:
-    """What turns a vector back to the first axis and to unit length.
+    """Reciprocal of a vector as a complex number: it turns the vector to the first axis and to unit length.
 
     A link's own numbers do not move: one division serves all places, and all derivatives.
     """

@@ -1,4 +1,4 @@
-"""What structure and motion need of a geometry, so that neither has to know in which space it works.
+"""Operations of a geometry that structure and motion need, so that neither knows in which space it works.
 
 Places, poses and loci are whatever the space makes of them; coordinates in a link's own axes are pairs of
 numbers in both: (x, y) [m] in the plane, (longitude, latitude) [rad] on the sphere. The curve of a guide is
@@ -72,7 +72,7 @@ class Space(Protocol):
         """Pose from these numbers and the place of one point."""
 
     def stretch(self, attitude: Sequence[Number]) -> list[Number]:
-        """What is zero as long as a link keeps its own distances."""
+        """Residuals that are zero as long as a link keeps its own distances."""
 
     def rotor(
         self, m: Namespace, pose: Pose, points: Sequence[Coordinates], towards: Sequence[Place]
@@ -138,7 +138,7 @@ class Space(Protocol):
         """Distance of two places."""
 
     def leverage(self, m: Namespace, first: Coordinates, second: Coordinates) -> Number:
-        """How well two points of a link tell how it is turned, compared with lengths."""
+        """How well two points of a link determine its attitude: their distance, on the sphere the sine of their arc."""
 
     def reach(self, m: Namespace, curve: Curve, at: Place) -> Number:
         """Distance of a guide's curve from a place in the axes of the body that carries it."""
@@ -177,7 +177,7 @@ class Space(Protocol):
         """Derivatives of `turn` by the coordinates of link and base."""
 
     def slid(self, m: Namespace, point: Place, pose: Pose, curve: Curve, displacement: Number) -> Number:
-        """How far a point is beyond a displacement along a guide."""
+        """Displacement of a point along a guide, less a given displacement."""
 
     def slid_row(self, m: Namespace, point: Place, pose: Pose, curve: Curve) -> Rows:
         """Derivatives of `slid` by the coordinates of point and link."""

@@ -21,7 +21,7 @@ HalfArc: TypeAlias = tuple[Number, Number]
 
 
 class Attitude(NamedTuple):
-    """How a link stands: its own axes in those of the frame."""
+    """Attitude of a link: its own axes, as unit vectors in those of the frame."""
 
     x: Vector
     y: Vector
@@ -334,7 +334,7 @@ def stereographic_slopes(m: Namespace, point: Vector, pose: Attitude, local: Coo
 def azimuth(
     m: Namespace, point: Vector, pose: Attitude, pole: Coordinates
 ) -> tuple[Number, Number, Vector, Vector]:
-    """How far a point is to the north and to the west of a pole that a link carries, and both directions."""
+    """Components of a point to the north and to the west of a pole that a link carries, and both unit vectors."""
     north, west = (vector_in_frame(pose, axis) for axis in meridian(m, pole))
     return dot(point, north), dot(point, west), north, west
 

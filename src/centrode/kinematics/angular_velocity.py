@@ -1,4 +1,4 @@
-"""How links turn in space: angular velocities and accelerations as vectors in the frame's axes."""
+"""Angular velocities and accelerations of links in space, as vectors in the frame's axes."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def _below(sine: Array) -> Side:
 
 
 def _turns_between(cosine: Array, below: Side, next_cosine: Array, next_below: Side) -> Side:
-    """What to add to the turns from one rotor to the next: 1 past the angle pi, -1 back.
+    """Change of the number of turns from one rotor to the next: 1 past the angle pi, -1 back.
 
     Two unit vectors on either side of the x axis are less than half a turn apart across its negative half
     exactly if their cosines have a negative sum.

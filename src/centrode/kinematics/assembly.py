@@ -396,7 +396,7 @@ def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bo
 
 
 def _distance(space: Space, group: Group, one: Positions, other: Positions) -> float:
-    """How far apart the two assemblies of a group are."""
+    """Distance of the two assemblies of a group: the greatest over its points and links."""
     apart = [np.linalg.norm(np.subtract(one.points[p], other.points[p])) for p in group.points]
     if isinstance(group, Aim):
         arm = np.linalg.norm(np.subtract(one.points[group.target], one.points[group.pivot]))

@@ -85,7 +85,7 @@ def side_words(space: Space, group: Group) -> tuple[str, str]:
 
 
 def side_choice(space: Space, group: Group) -> str:
-    """How a side of the group is written."""
+    """Text of a group's side as a description writes it, both choices."""
     first, second = side_words(space, group)
     return f'{side_names(group)[0]} = "{first}" | "{second}"'
 
@@ -121,7 +121,7 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
 
 
 def turned_apart(space: Space, link: str, one: Positions, other: Positions) -> float:
-    """How far a link is turned from one position to another: the length of the difference of its axes."""
+    """Difference of a link's attitude in two positions: the length of the difference of its axes."""
     first, second = (space.attitude(at.poses[link]) for at in (one, other))
     return float(np.linalg.norm(np.subtract(first, second)))
 
@@ -234,7 +234,7 @@ def _of_circles(reason: int, names: list[str], by: str) -> str:
 
 
 def circle_name(locus: Locus) -> str:
-    """What draws the circle of a locus; nothing for a line."""
+    """Name of what draws the circle of a locus, for messages; empty for a line."""
     match locus:
         case Rod(link=link):
             return _("link {link}").format(link=link)
@@ -249,7 +249,7 @@ def circle_name(locus: Locus) -> str:
 
 
 def line_name(group: Aim) -> str:
-    """What an aimed link passes its target with."""
+    """Name of the guide or wheel with which an aimed link passes its target, for messages."""
     if group.contact is not None:
         return _("wheel {wheel}").format(wheel=group.contact.rolling)
     return _("guide {guide}").format(guide=group.guide)
@@ -292,7 +292,7 @@ class Bounding(Starting):
 
 
 class OneSide(Starting):
-    """One of a group's two assemblies; refused if it falls short of closing."""
+    """Policy that takes one of a group's two assemblies, and refuses a group that falls short of closing."""
 
     def __init__(
         self, kinematics: Kinematics, group: Group, known: Positions, sign: float, bound: float

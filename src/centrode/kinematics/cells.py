@@ -77,7 +77,7 @@ class CellPieces:
         return cls(lane, centre, *wide)
 
     def take(self, which: npt.NDArray[np.intp] | Mask) -> CellPieces:
-        """Some of the cells."""
+        """Cells with these numbers, or where a mask is true."""
         return CellPieces(*(getattr(self, each.name)[which] for each in fields(self)))
 
     def sort_by_path(self) -> CellPieces:

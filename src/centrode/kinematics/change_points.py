@@ -67,13 +67,13 @@ class Windows:
         return len(self.lane)
 
     def of(self, which: Lanes | Mask) -> Windows:
-        """Some of the stretches."""
+        """Stretches with these numbers, or where a mask is true."""
         return Windows(self.lane[which], self.centre[which], self.half[which], self.radius[which])
 
 
 @dataclass(frozen=True)
 class ChangePointSeries:
-    """What a group gives about its change points.
+    """Power series of a group's numbers about its change points.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ def inside(windows: Windows, along: Array, lanes: Lanes | None) -> tuple[Index, 
 
 
 def numbers_of(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
-    """Everything a group gives, number by number."""
+    """Coordinates and angles that a group gives, number by number."""
     which = kinematics.structure.groups[group]
     numbers = [x for point in which.points for x in at.points[point]]
     for link in which.links:
@@ -265,7 +265,7 @@ class BranchedPlan:
     _series: dict[int, ChangePointSeries] = field(default_factory=dict)
 
     def hooks(self, m: Namespace, parameter: Array, lanes: Lanes | None) -> Smooth:
-        """What runs the plan over any algebra at parameters: (n,) for all lanes, or one lane for each."""
+        """Policy that runs the plan over any algebra at parameters: (n,) for all lanes, or one lane for each."""
         return Smooth(self, m, parameter, lanes)
 
     def trace(self, group: int, extent: tuple[float, float]) -> None:
@@ -387,7 +387,7 @@ class BranchedPlan:
         return replace(windows, half=half, radius=best), series.without_rounding()
 
     def _around(self, group: int, windows: Windows) -> tuple[ChangePointSeries, Mask]:
-        """What a group gives on circles, as series, and which circles hold no singularity."""
+        """Power series of a group's numbers on circles, and a mask of the circles that hold no singularity."""
         numbers, followed = self._on_circles(group, windows)
         bounds = self._bounds_on_circles(group, windows)
         whole, lost = followed, np.full(len(windows), np.inf)

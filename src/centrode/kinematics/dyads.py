@@ -315,7 +315,7 @@ def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions
 
 
 class Choices(Protocol):
-    """What decides where a formula has several answers."""
+    """Choices between the several solutions of a formula."""
 
     def root(self, radicand: Number) -> Number:
         """The signed root of a radicand: the sign is the branch."""

@@ -98,7 +98,7 @@ def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]
 
 
 def bent_frame(kinematics: Kinematics, at: Array, half: Array | float) -> Positions:
-    """What is known before the first group of the plan, over cells about parameters."""
+    """Positions before the first group of the plan, as numbers with bounded bends over cells about parameters."""
     return Positions.of_frame(kinematics.numbers, bent_drives(kinematics.path, at, half), BENDS)
 
 
@@ -283,7 +283,7 @@ class Zeros:
 
     @property
     def branches(self) -> Branches:
-        """What was found of the groups before."""
+        """Signs and events of the groups solved before."""
         return self.guards.continuation.branches
 
     @cached_property
@@ -486,7 +486,7 @@ class EventScan:
 
     @property
     def branches(self) -> Branches:
-        """What is found is recorded here."""
+        """Record of signs and events, which the scan fills."""
         return self.continuation.branches
 
     def run(self) -> Positions:
@@ -515,7 +515,7 @@ class EventScan:
 
     @cached_property
     def zeros(self) -> Zeros:
-        """What looks for their zeros, as far as their second derivatives are bounded."""
+        """Search for zeros of radicands and divisors whose second derivatives are bounded."""
         return Zeros(self.guards, self.mesh)
 
     def find(self, group: int, radicand: Number) -> None:

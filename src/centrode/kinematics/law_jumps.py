@@ -49,7 +49,7 @@ class _Watching(JetFunctions):
         self.kept: list[Jet] = []
 
     def divisor(self, x: Number) -> Number:
-        """What is divided by, as it is."""
+        """Divisor unchanged; it is kept, as a law may jump at its zero."""
         return self._keep(x)
 
     def sign(self, x: Number) -> Number:

@@ -105,7 +105,7 @@ def by_time(orders: Orders, order: int, span: SampleGrid) -> Array | None:
 
 @dataclass(frozen=True)
 class VariableKind:
-    """What has a value and two derivatives by the path's parameter: names by time, prefix per unit of the drive."""
+    """Kind of quantity with value and two derivatives by the path's parameter: names by time, prefix by the drive."""
 
     names: tuple[str, str, str]
     prefix: str
@@ -114,7 +114,7 @@ class VariableKind:
 
 
 def kinds_of(solved: Solved) -> list[VariableKind]:
-    """Everything of a motion that has derivatives."""
+    """Quantities of a motion that have derivatives."""
 
     def orders(values: Array) -> Orders:
         return values[0], values[1], values[2]

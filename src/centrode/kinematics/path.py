@@ -81,7 +81,7 @@ class TimeScale:
         return min(self._unit(k) for k in self._stretches(low, high))
 
     def turns(self, low: float, high: float) -> float:
-        """How many turns of the fastest drive, at its greatest rate on each stretch, lie between two times."""
+        """Turns of the fastest drive, at its greatest rate on each stretch, between two times [s]."""
         total = 0.0
         for k in self._stretches(low, high):
             first, last = _ends(k, self.base)
@@ -186,7 +186,7 @@ class DrivenBy:
 
 @dataclass(frozen=True)
 class Path:
-    """How the drives move.
+    """Motion of the drives along one parameter.
 
     Attributes
     ----------
@@ -230,7 +230,7 @@ class Path:
         return self.unit * tau / NODES_PER_TURN
 
     def unit_at(self, parameter: float) -> float:
-        """What counts as large near a parameter."""
+        """Unit of the parameter near a value of it: a change that counts as large."""
         return self.unit if self.pace is None else self.pace.unit_at(parameter)
 
     def within(self, low: float, high: float) -> Path:

@@ -25,7 +25,7 @@ Namespace: TypeAlias = Any
 
 
 class EvaluationPolicy:
-    """What decides while a plan is run, group by group; this one decides nothing and looks at nothing."""
+    """Policy of a plan's evaluation, group by group; this one decides nothing and looks at nothing."""
 
     def root(self, group: int, radicand: Number) -> Number:
         """The signed root of a group's radicand: the sign is the branch."""
@@ -44,7 +44,7 @@ class EvaluationPolicy:
         raise NotImplementedError
 
     def after(self, group: int, at: Positions) -> None:
-        """What is done after a group is solved."""
+        """Hook that is called after a group is solved."""
 
 
 class FixedSigns(EvaluationPolicy):
@@ -111,7 +111,7 @@ class Kinematics:
         return at
 
     def frame(self, m: Namespace, parameter: Number) -> Positions:
-        """What is known before the first group of the plan."""
+        """Positions before the first group of the plan, at a parameter over the algebra of `m`."""
         return Positions.of_frame(self.numbers, self.path.drive_values(m, parameter), m)
 
     def advance(self, at: Positions, groups: range, m: Namespace, hooks: EvaluationPolicy) -> None:

@@ -51,7 +51,7 @@ class Ready:
 
     @property
     def parameter(self) -> MotionParameter:
-        """What a motion is a function of: time or the value of the one drive."""
+        """Parameter of the motion: time [s], or the value of the one drive [rad or m]."""
         return self.kinematics.path.parameter
 
     @property

@@ -47,7 +47,7 @@ class QuickTurns:
 
     @cached_property
     def stretches(self) -> list[ParameterStretch]:
-        """One for each change point, or for several that are next to each other."""
+        """Stretches of the path, one for each change point, or for several that are next to each other."""
         places: dict[int, list[tuple[float, float]]] = {}
         for group in range(len(self.continuation.kinematics.structure.groups)):
             # groups at or behind `end` are still being searched
@@ -81,14 +81,14 @@ class QuickTurns:
             return kinematics.positions(ARRAYS, self._parameter, hooks), kinematics.numbers
 
     def measure(self, angle: Callable[[Dimensions, Positions], Number]) -> list[TurnedStretch]:
-        """How an angle turns on the stretches, by what gives it in (-pi, pi] from dimensions and positions."""
+        """Turns of an angle on the stretches, from a function that gives it in (-pi, pi]."""
         if not self.stretches:
             return []
         at, numbers = self._positions
         return self._divide_stretches(angle(numbers, at))
 
     def in_plan(self, group: int, key: str) -> list[TurnedStretch]:
-        """How an angle turns that a group of the plan itself counts."""
+        """Turns on the stretches of an angle that a group of the plan itself counts."""
         if not self.stretches:
             return []
         kinematics = self.continuation.kinematics.take(self._lanes)

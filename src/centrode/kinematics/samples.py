@@ -281,7 +281,7 @@ class ResultArrays:
 
     @property
     def spins(self) -> Array | None:
-        """How links turn in space (2, lanes, n, links, 3); none in the plane."""
+        """Rotation vectors of links and their derivatives (2, lanes, n, links, 3); None in the plane."""
         return spins_of(self.layout, self.samples.columns)
 
     @property
@@ -394,7 +394,7 @@ CLOSED = 1e-7
 
 @dataclass(frozen=True)
 class UnitLength:
-    """What a link's axes keep: their unit length, that is, the distances within the link."""
+    """Constraint that a link's axes keep their unit length, that is, the distances within the link."""
 
     link: str
 
@@ -454,7 +454,7 @@ def open_what_does_not_close(samples: Samples, residual: Array) -> None:
 
 @dataclass(frozen=True)
 class Filled:
-    """What is found at samples besides their columns: positions as plain arrays, residuals, the worst constraint."""
+    """Results at samples besides their columns: positions as plain arrays, residuals, the worst constraint."""
 
     at: Positions
     residual: Array

@@ -70,6 +70,7 @@ class Solved:
         """Events between the ends of the span and the initial position, in the order of the path."""
         initial = self.ready.kinematics.path.initial
         ends = [initial, float(np.min(self.span.parameter)), float(np.max(self.span.parameter))]
+        # an event at an end of the span was found with an error of rounding
         margin = 1e-9 * self.branches.unit
         inside = [e for e in self.branches.events if min(ends) - margin <= e.at <= max(ends) + margin]
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)
@@ -132,7 +133,7 @@ def solve(
 
 
 def lanes_at_once(kinematics: Kinematics, span: SampleGrid) -> int:
-    """How many mechanisms of a batch are solved together."""
+    """Number of mechanisms of a batch that are solved together."""
     return max(1, CHUNK // max(len(span.parameter), len(mesh_of(kinematics.path, span.parameter))))
 
 
@@ -203,7 +204,7 @@ def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kine
 
 @dataclass(frozen=True)
 class _Part:
-    """What is found for some mechanisms of a batch besides the samples."""
+    """Results of some mechanisms of a batch besides the samples."""
 
     branches: Branches
     residual: Array

@@ -1,4 +1,4 @@
-"""What a motion law is."""
+"""Motion laws."""
 
 from __future__ import annotations
 

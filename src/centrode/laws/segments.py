@@ -427,7 +427,7 @@ class SegmentedLaw:
 
     @property
     def period(self) -> float:
-        """How long all segments last together [s]."""
+        """Duration of all segments together [s]."""
         return self.whole.breaks[-1]
 
     @property
@@ -436,7 +436,7 @@ class SegmentedLaw:
         return None if self.repeat else (0.0, self.period)
 
     def at_joint(self, number: int, m: Any, t: Number) -> tuple[Number, Number]:
-        """What the formulas before and behind the end of a segment, counted from 0, give at t over the algebra of `m`.
+        """Values at t of the formulas before and behind the end of a segment, counted from 0, over the algebra of `m`.
 
         At the last end the formula behind it is that of the first segment, a period later, where they repeat.
         """

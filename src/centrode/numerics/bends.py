@@ -55,7 +55,7 @@ class Cells:
 
     @cached_property
     def sagitta(self) -> Number:
-        """What a bend is multiplied by to bound how far a number strays from its tangent."""
+        """Factor of a bend that bounds the distance of a number from its tangent: half the squared half width."""
         return 0.5 * self.half * self.half
 
     def size(self, x: Number) -> Number:
@@ -78,7 +78,7 @@ class Bent(Jet):
 
     @property
     def strays(self) -> Number:
-        """How far the number may be from its value anywhere in the cell."""
+        """Bound on the difference of the number, anywhere in the cell, from its value in the middle."""
         cells = self.cells
         return plus(times(cells.size(self.coefficients[1]), cells.half), times(self.bend, cells.sagitta))
 
@@ -89,7 +89,7 @@ class Bent(Jet):
 
     @property
     def least(self) -> Number:
-        """What its size does not fall below; negative where it may be zero."""
+        """Lower bound of the number's size over the cell; negative where it may be zero."""
         return self.cells.size(self.coefficients[0]) - self.strays
 
     @property

@@ -41,7 +41,7 @@ class Graph:
 
     @cached_property
     def counts(self) -> Counter[str]:
-        """How often each operation is carried out."""
+        """Number of nodes of each operation; constants and variables are not counted."""
         return Counter(node.operation for node in self.order if node.arguments)
 
     @cached_property
@@ -101,7 +101,7 @@ def rebuilt(
 def split_graph(
     graph: Graph, names: Iterable[str], prefix: str, only: Container[str] | None = None
 ) -> tuple[Graph, Graph]:
-    """What depends on some variables alone, and the rest with that as variables.
+    """Graph of what depends on some variables alone, and the rest of the graph with that as variables.
 
     The first graph computes the greatest parts that depend on nothing but `names`; they are variables
     `prefix 0`, `prefix 1` ... of the second. With `only`, parts are results of the operations it names.
@@ -291,7 +291,7 @@ def graph_listing(graph: Graph) -> str:
 
 
 def operation_counts(graph: Graph) -> str:
-    """How many operations of each kind the graph has, the most frequent first."""
+    """Numbers of operations of each kind as text, the most frequent first."""
     return ", ".join(f"{number} {operation}" for operation, number in graph.counts.most_common())
 
 

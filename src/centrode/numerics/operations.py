@@ -11,7 +11,7 @@ VARIABLE, CONSTANT = "variable", "constant"
 
 
 class Operation(NamedTuple):
-    """What is known of an operation.
+    """Properties of an operation.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ NEXT = "next "
 
 @dataclass(frozen=True)
 class Scan:
-    """What is computed at every step for every lane.
+    """Recurrence that is computed at every step for every lane.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Scan:
 
     @cached_property
     def key(self) -> tuple[object, ...]:
-        """What tells the scan from all others, the same in every process."""
+        """Key that distinguishes the scan from all others, equal in every process."""
         return self.parameters, self.inputs, tuple(self.state), self.graph.key
 
     def with_graph(self, graph: Graph, parameters: tuple[str, ...], inputs: tuple[str, ...]) -> Scan:
@@ -71,7 +71,7 @@ class Scan:
 
 
 class Scanned(NamedTuple):
-    """What a scan gives.
+    """Result of a scan.
 
     Attributes
     ----------
@@ -94,12 +94,12 @@ class Call:
 
     @property
     def lanes(self) -> int:
-        """How many lanes there are."""
+        """Number of lanes."""
         return int(self.outputs.shape[2])
 
     @property
     def steps(self) -> int:
-        """How many steps there are."""
+        """Number of steps."""
         return int(self.outputs.shape[1])
 
 
@@ -218,7 +218,7 @@ def total(name: str, value: Node) -> Reduction:
 
 
 def number_of(name: str, value: Node) -> Reduction:
-    """How many values there are."""
+    """Reduction that counts the values that are not NaN."""
     return Reduction({name: _more(name, value, 1.0)}, {name: 0.0})
 
 

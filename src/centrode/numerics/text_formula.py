@@ -30,7 +30,9 @@ class SourceText:
         self.source, self.columns = "", [0]
         for column, character in enumerate(text):
             read = " " if character.isspace() else character.replace("^", "**")
+            # a space at the beginning would be an indentation to Python
             if self.source or read != " ":
+                # one more than characters: an error may point behind the last one
                 self.columns[-1:] = [column] * (len(read) + 1)
                 self.source += read
 
@@ -56,6 +58,7 @@ class SourceText:
 
     def at(self, node: ast.expr, what: str, repair: str = "") -> InputError:
         """Complaint about a node, at its place in the user's text."""
+        # Python counts bytes of UTF-8, users count characters
         before = self.source.encode()[: node.col_offset].decode(errors="ignore")
         return self.error(self.columns[len(before)], what, repair)
 
@@ -70,6 +73,7 @@ class SourceText:
             if not character.isspace() and unicodedata.normalize("NFKC", character) != character:
                 what = _("a formula has no such character")
                 raise self.error(column, what, _("write plain letters and digits"))
+        # Python takes "2in x" or "1if" for words: a person forgot a sign
         pasted = _PASTED.search(self.text)
         if pasted:
             repair = _('write "{number}*..."').format(number=pasted.group())
@@ -144,6 +148,7 @@ class _FormulaReader:
     def formula(self) -> TextFormula:
         tree = self.source.tree()
         body = self.node(tree, 0)
+        # last: what is no formula at all has a complaint that says more
         self.refuse_numbers_without_value(tree)
         return TextFormula(self.source.text, self.variables, frozenset(self.used), body)
 
@@ -184,6 +189,7 @@ class _FormulaReader:
     def parts_of_numbers(self, tree: ast.expr) -> Iterator[ast.expr]:
         """The largest parts without variables and functions over samples; no recursion, as sums are long."""
         varied: set[ast.AST] = set()
+        # the walk goes by levels from the root, so backwards children come before their parents
         for node in reversed(list(ast.walk(tree))):
             named = isinstance(node, ast.Name) and (node.id in self.variables or node.id in self.folds)
             if named or any(child in varied for child in ast.iter_child_nodes(node)):
@@ -250,6 +256,7 @@ class _FormulaReader:
             raise self.at(node.right, what, _("write other powers as exp(y*log(x))"))
         if exponent == round(exponent):
             return lambda m, v: _power(m, base(m, v), round(exponent))
+        # the root first, so that x^1.5 has the domain of the root: a power of x could hide a negative x
         return lambda m, v: _power(m, m.sqrt(base(m, v)), round(twice))
 
     def exponent(self, node: ast.expr, depth: int) -> float:
@@ -276,6 +283,7 @@ class _FormulaReader:
             )
             raise self.at(node, what, _("known are: {names}").format(names=" ".join(sorted(known))))
         count = len(node.args)
+        # of one argument min and max fold samples, of several they compare numbers
         folded = name in self.folds and (count == 1 or name not in FUNCTIONS)
         fits = count == 1 if folded or name in ONE_ARGUMENT else count == 2 if name == "atan2" else count >= 2
         if not fits or node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
@@ -312,13 +320,14 @@ def _apply(operation: type[ast.operator], m: Any, left: Number, right: Number) -
 
 
 def _divisor(m: Any, number: Number) -> Number:
-    """What is divided by, as it is; an algebra that has `divisor` gets to know of it."""
+    """Divisor unchanged, shown to algebras that have a function `divisor`, which look for its zeros."""
     return m.divisor(number) if hasattr(m, "divisor") else number
 
 
 def _power(m: Any, base: Number, exponent: int) -> Number:
     """Integer power by squaring: any algebra multiplies, few raise to powers."""
     if exponent < 0:
+        # one division of the whole power, and one place that an algebra has to watch for zero
         return 1.0 / _divisor(m, _power(m, base, -exponent))
     result: Number = None
     while exponent:

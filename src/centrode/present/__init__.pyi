@@ -21,20 +21,6 @@ from .drawing import draw_mechanism as draw_mechanism
 # Forces
 
 # Cams
-from .cams.profiles import cam_body_figures as cam_body_figures
-from .cams.choice import choice_figures as choice_figures
-from .cams.choice import trade_off_figure as trade_off_figure
-from .cams.tables import write_choice as write_choice
-from .cams.curves import contact_figure as contact_figure
-from .cams.curves import cam_figures as cam_figures
-from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
-from .cams.outline_files import write_cam_outlines as write_cam_outlines
-from .cams.outlines import write_outlines_svg as write_outlines_svg
-from .cams.profiles import profile_figure as profile_figure
-from .cams.tables import write_profile_csv as write_profile_csv
-from .cams.tables import write_cam_contact_csv as write_cam_contact_csv
-from .cams.tables import write_cam_tables as write_cam_tables
-from .cams.walking_wheel import walking_figure as walking_figure
 
 # Animations
 from .animations.animate import animate as animate

@@ -2,7 +2,6 @@
 from .figures import figure_of as figure_of
 from .figures import figures_of as figures_of
 from .figures import write_pictures as write_pictures
-from .files import writes_dxf as writes_dxf
 from .files import write_record as write_record
 from .files import write_summary as write_summary
 from .files import write_table as write_table
@@ -11,6 +10,9 @@ from .hypertext import figure_html as figure_html
 from .hypertext import rows_html as rows_html
 from .hypertext import sheet_html as sheet_html
 from .markup import page_text as page_text
+from .netcdf import read_dataset as read_dataset
+from .netcdf import write_dataset as write_dataset
+from .outlines import writes_dxf as writes_dxf
 from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text

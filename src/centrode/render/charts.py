@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -12,14 +12,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from centrode.locale import _
 from centrode.present.curves import legend_width, write_legend, write_title
 from centrode.present.displayed_units import formula, label_with_unit
 from centrode.present.drawing import draw_mechanism
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene, box
-from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, pens
+from centrode.present.style import DASHES, INK, MUTED, PALETTE, Decimals, Pen, pens
 from centrode.render.spelling import FigureSpelling, PlainSpelling
-from centrode.sheets.charts import BarChart, Bars, CarriedDisc, Hodograph, HodographCurve, LinkageWithDiscs
+from centrode.sheets.charts import (
+    BarChart,
+    Bars,
+    CarriedDisc,
+    DesignDot,
+    FrontDiagram,
+    Hodograph,
+    HodographCurve,
+    LinkageWithDiscs,
+)
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
@@ -151,3 +161,54 @@ def _draw_disc(axes: Axes, scene: LinkageScene, sample: int, one: CarriedDisc, c
     circle.set_alpha(0.55)
     axes.add_patch(circle)
     return circle
+
+
+FRONT, CHOSEN, START, BOUND = PALETTE[0], PALETTE[1], INK, PALETTE[3]
+HIGH, LOW = 3.9, 1.35
+"""Inches of the panel of the front, and of each below it."""
+
+
+def front_figure(diagram: FrontDiagram, display: Display) -> Figure:
+    """Best designs over the bound that moves; the legend stands beside the first panel."""
+    spelling, words = FigureSpelling(display), PlainSpelling(display)
+    across, label, _unit = spelling.label(diagram.x)
+    first, *below = diagram.panels
+    names = [_("best designs"), *(words.text(dot.name) for dot in first.dots)]
+    height = HIGH + LOW * len(below) + 1.1
+    figure = Figure(figsize=(6.6 + legend_width(names, HIGH), height), layout="constrained")
+    rows = figure.subplots(
+        len(diagram.panels), 1, sharex=True, height_ratios=[HIGH, *([LOW] * len(below))], squeeze=False
+    )[:, 0]
+    key: list[tuple[Artist, str]] = []
+    for axes, panel in zip(rows, diagram.panels, strict=True):
+        up, y_label, _unit = spelling.label(panel.label)
+        marks = {"marker": "o", "markersize": 3.5} if panel is first else {}
+        (line,) = axes.plot(
+            across * diagram.values, up * panel.values, color=FRONT, label=_("best designs"), **marks
+        )
+        key.append((line, _("best designs")))
+        if panel is first and diagram.bound is not None:
+            bound = axes.axvline(across * diagram.bound, color=BOUND, linestyle="--", linewidth=1.2)
+            key.append((bound, _("bound")))
+        for level in panel.levels:
+            axes.axhline(up * level, color=MUTED, linewidth=0.9, linestyle=":")
+        key += [(_dot(axes, dot, (across, up)), words.text(dot.name)) for dot in panel.dots]
+        axes.set_ylabel(y_label)
+        axes.yaxis.set_major_formatter(Decimals())
+        if panel is first:
+            axes.xaxis.set_major_formatter(Decimals())
+            write_legend(axes, key, inches=HIGH)
+    rows[-1].set_xlabel(label)
+    write_title(figure, spelling.text(diagram.title), words.text(diagram.mechanism))
+    return figure
+
+
+def _dot(axes: Axes, dot: DesignDot, factors: tuple[float, float]) -> Artist:
+    """A design as its sign: empty where it misses a bound."""
+    colour = CHOSEN if dot.chosen else START
+    look: dict[str, Any] = {"color": colour, "marker": "D" if dot.chosen else "s"}
+    look["markerfacecolor"] = colour if dot.admissible else "white"
+    (drawn,) = axes.plot(
+        [factors[0] * dot.x], [factors[1] * dot.y], linestyle="none", markersize=6, zorder=5, **look
+    )
+    return drawn

@@ -16,7 +16,7 @@ from centrode.present.curves import DrawnAbscissa, Panel, sheet, write_legend, w
 from centrode.present.figure_files import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, darkened, house_style
 from centrode.render.areas import area_figure
-from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
+from centrode.render.charts import bar_figure, front_figure, hodograph_figure, linkage_figure
 from centrode.render.force_pages import group_page
 from centrode.render.instant_pages import instant_figure
 from centrode.render.levers import lever_page
@@ -28,9 +28,10 @@ from centrode.render.span_plots import span_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.vector_diagrams import vector_diagram_figure
 from centrode.render.vector_pages import vector_page
-from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.render.wheel_positions import wheel_figure
+from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.outlines import OutlineDrawing, PathDrawing
+from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
     Abscissa,
@@ -131,6 +132,10 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return outline_figure(picture, display)
             case PathDrawing():
                 return path_figure(picture, display)
+            case WheelPositions():
+                return wheel_figure(picture, display)
+            case FrontDiagram():
+                return front_figure(picture, display)
             case _:
                 assert_never(picture)
 

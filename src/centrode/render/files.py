@@ -5,22 +5,20 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from centrode import present
 from centrode.locale import speaking
 from centrode.present.displayed_units import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.render.netcdf import write_dataset
+from centrode.render.outlines import write_outlines
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
-    from centrode.sheets.outlines import OutlineSet
     from centrode.sheets.sheet import Column, Scalar, Sheet, Table
 
 BLOCK = 10_000
@@ -40,19 +38,6 @@ def write_tables(sheet: Sheet, folder: Path, display: Display, spelling: TableSp
         (folder / name).write_text(text, encoding="utf-8")
     for name, outlines in sheet.outlines.items():
         write_outlines(outlines, folder / name)
-
-
-def write_outlines(outlines: OutlineSet, path: Path) -> None:
-    """Write outlines as SVG, and as DXF where its library is installed; `path` is without its ending."""
-    title = PlainSpelling(None).text(outlines.title)
-    present.write_outlines_svg(outlines.pieces, path.with_suffix(".svg"), title)
-    if writes_dxf():
-        present.write_outlines_dxf(outlines.pieces, path.with_suffix(".dxf"), title)
-
-
-def writes_dxf() -> bool:
-    """Whether the library that writes DXF is installed."""
-    return find_spec("ezdxf") is not None
 
 
 def write_summary(scalars: Mapping[str, Scalar], path: Path) -> None:

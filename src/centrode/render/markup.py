@@ -10,7 +10,7 @@ from centrode.locale import _
 from centrode.render.latex import LatexSpelling, aligned_relations, escape, linear_system
 from centrode.render.spelling import PlainSpelling
 from centrode.render.symbolic import spell_symbolic
-from centrode.render.terminal import sheet_text, symbol_texts, table_rows
+from centrode.render.terminal import sheet_text, symbol_texts, table_cells
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -122,7 +122,7 @@ class MarkupPage(PlainSpelling):
             case FactTable(facts):
                 return self._facts(facts)
             case Table():
-                heads, cells = table_rows(block, self)
+                heads, cells = table_cells(block, self)
                 return self.table(heads, cells)
             case Items(texts, numbered):
                 return self.items([self.text(item) for item in texts], numbered)

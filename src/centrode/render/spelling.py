@@ -7,11 +7,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.equations.spelling import FormulaSpelling
 from centrode.locale import _, ngettext
 from centrode.present.displayed_units import formula, plain, shown_as
 from centrode.quantities import typeset_unit
-from centrode.render.symbolic import spell_symbolic
+from centrode.render.symbolic import plain_symbolic
 from centrode.sheets.symbolic import SymbolicLeaf
 from centrode.sheets.texts import (
     Counted,
@@ -204,7 +203,7 @@ class PlainSpelling(Spelling):
 
     def symbolic(self, leaf: SymbolicLeaf) -> str:
         """A formula in letters, as one line."""
-        return spell_symbolic(leaf, FormulaSpelling())
+        return plain_symbolic(leaf)
 
     def leaf(self, leaf: Leaf) -> str:
         """A part of a relation."""

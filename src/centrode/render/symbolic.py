@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.equations.spelling import SymbolFormula, spell_formula, spelled_sum
-from centrode.equations.symbols import Sum, SumTerm
+import lazy_loader
+
 from centrode.sheets.symbolic import (
     AbsoluteProduct,
     FactoredFormula,
@@ -20,14 +21,22 @@ from centrode.sheets.symbolic import (
 if TYPE_CHECKING:
     from centrode.equations.spelling import FormulaSpelling
 
+_spelling = functools.partial(lazy_loader.load, "centrode.equations.spelling", suppress_warning=True)
+"""Loaded at the first formula: most commands print none."""
+
+
+def plain_symbolic(leaf: SymbolicLeaf) -> str:
+    """A leaf as one line of text."""
+    return spell_symbolic(leaf, _spelling().FormulaSpelling())
+
 
 def spell_symbolic(leaf: SymbolicLeaf, spelling: FormulaSpelling) -> str:
     """A leaf by the operations of a medium; letters stand where the medium puts in no numbers."""
     match leaf:
         case SumFormula(total):
-            return spelled_sum(total, spelling)
+            return str(_spelling().spelled_sum(total, spelling))
         case FactoredFormula(formula, differences_first, turned):
-            return spell_formula(formula, spelling, differences_first, turned)
+            return str(_spelling().spell_formula(formula, spelling, differences_first, turned))
         case InitialValue(letter):
             return spelling.initial(spelling.letter(letter))
         case TimeDerivative(letter):
@@ -54,6 +63,6 @@ def _absolute_product(leaf: AbsoluteProduct, spelling: FormulaSpelling) -> str:
     """Lengths first, then rates, which may be negative, between bars."""
     texts = []
     for letter, power, signed in sorted(leaf.factors, key=lambda factor: factor[2]):
-        factor = spell_formula(SymbolFormula(1, SumTerm(((letter, power),)), Sum.number(1)), spelling)
+        factor = spelling.power(spelling.letter(letter), power)
         texts.append(spelling.bars(factor) if signed else factor)
     return spelling.join(texts) or spelling.number(1)

@@ -55,7 +55,7 @@ def sheet_text(sheet: Sheet, display: Display) -> str:
     parts = [heading] if heading else []
     parts += [facts_text(sheet.facts, display)] if sheet.facts else []
     for block in sheet.printed:
-        text = _section(block, spelling) if isinstance(block, Section) else _block(block, spelling)
+        text = _section(block, spelling) if isinstance(block, Section) else block_text(block, spelling)
         if isinstance(block, Items) and parts:
             parts[-1] += "\n" + text  # what is above them is their heading
         else:
@@ -70,14 +70,14 @@ def _section(section: Section, spelling: PlainSpelling) -> str:
 
 def _part(block: Block, spelling: PlainSpelling) -> str:
     """A block below the title of a section: sentences and formulas are indented."""
-    text = _block(block, spelling)
+    text = block_text(block, spelling)
     if not isinstance(block, Paragraph | Formula | LinearEquations | SymbolList):
         return text
     text = textwrap.indent(text, "  ")
     return f"{text}\n" if isinstance(block, LinearEquations) else text
 
 
-def _block(block: Block, spelling: PlainSpelling) -> str:
+def block_text(block: Block, spelling: PlainSpelling) -> str:
     """A block as lines; pictures and checks belong to documents."""
     match block:
         case FactTable(facts):
@@ -106,14 +106,15 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
 
 def table_text(table: Table, spelling: PlainSpelling) -> str:
     """A table of texts below its caption; numbers without units of their own stand flush right."""
-    heads, cells = table_rows(table, spelling)
+    heads, rows = table_cells(table, spelling)
     right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
     caption = spelling.text(table.caption)
-    return (f"{caption}\n" if caption else "") + aligned(cells, heads, right)
+    return (f"{caption}\n" if caption else "") + aligned(rows, heads, right)
 
 
-def table_rows(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Heads and rows of a table as texts."""
+def table_cells(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Heads with their units, and the rows of a table, as texts."""
+    heads = [_head(column, spelling) for column in table.columns]
     cells = [
         [
             spelling.text(Number(value, column.units[row] if column.units else column.unit, unit_hidden=True))
@@ -123,7 +124,7 @@ def table_rows(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[t
         ]
         for column in table.columns
     ]
-    return [_head(column, spelling) for column in table.columns], list(zip(*cells, strict=True))
+    return heads, list(zip(*cells, strict=True))
 
 
 def symbol_texts(symbol: ExplainedSymbol, spelling: PlainSpelling) -> tuple[str, str, str]:

@@ -12,7 +12,6 @@ from typing import Any
 import typst
 
 from centrode.locale import _
-from centrode.present.equations.typst import quote
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
@@ -27,6 +26,7 @@ from centrode.render.document.blocks import (
     SystemBlock,
     TableBlock,
 )
+from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of
 from centrode.report.texts import parts_of
 

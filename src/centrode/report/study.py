@@ -22,7 +22,6 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
-from centrode.study.cams.results import CamResults, cam_results
 from centrode.study.check import MechanismCheck, check
 from centrode.study.run import StudyResults, study
 
@@ -211,13 +210,6 @@ class ReportStudy:
     def points(self) -> tuple[str, ...]:
         """Points whose velocities and paths are told: those asked for, else those on guides of the frame."""
         return self.equations.points if self.wishes.points is None else self.wishes.points
-
-    @property
-    def cam_results(self) -> CamResults:
-        """Everything about a cam."""
-        assert isinstance(self.description, Cam | PlateCam)
-        cam = self.description
-        return self.once("cam", lambda: cam_results(cam))
 
 
 class _Failed:

@@ -43,6 +43,8 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     def compute() -> Sheet:
         document = topic.document
         arguments = dict(document.arguments)
+        if any(chapter.name in (study.wishes.chapters or ()) for chapter in document.chapters):
+            arguments |= document.chosen_arguments
         if document.instants:
             arguments["instants"] = (
                 study.wishes.instants if study.is_cam else tuple(moment.at for moment in moments_of(study))

@@ -137,3 +137,53 @@ class LinkageWithDiscs:
     motion: xarray.Dataset
     sample: int
     discs: tuple[CarriedDisc, ...]
+
+
+@dataclass(frozen=True)
+class DesignDot:
+    """A design at its place (x, y), filled where it keeps its bounds; one that another panel names has no name."""
+
+    name: Text
+    x: float
+    y: float
+    admissible: bool
+    chosen: bool
+
+
+@dataclass(frozen=True, eq=False)
+class FrontPanel:
+    """A quantity along the front of best designs.
+
+    Attributes
+    ----------
+    label : of the vertical axis
+    values : (n), in the unit of the label
+    dots : designs among them
+    levels : values that are marked across
+    """
+
+    label: AxisLabel
+    values: Array
+    dots: tuple[DesignDot, ...]
+    levels: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class FrontDiagram:
+    """Best designs as a bound moves: what is made best in the first panel, below it what leads to them.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    x : what the bound is of
+    values : (n) of each design, in the unit of that label
+    bound : where the bound stands; None where there is none
+    panels : from the top
+    """
+
+    title: Sentence
+    mechanism: Title
+    x: AxisLabel
+    values: Array
+    bound: float | None
+    panels: tuple[FrontPanel, ...]

@@ -17,6 +17,7 @@ from centrode.sheets.texts import Sentence, Text, Title
 
 if TYPE_CHECKING:
     from centrode.cams.profiles import CamOutline
+    from centrode.cams.walking_wheel import WheelMover
 
 Array = NDArray[np.float64]
 
@@ -165,3 +166,20 @@ class OutlineDrawing:
     layers: Mapping[str, Text]
     shapes: tuple[Shape, ...]
     centre: Text
+
+
+@dataclass(frozen=True)
+class WheelPositions:
+    """A walking wheel at some instants.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    wheel : the wheel
+    turned : angles [rad] by which its carrier has turned
+    """
+
+    title: Sentence
+    mechanism: Title
+    wheel: WheelMover
+    turned: tuple[float, ...]

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
+from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing
+from centrode.sheets.outlines import OutlineDrawing, OutlineSet, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -39,6 +39,8 @@ Picture: TypeAlias = (
     | VectorDiagramPage
     | OutlineDrawing
     | PathDrawing
+    | WheelPositions
+    | FrontDiagram
 )
 Part = TypeVar("Part")
 

@@ -127,7 +127,7 @@ def _shortest_loop(
 
 @dataclass(frozen=True)
 class AssurGroup:
-    """One term of the structural formula.
+    """Group that is one term of the structural formula.
 
     Attributes
     ----------

@@ -67,7 +67,7 @@ class Positions:
 
     @classmethod
     def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number], m: Namespace) -> Positions:
-        """What is known before any group is solved: the frame and the drives."""
+        """Positions known before any group is solved: points of the frame, its pose, values of the drives."""
         space = dimensions.space
         fixed = {name: space.place(m, space.at_rest, at) for name, at in dimensions.frame.items()}
         return cls(fixed, {FRAME: space.at_rest}, drives)
@@ -166,7 +166,7 @@ class GearRatio:
         return {self.first: -ratio, self.second: 1.0, self.carrier: ratio * first - second}
 
     def constant(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
-        """What the equation's left side is at positions whose angles are known [rad]."""
+        """Left side of the equation [rad] at positions whose angles are known: its constant."""
         carrier = at.angles[self.carrier]
         ratio = numbers.gearing.ratio[self.gear]
         first, second = numbers.gearing.shares.get(self.gear, (1.0, 1.0))
@@ -285,7 +285,7 @@ class NoSlip(_OnTrack):
         return m.atan2(y, x)
 
     def constant(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
-        """What the equation's left side is at positions whose angles are known [rad]."""
+        """Left side of the equation [rad] at positions whose angles are known: its constant."""
         relative = at.angles[self.link] - at.angles[self.on]
         if isinstance(numbers.gearing.track[self.rolling], Straight):
             return relative + self.slide(numbers, at) / numbers.gearing.radius[self.rolling]
@@ -375,7 +375,7 @@ def contact_point(constraint: Contact | NoSlip, m: Namespace, numbers: Dimension
 
 
 class Constraint(Protocol):
-    """What every kind of constraint tells of itself."""
+    """Members of every kind of constraint."""
 
     @property
     def size(self) -> int:

@@ -127,7 +127,7 @@ class Dimensions:
         return self.through[guide], self.direction[guide]
 
     def reference(self, link: str) -> Reference:
-        """What a driven link's angle is measured between, where that is not its axes."""
+        """Vectors between which a driven link's angle is measured; None where these are its axes."""
         return self.references.get(link)
 
     @cached_property

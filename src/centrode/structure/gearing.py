@@ -172,7 +172,7 @@ def _check_room(wheel: Rolling, radius: Number, track: Track) -> None:
 
 
 def shares_of(mechanism: Mechanism, gear: str) -> tuple[float, float]:
-    """How many times the carrier's angle is taken off those of the first and the second wheel of a gear."""
+    """Multiples of the carrier's angle that are subtracted from those of the first and the second wheel of a gear."""
     if mechanism.space != "sphere":
         return 1.0, 1.0
     meshing = next(other for other in mechanism.gears if other.id == gear)

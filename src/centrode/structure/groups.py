@@ -24,14 +24,14 @@ from centrode.structure.constraints import Constraint, Contact, GearRatio, NoSli
 
 @dataclass(frozen=True)
 class Meshed:
-    """How the angle of a link follows from those of the other two links of a gear."""
+    """Angle of a link from those of the other two links of a gear."""
 
     gear: GearRatio
 
 
 @dataclass(frozen=True)
 class Rolled:
-    """How the angle of a wheel follows from where its centre is on its track."""
+    """Angle of a wheel from the place of its centre on its track."""
 
     rolling: NoSlip
 
@@ -196,7 +196,7 @@ class TwoPointLink:
 
 @dataclass(frozen=True)
 class Turning:
-    """How the angle of a link follows: from a drive or from a guide against which it does not turn.
+    """Angle of a link from a drive, or from a guide against which it does not turn.
 
     `link` and `relative_to` are as the constraint names them; either may be the unknown one.
     """

@@ -90,7 +90,7 @@ class GroupToSolve(Protocol):
 
 
 def relation_to_known(group: GroupToSolve, constraint: Constraint, link: str) -> Following | None:
-    """How a gear or a rolling contact gives the angle of a link from what is known; None if it does not."""
+    """Gear or rolling contact as the source of a link's angle from known angles; None if it is none."""
     if isinstance(constraint, GearRatio) and link in constraint.links:
         if not all(group.knows_link(other) for other in constraint.links if other != link):
             return None
@@ -387,7 +387,7 @@ def _aim_with_block(group: Unsolved) -> Group | None:
 
 
 def _meet(group: Unsolved) -> Group | None:
-    """One unknown vector with two loci; everything else in the group must hang on it."""
+    """Group of one unknown vector with two loci, on which all else in it hangs; None if it is of another kind."""
     # a link whose angle is known beforehand carries its points with it
     carriages = [link for link in group.links if group.turning(link) is not None]
     # two of them are a group of higher class

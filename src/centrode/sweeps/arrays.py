@@ -35,7 +35,7 @@ OF_ANCHORS = 5
 
 @dataclass(frozen=True)
 class SweepTask:
-    """What is computed for every mechanism: a mechanism made ready, its samples, what is requested, what varies."""
+    """Job of a sweep for every mechanism: a mechanism made ready, its samples, its outputs, what varies."""
 
     ready: Ready
     span: SampleGrid
@@ -55,7 +55,7 @@ class ArraysExecutor:
     blocks = 1
 
     def lanes(self, task: SweepTask) -> int:
-        """How many mechanisms may be computed together: as many as `designs.WORKING_SET` holds, at least one."""
+        """Number of mechanisms computed together: as many as `designs.WORKING_SET` holds, at least one."""
         layout = layout_of(task.ready.kinematics)
         samples = len(task.span.parameter)
         mesh = len(mesh_of(task.ready.kinematics.path, task.span.parameter))

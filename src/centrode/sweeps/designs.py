@@ -259,7 +259,7 @@ class Design(Protocol):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many there are along each."""
+        """Number of values along each dimension."""
 
     @property
     def coordinates(self) -> Coordinates:

@@ -24,18 +24,18 @@ KNOWN = (AUTO, ArraysExecutor.name, MACHINE_CODE)
 
 
 class Executor(Protocol):
-    """One way to compute."""
+    """Way to compute the motions of a sweep."""
 
     @property
     def name(self) -> str:
-        """What a result says it was computed by."""
+        """Name of the executor in results."""
 
     @property
     def blocks(self) -> int:
-        """How many times `designs.BLOCK_POSITIONS` it computes in a few seconds."""
+        """Size of its blocks in `designs.BLOCK_POSITIONS`, so that one takes a few seconds."""
 
     def lanes(self, task: SweepTask) -> int:
-        """How many mechanisms are computed together."""
+        """Number of mechanisms computed together."""
 
     def run(self, task: SweepTask, numbers: Dimensions, values: Rows, results: Results) -> None:
         """Fill in all columns for the mechanisms of these dimensions; `values` are those that vary, one a mechanism."""
@@ -70,12 +70,14 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     if task.asked.slopes:
         return _with_slopes(name, task, design, threads)
     positions = math.prod(design.shape) * task.places
+    # a short sweep is done before its kernels would be compiled
     if name == arrays.name or (name == AUTO and positions < designs.WORTH_COMPILING):
         return arrays, arrays.name
     try:
         executor = _machine_code_executor(task, design, threads, MACHINE_CODE)
     except Untraceable as why:
         if name == AUTO:
+            # chosen by itself it may fall back, and the result says why; by name it must not
             return arrays, f"{arrays.name} ({why.reason})"
         what = _("machine code cannot compute this: {reason}").format(reason=_(why.reason))
         raise InputError("executor", what, _('say executor = "auto" or "arrays"')) from None
@@ -85,6 +87,7 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
 def _machine_code_executor(
     task: SweepTask, design: Design, threads: int, kernels: str
 ) -> MachineCodeExecutor:
+    # one mechanism shows which numbers vary, and by what algebra
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
     executor = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
@@ -94,6 +97,7 @@ def _machine_code_executor(
 
 def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tuple[Executor, str]:
     """Derivatives are those of expressions: on arrays these are computed by NumPy."""
+    # arrays cannot differentiate: with them too the motion is traced, and NumPy runs the expressions
     kernels = choose_executor(name) if name == AUTO else name
     try:
         executor = _machine_code_executor(task, design, threads, kernels)
@@ -104,7 +108,7 @@ def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tu
 
 
 def bare(executor: str) -> str:
-    """What decides the bits: the executor without the reason why it is this one."""
+    """Name of the executor without the reason why it is this one: the part that decides the bits."""
     return executor.partition(" (")[0]
 
 

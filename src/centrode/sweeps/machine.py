@@ -104,7 +104,7 @@ class Folds(Expressions):
 
     @property
     def passes(self) -> int:
-        """How often samples are passed, at least once."""
+        """Number of passes over the samples, at least one."""
         return 1 + max((fold.depth for fold in self.found.values()), default=0)
 
     def _depth(self, node: Node) -> int:
@@ -197,7 +197,7 @@ class Slopes:
         return Reduction(state, dict.fromkeys(state, 0.0))
 
     def states_of(self, name: str) -> States:
-        """What a scan carries of the derivatives of a fold of this name: whichever is less work at a sample."""
+        """States by which a scan carries the derivatives of a fold of this name: those with less work at a sample."""
         if name not in self.known:
             fold = next(fold for fold in self.folds.found.values() if fold.name == name)
             ways = [self._by_paths(fold)]
@@ -315,7 +315,7 @@ class Expressed:
 
     @cached_property
     def folds(self) -> Folds:
-        """What is folded over samples, once `columns` are known."""
+        """Folds over samples, filled when `columns` are first computed."""
         return Folds(len(self.task.span.parameter))
 
     @cached_property
@@ -343,7 +343,7 @@ class Expressed:
 
     @cached_property
     def slopes(self) -> Slopes:
-        """How derivatives are found. Raises Untraceable."""
+        """Derivatives of the columns by the varied values; raises Untraceable."""
         return Slopes.of(self.task.paths, self.varied, self.traced, self.folds, self._moving)
 
     @property
@@ -362,7 +362,7 @@ class Expressed:
 
     @cached_property
     def judging(self) -> EventScreening:
-        """How mechanisms are judged before."""
+        """Kernels that judge mechanisms before they are computed."""
         residual = as_node(self.traced.solved.residual[0, 0])
         nodes = [node for column in self.columns.values() for node in column]
         nodes += [fold.value for fold in self.folds.found.values()]
@@ -375,19 +375,19 @@ class Expressed:
 
     @cached_property
     def judges(self) -> dict[str, Node]:
-        """What is looked at in every sample: greatest residual, least slack of radicands."""
+        """Numbers that are reduced over all samples: greatest residual, least slack of radicands."""
         judges = {RESIDUAL: as_node(self.traced.solved.residual[0, 0])}
         slack = self.judging.slack_at_samples
         return judges if slack is None else {**judges, SLACK: slack}
 
     @property
     def samples(self) -> int:
-        """How many there are."""
+        """Number of samples."""
         return len(self.task.span.parameter)
 
     @cached_property
     def inputs(self) -> Values:
-        """What the variables of a place stand for at the samples."""
+        """Values of the variables of a place at the samples: name -> (samples,)."""
         return inputs_of(self.task.ready.kinematics.path, self.task.span)
 
     @cached_property
@@ -417,7 +417,7 @@ Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 
 
 class Passing(Protocol):
-    """One way to pass the samples of mechanisms without events."""
+    """Way to pass the samples of mechanisms without events."""
 
     def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         """The states when all samples are passed."""
@@ -427,7 +427,7 @@ class Passing(Protocol):
 
 
 def passing_of(asked: Expressed) -> Passing:
-    """How the samples of a task are passed."""
+    """Way to pass the samples of a task: along the path with groups of higher class, else each for itself."""
     return Along(asked) if asked.traced.steps else EachForItself(asked)
 
 
@@ -645,7 +645,7 @@ class MachineCodeExecutor:
         return cls(task, asked, threads, kernels)
 
     def lanes(self, task: SweepTask) -> int:
-        """How many mechanisms are computed together."""
+        """Number of mechanisms computed together."""
         # a mechanism that is written takes the room of its columns beside its states
         written = 0 if task.asked.is_reduced else sum(column.bytes for column in task.asked.columns)
         return max(
@@ -744,7 +744,7 @@ class MachineCodeExecutor:
         return rows
 
     def _states(self, depth: int) -> Reduction:
-        """What is handed on in a pass over the samples."""
+        """States handed on in a pass over the samples."""
         folds = self.asked.folds.at_depth(depth)
         parts = [fold.state for fold in folds]
         if self.task.asked.slopes:

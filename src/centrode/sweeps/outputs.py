@@ -33,7 +33,7 @@ _LENGTH = 200
 
 @dataclass(frozen=True)
 class Output:
-    """One quantity of a motion.
+    """Quantity of a motion, of all or of one point, link or guide.
 
     Attributes
     ----------
@@ -66,6 +66,7 @@ class Output:
             return solved.contacts[:, :, *self.where]
         for kind in kinds_of(solved):
             orders = [None if x is None else x[:, :, *self.where] for x in kind.orders]
+            # only the part that is wanted is turned into rates by time: of a view nothing is copied
             _values, first, second = orders
             assert first is not None
             assert second is not None
@@ -227,6 +228,7 @@ VALUE = "value"
 """Name of the result of a formula that has none of its own."""
 RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", "path", MECHANISM})
 
+# no word inside a number (1e5) or behind a dot
 _WORD = re.compile(r"(?<![\w.])[^\W\d]\w*")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
 
@@ -370,7 +372,7 @@ PATH = "path"
 
 @dataclass(frozen=True)
 class SweepColumn:
-    """One variable of the result, the dimensions of the mechanisms left out.
+    """Variable of the result, the dimensions of the mechanisms left out.
 
     `empty` stands for mechanisms that are not computed.
     """
@@ -384,7 +386,7 @@ class SweepColumn:
 
     @property
     def bytes(self) -> int:
-        """What it takes for one mechanism."""
+        """Memory [bytes] of the column for one mechanism."""
         return int(np.prod(self.shape, dtype=np.int64)) * np.dtype(self.kind).itemsize
 
 
@@ -458,7 +460,7 @@ def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
 def asked_of(
     motion: xr.Dataset, design: Design, outputs: Sequence[str] | str | None, reduce: Reduce
 ) -> SweepOutputs:
-    """What these arguments of `sweep` mean; `motion` is a motion of the mechanism. Raises InputError."""
+    """Outputs that these arguments of `sweep` mean; `motion` is a motion of the mechanism. Raises InputError."""
     if reduce is None or (isinstance(reduce, str) and reduce in REDUCTIONS):
         listed = outputs_of(motion, outputs if outputs is not None else ())
         return SweepOutputs(listed, reduce, (), _columns(motion, listed, reduce))

@@ -237,12 +237,12 @@ class SweepFrame:
 
     @property
     def mechanisms(self) -> int:
-        """How many there are."""
+        """Number of mechanisms."""
         return math.prod(self.design.shape)
 
     @property
     def bytes(self) -> int:
-        """What the columns take."""
+        """Memory [bytes] of all columns."""
         return self.mechanisms * sum(column.bytes for column in self.asked.columns)
 
     def room(self, mechanisms: int) -> StreamedColumns:
@@ -614,7 +614,7 @@ def _refuse_other_folders(path: Path) -> None:
 
 
 def _stored_study(path: Path) -> dict[str, Any] | None:
-    """What the store says of its sweep; None where its making was cut short, or has not begun."""
+    """Description of its sweep in a store; None where its making was cut short, or has not begun."""
     file = path / PROGRESS / STUDY
     if not file.exists():
         return None
@@ -653,7 +653,7 @@ def _too_great(blocks: Blocks, frame: SweepFrame) -> bool:
 
 
 def _study(frame: SweepFrame, task: SweepTask) -> dict[str, Any]:
-    """What must be the same for a run to go on: all that the numbers depend on."""
+    """Facts that must be the same for a run to go on: all that the numbers depend on."""
     asked, parameter = task.asked, task.span.parameter
     told = frame.empty.attrs
     return {

@@ -271,6 +271,7 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
     if not isinstance(name, str) or not name:
         example = _('write mechanism = "press.toml", or the name of a built-in one')
         raise InputError("mechanism", _("it is missing"), example)
+    # a file beside the study comes before a built-in mechanism of that name
     near = folder / name
     samples = tables.get("samples")
     if samples is not None and (isinstance(samples, bool) or not isinstance(samples, int)):

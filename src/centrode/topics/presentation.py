@@ -5,7 +5,7 @@ A result is what a topic computes, or its dataset, which names its topic and hol
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -14,10 +14,8 @@ from centrode import render
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
 from centrode.locale import _, mark
-from centrode.model.cam_files import parse_cam
-from centrode.model.files import parse_mechanism
-from centrode.render.netcdf import read_dataset
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     import xarray
@@ -28,6 +26,11 @@ if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet, Table
 
 
+PARSERS = {
+    "mechanism": Lazily("centrode.model.files", "parse_mechanism"),
+    "cam": Lazily("centrode.model.cam_files", "parse_cam"),
+}
+"""What reads the description of a dataset."""
 WHOLE = mark("show a dataset as it was computed, with its attributes")
 RESTORED = {topic.name: topic for topic in TOPICS if topic.restore is not None}
 """Topics whose results are made from their datasets."""
@@ -88,9 +91,8 @@ def restored_result(result: Any) -> Any:
 
 def _description_of(dataset: xarray.Dataset) -> Mechanism | AnyCam:
     """The mechanism or cam that a dataset of a result holds as text."""
-    if _key_of_description(dataset.attrs["topic"]) == "cam":
-        return parse_cam(dataset.attrs["cam"])
-    return parse_mechanism(dataset.attrs["mechanism"])
+    key = _key_of_description(dataset.attrs["topic"])
+    return cast("Mechanism | AnyCam", PARSERS[key](dataset.attrs[key]))
 
 
 def _incomplete(absent: Exception) -> InputError:
@@ -117,24 +119,6 @@ def sheet_of(result: Any) -> Sheet:
         _("is not a result that can be shown"),
         _("show one of {known}").format(known=known),
     )
-
-
-def sheets_of_cam(cam: AnyCam, samples: int | None = None, flags: Collection[str] = ()) -> dict[str, Sheet]:
-    """The sheets of all topics that a cam has something for, by the name of the topic.
-
-    Parameters
-    ----------
-    samples : int
-        As of each computation.
-    flags : collection of str
-        Topics that are left out otherwise; they refuse a cam that has nothing for them.
-    """
-    return {
-        topic.name: topic.view(topic.compute(cam, samples))
-        for topic in TOPICS
-        if topic.subject == "cam"
-        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(cam))
-    }
 
 
 def display_of(result: Any) -> Display:
@@ -198,7 +182,7 @@ def open(path: str | Path) -> xarray.Dataset:
 
     Raises InputError for a file that cannot be read, and for one that is no result of centrode.
     """
-    dataset = read_dataset(Path(path))
+    dataset = render.read_dataset(Path(path))
     if not is_result(dataset):
         what = _("it is no result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))

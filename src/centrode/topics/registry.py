@@ -24,6 +24,7 @@ READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
 HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
+NEEDS_FOLLOWER = Lazily("centrode.model.cam_files", "with_follower")
 NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
 WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
@@ -428,7 +429,7 @@ MOTION_LAWS = Topic(
     command=Command(
         help="",
         options=(FlagOption("laws", mark("Also other laws of motion for the first rise of the follower.")),),
-        needs=Lazily("centrode.model.cam_files", "with_follower"),
+        needs=NEEDS_FOLLOWER,
     ),
     flag="laws",
 )
@@ -669,6 +670,7 @@ FOLLOWER_PROFILE = Topic(
     concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
     command=Command(
         help="",
+        needs=NEEDS_FOLLOWER,
         animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
         animation_file="cam.gif",
     ),
@@ -724,6 +726,68 @@ FOLLOWER_FORCES = Topic(
     subject="cam",
 )
 
+CAM_PROFILE = Topic(
+    name="cam-profile",
+    compute=Lazily("centrode.cams.results", "cam_profile_results"),
+    result=Lazily("centrode.cams.results", "CamProfileResults"),
+    view=Lazily("centrode.views.cam_profile", "sheet"),
+    concerns=Lazily("centrode.cams.results", "has_roller"),
+    command=Command(
+        help="",
+        options=(FlagOption("groove", mark("Also the outer wall of a groove that the roller runs in.")),),
+        needs=NEEDS_CURVATURE_LAW,
+        animation=Lazily("centrode.present.animations.animate", "animate_profile"),
+        animation_file="cam.gif",
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),), instants=False),
+    subject="cam",
+)
+
+WALKING_WHEEL = Topic(
+    name="walking-wheel",
+    compute=Lazily("centrode.cams.results", "walking_wheel_results"),
+    result=Lazily("centrode.cams.results", "WalkingWheelResults"),
+    view=Lazily("centrode.views.walking_wheel", "sheet"),
+    concerns=Lazily("centrode.cams.results", "has_mover"),
+    command=Command(
+        help="",
+        needs=NEEDS_CURVATURE_LAW,
+        animation=Lazily("centrode.present.animations.animate", "animate_step"),
+        animation_file="walking-wheel.gif",
+    ),
+    document=InDocuments(chapters=(ChapterOfTopic("walking", mark("Walking wheel")),)),
+    subject="cam",
+)
+
+CAM_CONTACT = Topic(
+    name="cam-contact",
+    compute=Lazily("centrode.cams.results", "cam_contact_results"),
+    result=Lazily("centrode.cams.results", "CamContactResults"),
+    view=Lazily("centrode.views.cam_contact", "sheet"),
+    concerns=Lazily("centrode.cams.results", "has_contact"),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("contact", mark("Contact of roller and cam")),), instants=False
+    ),
+    subject="cam",
+)
+
+CAM_CHOICE = Topic(
+    name="cam-choice",
+    compute=Lazily("centrode.cams.parameter_choice.search", "choose_cam"),
+    result=Lazily("centrode.cams.parameter_choice.search", "CamChoice"),
+    view=Lazily("centrode.views.cam_choice", "sheet"),
+    concerns=Lazily("centrode.cams.parameter_choice.search", "has_choice"),
+    # the front of best designs takes longer than all the rest
+    command=Command(help="", samples=False, complete="front"),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("choice", mark("Chosen parameters")),),
+        arguments={"front": False},
+        chosen_arguments={"front": True},
+        instants=False,
+    ),
+    subject="cam",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -752,6 +816,10 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_PROFILE,
     ROLLER_PATH,
     PATH_ROUTES,
+    CAM_PROFILE,
+    WALKING_WHEEL,
+    CAM_CONTACT,
+    CAM_CHOICE,
     FOLLOWER_FORCES,
     EQUATIONS,
 )

@@ -176,6 +176,7 @@ class InDocuments:
     ----------
     chapters : in the order of the document
     arguments : of the computation
+    chosen_arguments : further ones where somebody has chosen one of its chapters by name
     instants : whether the computation takes the instants of the document
     add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
@@ -190,6 +191,7 @@ class InDocuments:
     may_be_left_out: bool = False
     may_be_incomplete: bool = False
     points: bool = False
+    chosen_arguments: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

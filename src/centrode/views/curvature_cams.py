@@ -11,7 +11,7 @@ from centrode.errors import Status
 from centrode.quantities import QUANTITIES
 from centrode.sheets.plots import Abscissa, AxisLabel
 from centrode.sheets.sheet import Check, Column, Failure, Table
-from centrode.sheets.texts import Expression, Joined, Name, Number, Sentence, Symbol, Text
+from centrode.sheets.texts import NOTHING, Expression, Joined, Name, Number, Sentence, Symbol, Text
 from centrode.views.columns import columns_of, rows_shown, unit_of
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def over_carrier(dataset: xr.Dataset) -> Abscissa:
 def carrier_table(dataset: xr.Dataset, variables: Sequence[str]) -> Table:
     """Variables over the angle of the carrier, one row a sample, with their status where it is known."""
     columns = [
-        Column(header, values.to_numpy(), unit)
+        _column(header, unit, values.to_numpy())
         for variable in ("carrier_angle", *variables)
         for header, unit, values in columns_of(dataset[variable], variable)
     ]
@@ -62,6 +62,13 @@ def carrier_table(dataset: xr.Dataset, variables: Sequence[str]) -> Table:
         words = tuple(Name(Status(code).word) for code in dataset["status"].to_numpy().tolist())
         columns.append(Column("status", words))
     return Table(tuple(columns))
+
+
+def _column(header: str, unit: str, values: np.ndarray) -> Column:
+    """Numbers with their unit, or words."""
+    if values.dtype.kind == "f":
+        return Column(header, values, unit)
+    return Column(header, tuple(map(Name, values.tolist())))
 
 
 def course(dataset: xr.Dataset, variables: Sequence[tuple[str, str]], caption: Sentence) -> Table:
@@ -79,4 +86,6 @@ def shortfall(failure: Failure | None) -> tuple[Check, ...]:
     if failure is None:
         return ()
     statement = Sentence("{what}; {repair}.", what=failure.what, repair=failure.repair)
+    if failure.repair == NOTHING:
+        statement = Sentence("{what}.", what=failure.what)
     return (Check(statement, difference=1.0, size=1.0, bound=0.0),)

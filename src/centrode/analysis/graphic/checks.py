@@ -52,7 +52,7 @@ RATES = (("angular_velocity", "velocity"), ("angular_acceleration", "acceleratio
 
 @dataclass(frozen=True)
 class CheckRow:
-    """One number by every route, SI.
+    """Row of the check: one number by every route, SI.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class CheckRow:
 
     @property
     def difference(self) -> float:
-        """What the drawing gives, less the closed form."""
+        """Value by the drawing, less that by the closed form."""
         return self.graphic - self.closed
 
 

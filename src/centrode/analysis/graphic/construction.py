@@ -97,7 +97,7 @@ def _construct(group: Group, stage: ConstructionStage) -> tuple[list[str], Trian
 
 
 def _turn_of(stage: ConstructionStage, turning_of: Turning | Meshed | Rolled, link: str) -> float:
-    """How a link turns that a drive, a guide, a gear or a rolling contact turns."""
+    """Turning [rad/s or rad/s^2] of a link that a drive, a guide, a gear or a rolling contact turns."""
     match turning_of:
         case Meshed(gear):
             return meshed_rate(stage, gear, link)
@@ -139,7 +139,7 @@ def _image(stage: ConstructionStage, link: str, point: str) -> list[str]:
 
 
 def _through_two(stage: ConstructionStage, group: TwoPointLink) -> list[str]:
-    """How a link turns two of whose points have their images."""
+    """Add the turning of a link two of whose points have their images; it has no equation."""
     place = stage.drawing.point
     arm = stage.drawing.arm(place(group.first), place(group.second), known=True)
     apart = stage.points[group.second] - stage.points[group.first]
@@ -206,7 +206,7 @@ def _meet(stage: ConstructionStage, group: Meet) -> tuple[list[str], Triangle | 
 
 
 def _drive_words(rays: Sequence[Ray]) -> str:
-    """What a drive gives along its guide, in words."""
+    """Sentence on what a drive gives along its guide."""
     parts = [leg.text for ray in rays for leg in ray.legs if leg.kind == "driven"]
     return _("{part}, given by the drive").format(part=" + ".join(parts))
 

@@ -187,7 +187,7 @@ class Diagram:
 
 @dataclass(frozen=True)
 class Diagrams:
-    """Everything that is drawn of one instant.
+    """Drawings of one instant: both diagrams, instant centres, and the mechanism.
 
     Attributes
     ----------

@@ -131,7 +131,7 @@ def around(stage: ConstructionStage, point: str, centre: str, link: str, known: 
 
 
 def turning_ray(stage: ConstructionStage, arm: complex, point: str, centre: str, link: str) -> Ray:
-    """What turns with a link about a point of it that is known, at the end of an arm."""
+    """Equation of a place that turns with a link about a known point of it, at the end of an arm."""
     symbol, name = letter(stage), f"{point}{centre}"
     legs: tuple[RayLeg, ...] = ()
     if stage.before is not None:
@@ -410,7 +410,7 @@ Construct: TypeAlias = Callable[[Sequence[Group], ConstructionStage], None]
 
 @dataclass(frozen=True)
 class Cut:
-    """What is taken out of a group: a rod with its two points, a cylinder's drive, or a point's guide."""
+    """Part taken out of a group: a rod with its two points, a cylinder's drive, or a point's guide."""
 
     name: str
     ends: tuple[str, str] = ("", "")
@@ -429,7 +429,7 @@ class Cut:
         return constraint != self.guide
 
     def misfit(self, stage: ConstructionStage) -> float:
-        """How fast the rod would stretch, or the point leave its guide: a velocity or an acceleration."""
+        """Rate at which the rod would stretch, or the point leave its guide [m/s or m/s^2]."""
         if self.guide is not None:
             return _off_guide(stage, self.guide)
         arm = _arm(stage, self.ends)

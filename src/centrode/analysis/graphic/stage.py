@@ -167,7 +167,7 @@ class ConstructionTrial:
 
 @dataclass(frozen=True)
 class ConstructionStep:
-    """What was done for one group: its vector equations, its triangle, its trials."""
+    """Construction of one group: its vector equations, its triangle, its trials."""
 
     group: str
     equations: tuple[str, ...]
@@ -177,7 +177,7 @@ class ConstructionStep:
 
 @dataclass(frozen=True)
 class VectorDrawing:
-    """What is measured: the mechanism's positions at an instant, its numbers, the board."""
+    """Drawing in which is measured: the mechanism's positions at an instant, its numbers, the board."""
 
     numbers: Dimensions
     at: Positions
@@ -241,7 +241,7 @@ class ConstructionStage:
         return self.hidden[name] if name.startswith(ORIGIN) else self.points[name]
 
     def about(self, link: str, arm: complex) -> complex:
-        """What turning of a link adds at the end of an arm of it: i omega arm, or (i epsilon - omega^2) arm."""
+        """Rate that turning of a link adds at the end of an arm of it: i omega arm, or (i epsilon - omega^2) arm."""
         return 1j * self.turns[link] * arm + self.inwards(link, arm)
 
     def inwards(self, link: str, arm: complex) -> complex:

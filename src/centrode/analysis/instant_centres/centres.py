@@ -167,7 +167,7 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 
 
 class Case(IntEnum):
-    """What the velocities of two points of a body, seen from another one, say of its instant centre."""
+    """Case of an instant centre by the velocities of two points of a body, seen from another one."""
 
     ABSENT = 0
     REST = 1
@@ -181,12 +181,12 @@ class Case(IntEnum):
 
     @property
     def word(self) -> str:
-        """What tables call the case, in English."""
+        """Name of the case in tables, in English."""
         return _WORDS[self]
 
     @property
     def sentence(self) -> str:
-        """What tables call it, in the chosen language."""
+        """Name of the case in tables, in the chosen language."""
         return _(_WORDS[self])
 
 

@@ -44,7 +44,7 @@ def curvature(
     against: str = "frame",
     points: Local | None = None,
 ) -> xr.Dataset:
-    """How the paths of a link's points bend, at given places of a motion.
+    """Curvature of the paths of a link's points, at given places of a motion.
 
     Parameters
     ----------

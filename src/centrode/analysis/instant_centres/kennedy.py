@@ -52,7 +52,7 @@ How: TypeAlias = Literal["hinge", "guide", "rolling", "gear", "kennedy", "togeth
 
 @dataclass(frozen=True)
 class KennedyStep:
-    """How one centre was found.
+    """Step of the construction that gives one centre.
 
     Attributes
     ----------
@@ -235,7 +235,7 @@ class PlaneSpots:
 
     @cached_property
     def size(self) -> float:
-        """What distances are measured by."""
+        """Unit of distances [m]: the mechanism's length, or the farthest body from the middle."""
         return max(self.bodies.scale, float(np.max(np.abs(self.bodies.place - self.middle))))
 
     def shown(self, joint: PrimaryJoint, error: float) -> tuple[ProjectivePoint, Where | None]:

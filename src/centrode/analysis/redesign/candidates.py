@@ -42,7 +42,7 @@ AROUND = 0.5
 
 @dataclass(frozen=True)
 class Varying:
-    """One number that may change.
+    """Number of a description that may change.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None)
 
 
 def default_paths(mechanism: Mechanism) -> list[str]:
-    """What varies if nothing is named."""
+    """Paths that vary if none is named."""
     driven = {drive.link for drive in mechanism.drives}
     if places_anew(mechanism):
         angled = [name for name, link in mechanism.links.items() if link.angle is not None]

@@ -334,7 +334,7 @@ ENOUGH = 1e-9
 
 @dataclass(frozen=True)
 class Change:
-    """One number before and after.
+    """Number of a description before and after.
 
     Attributes
     ----------

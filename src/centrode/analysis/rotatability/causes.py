@@ -161,7 +161,7 @@ Number: TypeAlias = Any
 
 
 class CauseKind(StrEnum):
-    """What happens to a group at its limit, or at its change point."""
+    """Kind of event of a group at its limit, or at its change point."""
 
     TURNS_BACK = "its positions turn back"
     POSITIONS_MEET = "its positions meet"
@@ -180,7 +180,7 @@ class CauseKind(StrEnum):
 
 
 class Tracer(StrEnum):
-    """What moves a point along a locus."""
+    """Kind of body that moves a point along a locus."""
 
     LINK = "link"
     CYLINDER = "cylinder"

@@ -100,7 +100,7 @@ class DeadPoint:
 
 @dataclass(frozen=True)
 class LinkTurning:
-    """How the members turn for one drive, the others held at their initial values.
+    """Turning of the members for one drive, the others held at their initial values.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class LinkTurning:
 
 @dataclass(frozen=True)
 class Rotatability:
-    """What a mechanism's geometry says of its turning.
+    """Rotatability of a mechanism by its geometry.
 
     Attributes
     ----------

@@ -218,7 +218,7 @@ class Watched:
     of: Watching
 
     def rate(self, at: Positions, count: int) -> tuple[Array, Array]:
-        """What has the sign of the number's rate by the drive (n,), and its derivative."""
+        """Number with the sign of the watched number's rate by the drive (n,), and its derivative (n,)."""
         number = self.of(at)
         if isinstance(number, tuple):
             cosine, sine = (_derivatives(x, count) for x in number)
@@ -339,7 +339,7 @@ def _evaluate_each(
     values: Array,
     ask: Callable[[Watched, Positions], tuple[Array, Array]],
 ) -> tuple[Array, Array]:
-    """What each entry asks about its own watched number, from one evaluation of the motion."""
+    """Two numbers (n,) of each entry's own watched number, from one evaluation of the motion."""
     at = tour.at(values, 2)
     first, second = np.zeros(len(values)), np.zeros(len(values))
     for k in np.unique(which):
@@ -534,7 +534,7 @@ class StrokeExtreme:
 
 @dataclass(frozen=True)
 class LinkStroke:
-    """How one link, or one slider along its guide, moves over a tour.
+    """Stroke of one link, or of one slider along its guide, over a tour.
 
     Attributes
     ----------
@@ -649,7 +649,7 @@ def _stroke_of(
 
 
 def _shift(course: MonitoredFunction, k: int, member: str) -> float:
-    """What brings an angle into the turn of the initial position."""
+    """Whole turns [rad] that bring an angle into the turn of the initial position."""
     if member == "guide":
         return 0.0
     tour = course.tour

@@ -404,7 +404,9 @@ def first_rise(cam: AnyCam) -> int:
             return number
         before = before if segment.to is None else segment.to
     what = _("no segment ends at another lift than it begins at: there is no rise to compare laws for")
-    raise InputError("[[segments]]", what, _("leave --laws out, or use ct.compare_laws"))
+    raise InputError(
+        "[[segments]]", what, _("leave --laws out, or use centrode.cams.followers.motion.compare_laws")
+    )
 
 
 def cam_laws(cam: AnyCam, samples: int = SAMPLES) -> xr.Dataset:

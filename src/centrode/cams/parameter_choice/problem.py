@@ -41,7 +41,7 @@ SETTLED = 1e-14
 
 @dataclass(frozen=True)
 class PathTrial:
-    """One design to be tried.
+    """Design to be tried.
 
     Attributes
     ----------
@@ -114,6 +114,7 @@ def paths_of(trials: Sequence[PathTrial], mesh: Mesh, phi: Array) -> BatchPaths:
     states = {0.0: start}
     panels = mesh.panels
     nodes = [first + (last - first) * _unit_nodes() for first, last in panels]
+    # one call of each law for all panels and places
     everywhere = np.concatenate([*nodes, phi])
     curvature = np.stack([_limit_curvature(trial, everywhere) for trial in trials], axis=1)
     for number, (first, last) in enumerate(panels):
@@ -145,7 +146,9 @@ def _solve_panel(start: Array, curvature: Array, length: float) -> tuple[Array, 
     matrix = length * _integration()
     u = np.broadcast_to(start[0], curvature.shape)
     gamma = np.broadcast_to(start[1], curvature.shape)
+    # (ln rho)' = tan gamma, gamma' = 1 - rho K / cos gamma: the integral equations by Picard's iteration
     for _round in range(ROUNDS):
+        # bounded, so that a design beyond all cams still has finite numbers, by which a search comes back
         held = np.clip(gamma, -STEEPEST, STEEPEST)
         cosine = np.cos(held)
         following = start[0] + matrix @ (np.sin(held) / cosine)
@@ -161,6 +164,7 @@ def _solve_panel(start: Array, curvature: Array, length: float) -> tuple[Array, 
 @cache
 def _unit_nodes() -> Array:
     """Chebyshev points of the second kind on [0, 1], rising."""
+    # (1 - cos x) / 2 as a square: the ends are 0 and 1 exactly, near 0 no digit is lost
     nodes = np.sin(0.5 * math.pi * np.arange(DEGREE + 1) / DEGREE) ** 2
     nodes.flags.writeable = False
     return nodes
@@ -172,6 +176,7 @@ def _integration() -> Array:
     x = 2 * _unit_nodes() - 1
     sums = np.polynomial.chebyshev.chebint(_to_coefficients(), axis=0, lbnd=-1)
     matrix = 0.5 * np.polynomial.chebyshev.chebvander(x, DEGREE + 1) @ sums
+    # a panel begins at its start to the last bit, as the panels are joined there
     matrix[0] = 0.0
     return np.asarray(matrix)
 
@@ -369,12 +374,13 @@ class ChoiceProblem:
         return np.unique(np.concatenate([np.linspace(first, last, ANGLES), [0.0], self.more]))
 
     def scale(self, name: str) -> float:
-        """What a measure is divided by: its bound, or that of the best design seen at the start."""
+        """Scale of a measure: its bound, or without one its greatest value over some designs."""
         bound = abs(self.limits[name][1]) if name in self.limits else 0.0
         return bound or self._references.get(name, 1.0)
 
     def measure(self, share: Array) -> tuple[dict[str, Array], dict[str, Array]]:
         """Measures (m,) with their signs, over their scales, and slopes (m, n) by the places in the box."""
+        # an optimiser asks for values and slopes of one place apart: both come from one evaluation
         key = share.tobytes() + bytes(str(len(self.more)), "ascii")
         if self._known is None or self._known[0] != key:
             lanes, weights = _differences(share)
@@ -395,6 +401,7 @@ class ChoiceProblem:
         for name, measure in self._measures.items():
             values = measure.of(tried, self.family.contact)[:, 0]
             at = int(np.argmax(values))
+            # of both signs one after the other, the angles come twice
             place = float(phi[-1]) if measure.whole else float(phi[at % len(phi)])
             extremes[name] = (measure.sign * float(values[at]), place)
         return extremes
@@ -440,6 +447,7 @@ def _differences(share: Array) -> tuple[Array, Array]:
     lanes = np.concatenate([share[None], share + STEP * first * unit, share + STEP * second * unit])
     weights = np.concatenate(
         [
+            # (-3 f0 + 4 f1 - f2) / 2 on one side, (f1 - f2) / 2 on both: of the second order alike
             (-1.5 * near)[None],
             np.diag(np.where(near, 2.0 * near, 0.5)),
             np.diag(np.where(near, -0.5 * near, -0.5)),

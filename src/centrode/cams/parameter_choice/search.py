@@ -86,7 +86,7 @@ def search(
 
 
 def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str, float]]:
-    """How far the slope of the value made best is from being held by the bounds that bind, and their multipliers.
+    """Residual of the conditions of Karush, Kuhn and Tucker, and the multipliers of the bounds that bind.
 
     A best design has a slope that is a sum, with weights that are not negative, of slopes of the constraints that
     bind and of the sides of the box (Karush, Kuhn and Tucker). The residual is a part of the slope's own size; the
@@ -129,7 +129,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
 
 
 def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
-    """One run: of the value made best, or (`elastic`) of the excess over the bounds."""
+    """End (n,) of one run from a start (n,): of the value made best, or (`elastic`) of the excess over the bounds."""
     count = len(start)
     values, _slopes = problem.measure(start)
     limits = _targets(problem)
@@ -251,7 +251,7 @@ class CamDesign:
 
 @dataclass(frozen=True)
 class ParameterChoice:
-    """What a search chose.
+    """Design that a search chose.
 
     Attributes
     ----------
@@ -457,7 +457,7 @@ STEEPEST = math.radians(60)
 
 
 def contact_of(cam: Cam) -> LineContact | None:
-    """What presses the roller; None where the description has no contact."""
+    """Contact that presses the roller; None where the description has none."""
     if cam.contact is None or cam.roller is None:
         return None
     first = ContactMaterial(cam.contact.cam.elasticity, cam.contact.cam.poisson)
@@ -771,3 +771,8 @@ def choose_cam(
     wanted = front and against is not None
     trade = trade_off(family, start, best, against or "", bounds, points, said) if wanted else None
     return CamChoice(chosen, choice, proof, trade)
+
+
+def has_choice(cam: AnyCam) -> bool:
+    """Whether parameters of a cam are to be chosen."""
+    return isinstance(cam, Cam) and cam.choose is not None

@@ -63,7 +63,7 @@ class Made:
 
 @dataclass(frozen=True)
 class Making:
-    """How one counterweight is made.
+    """Make of one counterweight.
 
     Attributes
     ----------

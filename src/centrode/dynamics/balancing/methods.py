@@ -424,7 +424,7 @@ class BalanceProblem:
 
     @property
     def unit(self) -> float:
-        """What products are measured by [kg m]: all masses times the greatest length."""
+        """Unit of products of mass and radius [kg m]: the sum of all masses times the greatest length."""
         scale = self.turning.instants.ready.kinematics.path.scale
         return scale * (sum(each.mass for each in self.turning.masses) or 1.0)
 
@@ -464,7 +464,7 @@ class BalanceProblem:
         return whole
 
     def terms(self, x: Array, lengths: Sequence[bool]) -> list[MinimaxTerm]:
-        """What counts, linear about some unknowns; `lengths`: for which spots the length is an unknown of its own."""
+        """Terms of the minimax problem, linear about `x`; `lengths` marks spots whose length is an unknown."""
         whole = self.effects(x, self.own, self.columns)
         products = self.products(x)
         # all unknowns: components of the products, then their lengths

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ShakingResults:
-    """What the inertia of a planar mechanism does to its frame.
+    """Shaking forces and moments on the frame of a planar mechanism.
 
     Attributes
     ----------

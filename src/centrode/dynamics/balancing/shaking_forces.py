@@ -46,7 +46,7 @@ Numbers = TypeVar("Numbers", Array, Complex)
 
 @dataclass(frozen=True)
 class ShaftMotion:
-    """How the path is run through at n samples: its parameter's first two derivatives by time, each (n)."""
+    """Motion of the drive at n samples: first two derivatives of the path's parameter by time, each (n)."""
 
     rate: Array
     second_rate: Array
@@ -67,7 +67,7 @@ class MassTracks:
 
 @dataclass(frozen=True)
 class Effects:
-    """What inertia does at n samples: force and moment on the frame [N, N m], and what the drive must give for it."""
+    """Effects of inertia at n samples: force [N] and moment [N m] on the frame, and what the drive must give [N m]."""
 
     force: Complex
     moment: Array
@@ -185,6 +185,7 @@ class Instants:
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
             places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
             self._places = places
+        # by the value of the drive: rates come in later, by `ShaftMotion`
         moving = DriveMotion(0.0 * values, values, np.ones(len(values)))
         return State.of_samples(
             self.ready.mechanism, places.at(values), moving, self.ready.kinematics.path.scale
@@ -225,9 +226,9 @@ def constant_rate(prepared: Ready) -> float:
         what = _("a cycle needs a drive of constant speed, and this one is a law of time")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
     rate = float(path.parameter.constant_speed or 0.0)
+    # a machine's mean speed counts before the drive's own, in the drive's sense
     if mechanism.machine is not None:
         rate = copysign(mechanism.machine.mean_speed, path.forward)
-    # a machine's mean speed counts before the drive's own, in the drive's sense
     if rate == 0.0:
         what = _("its speed is zero, so there is no inertia force")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
@@ -276,7 +277,7 @@ def turns_of_cycle(
 def _signature(
     instants: Instants, masses: Sequence[Mass], carriers: Sequence[tuple[str, str]], values: Array
 ) -> Array:
-    """What has to be the same again: places over the greatest length with their derivatives, turning, and carriers."""
+    """Numbers (rows, n) that repeat with the cycle: places over the greatest length, slopes, turning, and carriers."""
     state, count = instants.state(values), len(values)
     size = 1.0 / state.scale
     rows = []
@@ -377,7 +378,7 @@ class ShakingTurning:
         return state, tracks
 
     def effects(self, values: Array) -> Effects:
-        """What the inertia does at values of the drive; raises as `at`."""
+        """Effects of the inertia at values (n) of the drive [rad]; raises as `at`."""
         _state, tracks = self.at(values)
         return effects_of(tracks, self.masses, self.instants.pace(values), self.about)
 

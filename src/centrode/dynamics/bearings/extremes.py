@@ -128,6 +128,7 @@ def _tops(curve: int, sign: float, places: Array, values: Array) -> list[_Top]:
     falls = sum(np.nan_to_num(size - sign * _size(np.roll(values, k, axis=0))).clip(min=0.0) for k in (1, -1))
     hoped = known + BEND * falls
     near = np.flatnonzero((known >= before) & (known >= after) & (hoped >= known.max()))
+    # by what they may rise to, not by what they are: a steep top may be hidden between samples
     near = near[np.argsort(-hoped[near], kind="stable")][:TOPS]
     last = len(places) - 1
     return [
@@ -149,6 +150,7 @@ def _narrow(
 ) -> None:
     """Compute reactions between the ends of every stretch, and go on with the part about the best of them."""
     cuts = [np.linspace(top.low, top.high, PARTS + 1) for top in tops]
+    # ends of stretches are shared: every place is computed once
     asked, back = np.unique(np.concatenate(cuts), return_inverse=True)
     speed: Speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
     rubs = any(str(name).startswith("friction_") for name in reactions)
@@ -159,6 +161,7 @@ def _narrow(
         size = top.sign * _size(values)
         size = np.where(np.isfinite(size), size, -np.inf)
         k = int(np.argmax(size))
+        # the sample itself is among the cuts, but for rounding: what is known does not get worse
         if size[k] >= top.sign * top.value:
             top.place, top.value, top.vector = float(cut[k]), top.sign * float(size[k]), values[k]
         top.low, top.high = float(cut[max(k - 1, 0)]), float(cut[min(k + 1, PARTS)])
@@ -170,6 +173,7 @@ def _best(tops: list[_Top]) -> _Top:
 
 def mean_over_time(time: Array, size: Array) -> tuple[float, float]:
     """Mean and root mean square of values (n) over the stretches between samples that are known."""
+    # a drive that runs backwards through its values has falling times
     order = np.argsort(time, kind="stable")
     time, size = time[order], size[order]
     step = np.diff(time)

@@ -144,6 +144,7 @@ def _hinges(reactions: xr.Dataset, like: xr.Dataset) -> Iterator[ReactionSeries]
         sides = np.flatnonzero(points == point)
         names = [str(bodies[k]) for k in sides]
         keys = [f"joint_force_{point}/{name}" for name in names]
+        # a load on the pin itself parts the two: then each side is a reaction of its own
         if len(sides) == 2 and _opposite(known[:, sides[0]], known[:, sides[1]]):
             both = (point, names[1], names[0])
             yield ReactionSeries(ReactionKind.HINGE, both, keys[0], "N", values[:, sides[0]])

@@ -180,6 +180,7 @@ def _path(size: Array, turning: Array) -> Array:
 def _wear(path: Array, places: Array, sectors: int, arc: float) -> Array:
     """Shares (bearing, surface, sector) of the whole path, each half step spread over the arc about its place."""
     weights = np.zeros(places.shape[1:])
+    # each half of a step belongs to the sample at its end, at whose place it wears
     weights[:-1] += path[0]
     weights[1:] += path[1]
     wide = 2.0 * np.pi / sectors
@@ -187,6 +188,7 @@ def _wear(path: Array, places: Array, sectors: int, arc: float) -> Array:
     whole = weights.sum(axis=0)
     for surface in range(len(SURFACES)):
         for sector in range(sectors):
+            # in [-pi, pi): the shorter way around
             away = np.remainder(places[surface] - (sector + 0.5) * wide + np.pi, 2.0 * np.pi) - np.pi
             shared = _overlap(away, arc, wide) / arc
             found[:, surface, sector] = np.where(weights > 0.0, weights * shared, 0.0).sum(axis=0)
@@ -196,8 +198,9 @@ def _wear(path: Array, places: Array, sectors: int, arc: float) -> Array:
 
 
 def _overlap(away: Array, arc: float, wide: float) -> Array:
-    """What an arc and a sector have in common whose middles lie so far apart; around the turn as well."""
+    """Overlap [rad] of an arc and a sector whose middles lie so far apart [rad], also across the end of the turn."""
     total = np.zeros_like(away)
+    # an arc of nearly a turn meets a sector from both sides
     for shift in (-2.0 * np.pi, 0.0, 2.0 * np.pi):
         low = np.maximum(away + shift - 0.5 * arc, -0.5 * wide)
         high = np.minimum(away + shift + 0.5 * arc, 0.5 * wide)

@@ -137,7 +137,7 @@ class WorkedSteps:
         self.add(MomentsOfLink(ledger.bodies.number(body), joint, None, (), outcome, beside))
 
     def assumptions(self, joints: Sequence[StaticJoint]) -> None:
-        """What is left out of meshes, and of contacts that something else keeps."""
+        """Add what is left out of meshes, and of contacts that something else keeps."""
         for joint in joints:
             if joint.kind == "mesh":
                 self.add(
@@ -185,6 +185,7 @@ def dyad_of(cell: Cell) -> Dyad | None:
     sides = [ForceSide(body, joint) for body in cell.bodies for joint in outer if body in joint.shares]
     if {side.body for side in sides} != set(cell.bodies) or len(sides) != 2:
         return None
+    # the outer hinge first: PRR is RRP and PPR is RPP, and PPP is no dyad
     sides.sort(key=lambda side: "RP".find(side.joint.letter))
     dyad = Dyad(sides[0], sides[1], inner)
     return dyad if dyad.kind in KINDS else None
@@ -213,6 +214,7 @@ def _by_hinge(dyad: Dyad, ledger: Ledger, worked: WorkedSteps) -> tuple[complex,
     (one, along), (other, beside) = parts
     known = dyad.first.known(ledger) + dyad.second.known(ledger) + one + other
     sine = across(along, beside)
+    # known + x along + y beside = 0 by Cramer
     normal, thrust = -cross(known, beside) / sine * along, cross(known, along) / sine * beside
     worked.polygon(dyad, ledger)
     chain = [
@@ -229,6 +231,8 @@ def split_reaction(
 ) -> tuple[complex, complex]:
     """The known part of an outer reaction and the unit vector of what is left of it."""
     if side.joint.letter == "P":
+        # without friction a guide presses square to itself, with a place that is unknown as well: no part is
+        # known
         return 0j, 1j * side.joint.along
     arm = side.joint.place - inner.place
     if abs(arm) <= SINGULAR * ledger.scale:
@@ -257,6 +261,7 @@ def _by_guide(dyad: Dyad, ledger: Ledger, worked: WorkedSteps) -> tuple[complex,
         worked.polygon(dyad, ledger)
     else:
         arm = first.joint.place - second.joint.place
+        # the arm of a force square to the guide: cross(arm, i along)
         reach = dot(arm, along)
         if abs(reach) <= SINGULAR * max(abs(arm), SINGULAR * ledger.scale):
             dead_point()
@@ -309,6 +314,7 @@ def _moments(
         if side.joint.letter != "P":
             continue
         at = side.joint.place
+        # the inner reaction is that on the first link: on the second it is opposite
         hold = -inner if side is dyad.second else inner
         inside = dyad.inner.shares[side.body] * found.get(id(dyad.inner), 0.0)
         moment = -(ledger.moment([side.body], at) + cross(dyad.inner.place - at, hold) + inside)
@@ -371,6 +377,7 @@ def solve_triad(triad: Triad, ledger: Ledger, worked: WorkedSteps) -> DyadReacti
     for leg in triad.legs:
         part, along = split_reaction(leg.side, leg.inner, ledger, parts)
         legs.append(TriadLeg(leg.side, leg.inner, part, along))
+    # the two lines that cross most steeply: their point is the best determined
     first, second = max(
         combinations(range(3), 2), key=lambda pair: abs(cross(legs[pair[0]].along, legs[pair[1]].along))
     )
@@ -385,12 +392,14 @@ def solve_triad(triad: Triad, ledger: Ledger, worked: WorkedSteps) -> DyadReacti
         return None
     carried = [leg.side.known(ledger) + leg.part for leg in legs]
     turning = ledger.moment([triad.base], point)
+    # the base feels its legs at the inner hinges, with what is known of them
     turning += sum(cross(leg.hinge - point, force) for leg, force in zip(legs, carried, strict=True))
     sizes = [0.0, 0.0, 0.0]
     sizes[third] = -turning / reach
     known = total(ledger.actions[triad.base]) + sum(carried, 0j) + sizes[third] * last.along
     sizes[first] = -cross(known, other.along) / sine
     sizes[second] = cross(known, one.along) / sine
+    # only now: where the point is of no use the group is solved another way, with other steps
     worked.steps += parts.steps
     _add_triad(triad, ledger, worked, (one, other, last), (turning, reach, sizes[third]))
     return replace(_triad_reactions(triad, ledger, legs, sizes), marks=(("S", point),))
@@ -461,6 +470,7 @@ def _on_hinge(
     """Moments about the hinge give the other unknown, the link's polygon then the reaction of the hinge."""
     (unit, turn) = other.bases[0]
     share = other.shares[body]
+    # moment about the pivot of one unit of the unknown
     factor = turn + cross(other.place - pivot.place, unit)
     arm = abs(other.place - pivot.place)
     if abs(factor) <= SINGULAR * max(turn, arm):
@@ -495,6 +505,7 @@ def _on_guide(
     unit = other.bases[0][0]
     size = -dot(known, along) / (other.shares[body] * dot(unit, along))
     push = ledger.reaction(other, body, size * unit)
+    # what is square to the guide: cross with its direction, along the normal
     thrust = -cross(along, known + push.force) * 1j * along
     moment = -(ledger.moment([body], guide.place) + push.about(guide.place))
     share = guide.shares[body]
@@ -546,7 +557,7 @@ def solve_together(cell: Cell, ledger: Ledger, worked: WorkedSteps) -> DyadReact
 def _column(
     joint: StaticJoint, unit: complex, turn: float, body: str, centre: complex, scale: float
 ) -> tuple[float, float, float]:
-    """What a unit of an unknown does on a body: force and moment over the scale; moments are counted in scales."""
+    """Column of one unknown in the equations of a body: force, and moment over the scale; moments count in scales."""
     share = joint.shares.get(body, 0.0)
     moment = cross(joint.place - centre, unit) / scale + turn if share else 0.0
     return share * unit.real, share * unit.imag, share * moment
@@ -554,6 +565,7 @@ def _column(
 
 def _solve_scaled(matrix: Array, right: Array) -> Array:
     """The solution, with columns and rows of one size; refuses what is singular to rounding."""
+    # forces and moments, long and short arms: equilibrated, the singular values tell the conditioning alone
     across = np.abs(matrix).max(axis=0)
     if not (across > 0).all():
         dead_point()
@@ -571,7 +583,7 @@ def _solve_scaled(matrix: Array, right: Array) -> Array:
 def _add_reaction(
     joint: StaticJoint, force: complex, moment: float, cell: Cell, ledger: Ledger, worked: WorkedSteps
 ) -> None:
-    """One reaction that was found with others."""
+    """Add the step of one reaction that was solved together with others."""
     bodies = [name for name in cell.bodies if name in joint.shares]
     body = max(bodies, key=lambda name: joint.shares[name])
     action = ledger.reaction(joint, body, force, moment)

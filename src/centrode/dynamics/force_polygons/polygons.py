@@ -119,7 +119,7 @@ class Polygon:
 
     @property
     def gap(self) -> complex:
-        """What is left open [N]: rounding."""
+        """Sum of the vectors [N], which only rounding keeps from zero."""
         return sum((vector.force for vector in self.vectors), 0j)
 
     def length(self, vector: PolygonVector) -> float:
@@ -240,7 +240,7 @@ class Lever:
 
     @property
     def balancing(self) -> float:
-        """What the drive must give, so that the lever stands still."""
+        """Moment [N m] or force [N] that the drive must give, so that the lever stands still."""
         return -sum(one.moment for one in self.forces)
 
 
@@ -257,6 +257,7 @@ def lever_of(
     for action in outer:
         image = -1j * _rate(stage, bodies, action)
         couple = action.moment * _turn(stage, bodies, action.body)
+        # (-i v) x F = v . F: a moment on the lever is the power in the mechanism, at unit rate of the drive
         arm = image.conjugate() * action.force
         forces.append(
             LeverForce(
@@ -295,7 +296,7 @@ def _turn(stage: ConstructionStage, bodies: FreeBodies, body: str) -> float:
 
 @dataclass(frozen=True)
 class GroupForces:
-    """What was done for one group.
+    """Forces of one group and the steps of their construction.
 
     Attributes
     ----------
@@ -466,6 +467,7 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
     worked, before = WorkedSteps(), tuple(ledger.on(cell.bodies))
     kind, found = _solve_cell(cell, ledger, worked)
     for joint, force, moment in found.forces:
+        # known from now on: groups that are solved later feel them
         ledger.settle(joint, force, moment)
     worked.assumptions(cell.joints)
     inner = [id(joint) for joint in cell.inner]
@@ -504,6 +506,7 @@ def _solve_cell(cell: Cell, ledger: Ledger, worked: WorkedSteps) -> tuple[str, D
     if single is not None:
         driven = any(joint.kind == "drive" for joint in cell.joints)
         return "input" if driven else "single", single
+    # from the hand construction that needs least to the equations that always work
     triad = triad_of(cell)
     by_point = None if triad is None else solve_triad(triad, ledger, worked)
     if by_point is not None:
@@ -516,6 +519,7 @@ def _chords(cell: Cell, ledger: Ledger, found: DyadReactions) -> list[PolygonVec
     dyad = dyad_of(cell)
     if dyad is None:
         return []
+    # the chain begins with the forces on the first link, all in one run
     body, at, began = dyad.first.body, 0j, True
     force = next(force for joint, force, _moment in found.forces if joint is dyad.inner)
     for action in found.chain:

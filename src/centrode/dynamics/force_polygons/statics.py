@@ -81,7 +81,7 @@ class FreeBodies:
         return f"{self.number(first)}{comma}{self.number(second)}"
 
     def carrier(self, guide: Guide) -> str:
-        """What slides on a guide: its link, or the slider that is understood."""
+        """Name of the body that slides on a guide: its link, or the slider that is understood."""
         if guide.link is not None:
             return guide.link
         return next(name for name, own in self.sliders.items() if own is guide)
@@ -142,7 +142,7 @@ Basis: TypeAlias = tuple[complex, float]
 
 @dataclass(frozen=True)
 class StaticJoint:
-    """What two bodies (three of a gear) do to each other.
+    """Joint of two bodies (three of a gear) with its unknown forces and moments.
 
     Attributes
     ----------
@@ -196,6 +196,7 @@ def joints_of(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) 
         *(_drive(drive, bodies, drawing) for drive in structure.mechanism.drives),
     ]
     reactions = [joint for joint in found if joint.kind != "drive" and joint.has_force]
+    # two joints between the same bodies have reactions of one name: the joint is added to it then
     pairs = Counter(frozenset(joint.bodies) for joint in reactions)
     return tuple(
         StaticJoint(j.kind, j.name, j.shares, j.place, j.bases, j.along, pairs[frozenset(j.bodies)] < 2)
@@ -226,6 +227,8 @@ def _wheels(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) ->
             at = complex(*contact_point(constraint, PLAIN, drawing.numbers, drawing.at))
             apart = drawing.point(constraint.centre) - at
             across = 1j * apart / abs(apart)
+            # a contact that something else keeps presses with a force that equilibrium does not tell: it is
+            # left out
             bases = XY if constraint.rolling not in redundant else ((across, 0.0),)
             shares = {constraint.on: -1.0, constraint.link: 1.0}
             yield StaticJoint("rolling", constraint.rolling, shares, at, bases, across)
@@ -241,6 +244,7 @@ def _mesh(gear: GearRatio, bodies: FreeBodies, drawing: VectorDrawing) -> Static
     axes = [_axes(bodies, wheel, gear.carrier) for wheel in (gear.first, gear.second)]
     if len(axes[0]) == len(axes[1]) == 1 and axes[0] != axes[1] and ratio != 1.0:
         first, second = (drawing.point(names[0]) for names in axes)
+        # where both wheels have one velocity against the carrier: w1 (P - A) = w2 (P - B) with w2 = i w1
         pitch = (first - ratio * second) / (1.0 - ratio)
         across = 1j * (pitch - second) / abs(pitch - second)
         return StaticJoint(
@@ -385,6 +389,7 @@ class ActionReader:
                     if before is not None:
                         force, moment = force + before.force, moment + before.moment
                     gathered[body, place] = Action(symbol, load.label, body, source, force, place, moment)
+            # a load between two bodies has an action on each: the body is added to its name
             both = len([body for body, _place in gathered if body != FRAME]) > 1
             for (body, _place), action in gathered.items():
                 name = f"{symbol}({self.bodies.number(body)})" if both or body == FRAME else symbol
@@ -416,6 +421,7 @@ class ActionReader:
                 guide = self.bodies.mechanism.guide(along.guide)
                 unit = complex(*self.drawing.numbers.direction[guide.id])
                 force = strength * unit * complex(*self.drawing.at.poses[guide.on].rotor)
+                # on both bodies at the place of the sliding point: the pair has no moment
                 place = self.drawing.point(guide.point)
                 yield self.bodies.carrier(guide), force, place, 0.0
                 yield guide.on, -force, place, 0.0
@@ -487,11 +493,12 @@ class Ledger:
         return cls(bodies, joints, scale, actions)
 
     def on(self, names: Sequence[str]) -> list[Action]:
-        """What acts on some bodies, body by body."""
+        """Actions on some bodies, body by body."""
         return [action for name in names for action in self.actions[name]]
 
     def settle(self, joint: StaticJoint, force: complex, moment: float = 0.0) -> None:
         """Enter the reaction of a joint, given on a body of share 1, with all its bodies."""
+        # by identity: two joints may be equal in all their numbers
         number = next(k for k, one in enumerate(self.joints) if one is joint)
         self.forces[number] = force, moment
         for body in joint.shares:
@@ -617,9 +624,11 @@ def cells_of(structure: Structure, bodies: FreeBodies, joints: Sequence[StaticJo
     if repeated:
         _refuse(repeated)
     names = [name for name in reversed(bodies.names) if name != FRAME]
+    # the last groups of the plan first, as on paper: forces run from the ends to the drive
     names.sort(key=lambda name: -bodies.order[name])
     unknowns = [(joint, k) for joint in joints for k in range(len(joint.bases))]
     owner = match({number: _equations(bodies, *unknown) for number, unknown in enumerate(unknowns)})
+    # an unknown without an equation, or an equation without an unknown: the reactions are not determined
     loose = set(range(len(unknowns))) - set(owner.values())
     if loose or len(owner) != sum(_size(bodies, name) for name in names):
         _refuse(sorted({unknowns[number][0].name for number in loose}))
@@ -627,6 +636,7 @@ def cells_of(structure: Structure, bodies: FreeBodies, joints: Sequence[StaticJo
     depends: dict[str, list[str]] = {name: [] for name in names}
     for number, (joint, _basis) in enumerate(unknowns):
         for body in joint.bodies:
+            # the unknown stands in equations of another body too, which therefore has to wait for it
             if body not in (FRAME, home[number]):
                 depends[body].append(home[number])
     components = in_order(strong_components(depends), depends)

@@ -22,7 +22,7 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an equation gives.
+    """Outcome of an equation.
 
     Attributes
     ----------

@@ -66,12 +66,12 @@ class Outer:
 
     @property
     def pulls(self) -> tuple[Wrench, ...]:
-        """Everything that acts."""
+        """Wrenches of loads and inertia."""
         return (*self.loads, *(pull for action in self.inertia for pull in action.pulls))
 
 
 def outer_of(state: State, burden: MassesAndLoads, acceleration: Array, known: Any) -> Outer:
-    """What acts on a mechanism; `acceleration` is that of the path's parameter.
+    """Loads and inertia forces of a mechanism; `acceleration` (n) is that of the path's parameter.
 
     Raises InputError for a load without a finite amount although the positions are `known`.
     """

@@ -154,7 +154,7 @@ class Pressing:
 
 
 class Equilibrium(Protocol):
-    """What the equations of equilibrium ask of a space."""
+    """Operations of a space that the equations of equilibrium need."""
 
     @property
     def origin(self) -> Vector:
@@ -173,19 +173,19 @@ class Equilibrium(Protocol):
         """Forces and moments of a constraint's row at a multiplier of one; `link` bears what acts on its point."""
 
     def foot(self, first: Vector) -> MomentCentre:
-        """What the equations of a link whose first point has this place are taken about, and along."""
+        """Place and directions of the moment equations of a link whose first point has this place."""
 
     def on_link(self, pull: Wrench, foot: MomentCentre, scale: float) -> tuple[Number, Number, Number]:
-        """What a pull does to the three equations of its link [N]."""
+        """Contribution of a wrench to the three equations of its link [N]."""
 
     def pin_axes(self, place: Vector) -> Sequence[Vector]:
         """Two directions in which a pin at a place must be in equilibrium."""
 
     def pressing(self, outer: Iterable[Wrench], mechanism: Mechanism, at: Positions) -> tuple[Pressing, ...]:
-        """What of the loads on moving pins the space does not let act on them."""
+        """Parts of loads on moving pins that press the pin against a link, as the space does not let it yield."""
 
     def centre(self, pulls: Iterable[Wrench], mechanism: Mechanism) -> tuple[Wrench, ...]:
-        """What the centre of the space exerts on each link, of those that all `pulls` act on; two a link.
+        """Wrenches of the centre of the space for each link, which bear what `pulls` leave; two a link.
 
         The first acts on the link, the second on the frame.
         """
@@ -305,7 +305,7 @@ class OnSphere:
         return basis(ARRAYS, place)
 
     def pressing(self, outer: Iterable[Wrench], mechanism: Mechanism, at: Positions) -> tuple[Pressing, ...]:
-        """What does not lie along the sphere.
+        """Parts of loads on moving pins that are square to the sphere.
 
         The only link of a pin bears it; with several links nothing tells which, so that the centre does.
         """
@@ -479,7 +479,7 @@ class Inverse:
 
     @property
     def loss(self) -> Array:
-        """What share of a solution rounding can make wrong; from 1 on no digit is left.
+        """Bound on the relative rounding error of a solution; from 1 on no digit is left.
 
         Positions are solved with the same equations, so they carry rounding multiplied by the condition number;
         the matrix moves with them, and what is solved with it is off by that, multiplied by the condition number
@@ -557,7 +557,7 @@ def _pseudo(matrix: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class ForceSystem:
-    """What the equations give for some outer forces.
+    """Solution of the equations for some outer forces.
 
     Attributes
     ----------
@@ -583,29 +583,29 @@ class ForceSystem:
 
     @cached_property
     def pressing(self) -> tuple[Pressing, ...]:
-        """What of loads on pins does not lie along a sphere."""
+        """Parts of loads on pins that are square to a sphere."""
         mechanism = self.system.scheme.structure.mechanism
         return self.system.equilibrium.pressing(self.outer, mechanism, self.system.at)
 
     @cached_property
     def acting(self) -> tuple[Wrench, ...]:
-        """Everything that acts on any body but the centre of a sphere."""
+        """Wrenches on all bodies but those of the centre of a sphere."""
         tied = [pull for pulls in self._wrenches_by_unknown.values() for pull in pulls]
         return (*tied, *self.outer, *(pull for joint in self.pressing for pull in joint.pulls))
 
     @cached_property
     def centre(self) -> tuple[Wrench, ...]:
-        """What the centre of a sphere exerts on each link, and the opposite on the frame."""
+        """Wrenches of the centre of a sphere on each link, and the opposite ones on the frame."""
         return self.system.equilibrium.centre(self.acting, self.system.scheme.structure.mechanism)
 
     @cached_property
     def all_wrenches(self) -> tuple[Wrench, ...]:
-        """Everything that acts on any body."""
+        """Wrenches on all bodies."""
         return (*self.acting, *self.centre)
 
     @cached_property
     def on_frame(self) -> list[Wrench]:
-        """Everything that acts on the frame and its points."""
+        """Wrenches on the frame and its points."""
         fixed = self.system.scheme.structure.mechanism.frame.points
         return [pull for pull in self.all_wrenches if on_frame(pull.body, fixed)]
 
@@ -684,7 +684,7 @@ class Kinetostatics:
     def _at_hosts(
         self, multipliers: Mapping[Unknown, Number], outer: Sequence[Wrench]
     ) -> dict[Unknown, Number]:
-        """What the host of each pin bears: the rest of what acts on the pin."""
+        """Force of each pin on its host: the rest of what acts on the pin."""
         sums: dict[Axis, Number] = dict.fromkeys(self.scheme.hosts, np.zeros(self.shape))
         acting = [(pull, value) for unknown, value in multipliers.items() for pull in self.pulls[unknown]]
         # only pins are summed: what acts on links is in their own equations
@@ -731,7 +731,7 @@ class Kinetostatics:
         return [(row + k, value) for k, value in enumerate(self.on_link(link, pull))]
 
     def on_link(self, link: str, pull: Wrench) -> tuple[Number, Number, Number]:
-        """What a pull does to the three equations of its link [N]: about its first point, by the greatest length."""
+        """Contribution of a wrench to the three equations of its link [N], moments over the greatest length."""
         return self.equilibrium.on_link(pull, self._moment_centres[link], self.scale)
 
     @cached_property

@@ -61,7 +61,7 @@ class HingeBearing:
 
     @property
     def motion(self) -> Turn:
-        """What rubs: the link turns against the pin."""
+        """Coordinate along which friction works: turning of the link against the pin."""
         return Turn(self.link, self.pin)
 
 
@@ -95,7 +95,7 @@ class Sliding:
 
     @property
     def motion(self) -> Slide:
-        """What rubs: the displacement grows or falls."""
+        """Coordinate along which friction works: displacement along the guide."""
         return Slide(self.guide)
 
 
@@ -203,7 +203,7 @@ def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[H
 
 
 def _bodies(mechanism: Mechanism, point: str) -> list[str]:
-    """What is hinged in a point: the frame, or what carries the guide of a slider without a link; then links."""
+    """Bodies hinged in a point: the frame, or what carries the guide of a slider without a link; then links."""
     links = [name for name, link in mechanism.links.items() if point in link.coordinates]
     carrier = _carrier(mechanism, point)
     return links if carrier is None else [carrier, *(name for name in links if name != carrier)]
@@ -239,7 +239,7 @@ MOST_STEPS = 2000
 
 
 class FrictionRule(IntEnum):
-    """What of two numbers counts for the size of friction."""
+    """Rule by which two components of a reaction make the size of friction."""
 
     LENGTH = 0
     GREATER = 1
@@ -247,7 +247,7 @@ class FrictionRule(IntEnum):
 
 
 class Outcome(IntEnum):
-    """What became of a position."""
+    """Outcome of the search for friction at a position."""
 
     FOUND = 0
     LOCKED = 1
@@ -304,7 +304,7 @@ class FrictionLaw:
         return np.asarray(np.abs(np.linalg.eigvals(shares)).max(axis=-1, initial=0.0))
 
     def residual(self, sizes: Array, share: Array) -> tuple[Array, Array, Array]:
-        """What is missing, f - s c m(f) (n, m), its derivatives (n, m, m), and what rounding leaves of it (n, m)."""
+        """Residual f - s c m(f) (n, m), its derivatives (n, m, m), and what rounding leaves of it (n, m)."""
         measures, slopes = self.measures(sizes)
         factor = share[:, None] * self.factor
         # sizes of the terms before they cancel: rounding is a share of these
@@ -421,7 +421,7 @@ Number: TypeAlias = Any
 
 @dataclass(frozen=True)
 class Size:
-    """One size of friction: the moment in a bearing, the force along a guide, or the moment of that about its line.
+    """Size of friction: the moment in a bearing, the force along a guide, or the moment of that about its line.
 
     Attributes
     ----------
@@ -471,7 +471,7 @@ class Rubbed:
 
     @property
     def moment(self) -> Array:
-        """What friction does along the path's parameter (n)."""
+        """Moment of all friction along the path's parameter (n)."""
         return np.asarray((self.amounts * self.slopes).sum(axis=1))
 
 
@@ -597,7 +597,7 @@ LOCKING = {FREE: "free", HELD: "held", JAMMED: "jammed"}
 
 @dataclass(frozen=True)
 class Powers:
-    """Everything that gives or takes energy, as moments along the path's parameter; power is the moment times `rate`.
+    """Moments along the path's parameter of all that gives or takes energy; power is the moment times `rate`.
 
     Attributes
     ----------

@@ -74,7 +74,7 @@ def side_forces(forces: ForceSystem, sides: Iterable[JointSide]) -> dict[JointSi
 
 
 def _on_body(forces: ForceSystem, side: JointSide) -> list[Wrench]:
-    """What the pin does to a link: by being its point, and on the sphere by being pressed against it alone."""
+    """Wrenches of a pin on a link: of the hinge, and on the sphere of the load that is pressed against it."""
     tie = PointInLink(side.point, side.body)
     known = [(tie, row) for row in range(tie.size) if (tie, row) in forces.multipliers]
     tied = [pull for unknown in known for pull in forces.pulls(unknown) if pull.body.kind == "link"]
@@ -101,7 +101,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 
 def column(value: Number, samples: int) -> Array:
-    """One number over the samples (n), from arrays (1, n) or a plain number."""
+    """Number over the samples (n), from arrays (1, n) or a plain number."""
     return np.array(np.broadcast_to(value, (1, samples))[0], dtype=np.float64)
 
 

@@ -138,6 +138,7 @@ def _with_friction(
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
     sizes = friction_of_contacts(state, found.forces, contacts, found.pace.acceleration, useful)
     without = found.outer
+    # friction acts on the bodies as any load does, so the same equations take it
     outer = Outer(
         (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
     )
@@ -227,7 +228,7 @@ def _worst(found: ReactionSolution, missing: Array, size: Array) -> float:
 
 
 def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
-    """What is missing to the equilibrium of every pin and link, moments about its first point; greatest force.
+    """Residual of the equilibrium of pins and links (n), and the greatest force (n), by which it is measured.
 
     The centre of a sphere bears what the forces on a link leave, so that there its moments alone tell.
     """
@@ -255,7 +256,7 @@ def _greater(size: Number, parts: Sequence[Number], unit: float) -> Number:
 
 
 def _frame(found: ReactionSolution) -> tuple[Array, Array]:
-    """What the frame bears, less all loads and the inertia forces, which are minus the rate of momentum."""
+    """Residual of the frame (n): what it bears less loads and inertia forces; and the greatest force (n)."""
     forces, scale = found.forces, found.forces.system.scale
     samples = forces.system.shape[-1]
     origin = forces.system.equilibrium.origin
@@ -283,7 +284,7 @@ def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
 
 
 def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Variable]:
-    """What is known of friction besides what stands at every sample that has reactions; works over a `whole` range."""
+    """Variables of friction besides forces at samples: works over a `whole` range, senses, self-locking, jumps."""
     parameter = solved.span.parameter
     locking = powers.locking
     locking[rubbed.solution.outcome == Outcome.LOCKED] = JAMMED
@@ -292,6 +293,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
         "flag_values": np.array(list(LOCKING), dtype=np.int8),
         "flag_meanings": " ".join(LOCKING.values()),
     }
+    # amounts act along the slopes, against the motion: minus makes work taken positive
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
     works = np.where(whole and _friction_converged(rubbed), works, np.nan)
     variables = {
@@ -316,7 +318,7 @@ def friction_coordinates(contacts: tuple[Contact, ...]) -> dict[str, Any]:
 
 
 def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Any]:
-    """How well the sizes were found, what does not rub because it does not move, and the efficiency of the whole."""
+    """Attributes of friction: residual and iterations of the sizes, contacts that stand still, mean efficiency."""
     return {
         "friction_residual": float(np.max(rubbed.solution.residual, initial=0.0)),
         "friction_iterations": rubbed.solution.tries,
@@ -416,6 +418,7 @@ def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
         "flag_meanings": " ".join(status.name.lower() for status in Status),
     }
     dimensions, values, attributes = vocabulary_variable("reaction_status", ("sample",), found.status)
+    # above 1 no digit is left, and how many more than none says nothing
     loss = found.forces.system.inverse.loss[0]
     return {
         "status": motion,

@@ -143,7 +143,7 @@ class ReducedFunctions:
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return FORMULAS + EACH * len(self.formulas)
 
     def at(self, values: Array) -> Array:
@@ -196,7 +196,7 @@ class ReducedFunctions:
         return self.reducer.jumps(low, high, loads)
 
     def scales(self, peaks: Array) -> Array:
-        """What counts as the greatest value of each row, where one may be nothing but rounding beside others."""
+        """Scale of each row (rows,): its greatest value, raised where that may be rounding beside other rows."""
         scales = peaks.copy()
         # J' may be rounding beside J, whose derivative it is
         scales[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
@@ -325,7 +325,7 @@ class PanelTracks:
         return any(abs(value - at) <= AT_THE_START * self.unit for at in self._change_points)
 
     def ending(self, value: float) -> Literal["limit", "change point"]:
-        """What ends the motion at the end that is nearer to a value."""
+        """Kind of event at that end of the range which is nearer to a value."""
         return "change point" if self.is_change_point(self.end(value)) else "limit"
 
     def end(self, value: float) -> float:
@@ -333,7 +333,7 @@ class PanelTracks:
         return self.low if abs(value - self.low) <= abs(value - self.high) else self.high
 
     def grown(self, periods: int) -> Array:
-        """What rows have grown by after so many periods: coordinates that run on with the drive."""
+        """Growth of the rows over so many periods, of coordinates that run on with the drive."""
         return periods * self._grown
 
     def _repeats(self) -> float:
@@ -648,7 +648,7 @@ class Field:
         return last
 
     def forces(self, leg: FieldLeg, t: float, value: float, rate: float) -> DriveForces:
-        """What acts at an instant; NaN where a formula has no value."""
+        """Inertia and moments at an instant; NaN where a formula has no value."""
         t, value, rate = (
             float(t),
             float(value),
@@ -725,7 +725,7 @@ OCCASIONS = ("turns back", "sticks", "breaks loose", "limit", "standstill", "cha
 
 @dataclass(frozen=True)
 class Occasion:
-    """Something that happened at a time [s] and a value of the drive."""
+    """Event of a simulation at a time [s] and a value of the drive."""
 
     kind: str
     time: float

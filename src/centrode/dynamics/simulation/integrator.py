@@ -556,7 +556,7 @@ _RELATIVE = np.array([1.0, 0.0, 1.0, 1.0, 1.0])
 
 
 class Stepper:
-    """One run of a field from a start."""
+    """Integration of a field from a start."""
 
     def __init__(
         self,

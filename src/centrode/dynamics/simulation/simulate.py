@@ -57,7 +57,7 @@ from centrode.numerics.executors import ARRAYS, choose_executor
 
 @dataclass(frozen=True)
 class Setting:
-    """What is simulated.
+    """Mechanism, loads and drive of a simulation, checked.
 
     Attributes
     ----------
@@ -83,7 +83,8 @@ class Setting:
 
     @cached_property
     def field(self) -> Field:
-        """What moves the mechanism; the start is checked."""
+        """Equation of motion; the start is checked."""
+        # the tracks are built once: the check of the start and the integration use the same
         field = Field(PanelTracks(self.rows), self.driving)
         self._check_start(field.tracks)
         return field
@@ -160,7 +161,7 @@ class Setting:
 
 
 def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Setting:
-    """What a description asks for, or settings in its place.
+    """Simulation that a description describes, or with settings in place of its own.
 
     Raises
     ------
@@ -236,13 +237,14 @@ def _coordinates(solved: Solved) -> dict[str, object]:
 
 
 def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> DriveForces:
-    """What acts at every instant; at rest as if it were about to go on in the sense of the drive."""
+    """Inertia and moments at every instant (n); at rest as if it were about to go on in the sense of the drive."""
     field, forces = setting.field, np.empty((len(times), len(fields(DriveForces))))
     rows = zip(times, states[VALUE], states[RATE], senses, strict=True)
     for k, (t, value, rate, sense) in enumerate(rows):
         # at rest in the sense in which it would go on
         way = (1.0 if rate > 0.0 else -1.0) if rate else sense or setting.rows.sense
         leg = field.leg_at(float(value), way)
+        # a creeping speed in place of zero: what acts against the motion needs its sense
         forces[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
     return DriveForces(*forces.T)
 
@@ -250,7 +252,7 @@ def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> Dri
 def _curves(
     setting: Setting, states: Array, forces: DriveForces, acceleration: Array, moving: npt.NDArray[np.bool_]
 ) -> dict[str, Array]:
-    """Everything over time by the names of the vocabulary; moments, speeds and works in the sense of the drive."""
+    """Curves over time (n) by names of the vocabulary; moments, speeds and works in the sense of the drive."""
     sense = setting.rows.sense
     rate = states[RATE]
     inertia, driving = forces.inertia, forces.driving

@@ -48,7 +48,7 @@ class ReturnMap:
         return self._speed(course) if course.ended == "turns" else np.nan
 
     def course(self, speed: float) -> Trajectory:
-        """One period from a speed at the section."""
+        """Trajectory over one period from a speed at the section."""
         self.count += 1
         return self._run(speed, 1)
 

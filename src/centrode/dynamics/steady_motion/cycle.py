@@ -231,7 +231,7 @@ SAME = 1e-7
 
 
 class CycleReduction(Protocol):
-    """What a cycle asks of a mechanism reduced to its drive, by the drive's value [rad]."""
+    """Functions of a mechanism reduced to its drive that a cycle needs, by the drive's value [rad]."""
 
     def at(self, values: Array, rate: Array) -> tuple[Array, Array, Array]:
         """Inertia [kg m^2], its derivative, and moment of all loads [N m], at values and rates [rad/s] (n)."""

@@ -213,7 +213,7 @@ def need_fluctuation(mechanism: Mechanism, **_arguments: object) -> None:
 
 
 def flywheel_of(found: SteadySolution) -> Flywheel:
-    """What a solution says of energies and flywheel; what needs a fluctuation is None without one."""
+    """Energies and flywheel of a solution; what needs a fluctuation is None without one."""
     machine, energies = found.machine, found.by_source.energies
     ends = found.speed.extremes()
     # by the energy equation for this inertia alone, not by the tangents that gave it

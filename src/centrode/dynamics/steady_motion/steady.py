@@ -60,7 +60,7 @@ class Mixing:
     changes: list[Array] = field(default_factory=list)
 
     def following(self, argument: Array, value: Array) -> Array:
-        """What to try after an argument (n) with its value (n): the combination whose change would be least."""
+        """Next argument (n) after an argument (n) with its value (n): the combination whose change would be least."""
         # the latest steps only: old ones describe the function somewhere else
         self.arguments = [*self.arguments[-KEPT:], argument]
         self.changes = [*self.changes[-KEPT:], value - argument]
@@ -250,7 +250,7 @@ def _iterate(
     mean: float,
     speed_of: Callable[[EnergyBalance], tuple[float | None, Speed]],
 ) -> tuple[float | None, Speed, int] | None:
-    """What `speed_of` finds when loads and drive are those of the speed it finds; None where they never are."""
+    """Fixed point of `speed_of`: loads and drive are those of the speed it gives; None if it is not reached."""
     nodes = cycle.panels.nodes
     speeds, mixing = np.full(len(nodes), mean), Mixing()
     for iteration in range(1, MOST_ITERATIONS + 1):
@@ -366,7 +366,7 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
 
 
 def _curves(found: SteadySolution, turned: Array) -> dict[str, Array]:
-    """Everything that is known of the drive over the cycle, by the names of the vocabulary."""
+    """Curves of the drive over the cycle (n), by names of the vocabulary."""
     balance, cycle, square = found.speed.balance, found.cycle, found.machine.mean_speed**2
     resisting, driving, total = balance.cycle.moment, balance.driving, balance.total
     return {

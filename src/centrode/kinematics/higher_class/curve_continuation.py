@@ -459,7 +459,7 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
 
 
 def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) -> list[Event]:
-    """One step of some walkers; returns the events on the way."""
+    """Go on with some walkers by one step; returns the events on the way."""
     here = walkers.here.of(who)
     parameter, state = _foretold(around, walkers, who, here)
     step = walkers.step[who]

@@ -65,7 +65,7 @@ class CurvePlaces:
         return self.numbers[:, -1]
 
     def of(self, which: Lanes | Mask) -> CurvePlaces:
-        """Some of the places."""
+        """Places with these numbers, or where a mask is true."""
         return CurvePlaces(*(getattr(self, f.name)[which] for f in fields(self)))
 
     def put(self, which: Lanes | Mask, others: CurvePlaces) -> None:
@@ -96,7 +96,7 @@ class ReachedPlace:
     found: Mask
 
     def of(self, which: Lanes | Mask) -> ReachedPlace:
-        """Some of the places."""
+        """Places with these numbers, or where a mask is true."""
         return ReachedPlace(
             self.places.of(which), self.arc[which], self.first[which], self.second[which], self.wrong[which],
             self.found[which],

@@ -149,7 +149,7 @@ def _as_float(x: Number) -> float:
 
 
 def _single(x: Number) -> Number:
-    """One number from an array of one."""
+    """The only number of an array; plain numbers unchanged."""
     return x if np.ndim(x) == 0 else x[0]
 
 

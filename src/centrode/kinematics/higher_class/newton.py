@@ -38,7 +38,7 @@ SMALL = 1e-9
 
 @dataclass(frozen=True)
 class Converged:
-    """What Newton's method came to: states, where it converged, sizes of all steps (steps, k)."""
+    """Result of Newton's method: states (k, width), mask of the converged (k,), sizes of all steps (steps, k)."""
 
     state: Array
     found: Mask

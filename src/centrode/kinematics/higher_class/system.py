@@ -146,7 +146,7 @@ class Linear:
         self.matrix = self._matrix()
 
     def _tangents(self, follow: Follow, at: Positions) -> dict[int, Shift]:
-        """How an unknown moves with each free coordinate."""
+        """Derivatives of an unknown by each free coordinate on which it depends."""
         entity, by, space = follow.entity, follow.by, self.numbers.space
         if by is None:
             if entity.kind == "point":
@@ -177,7 +177,7 @@ class Linear:
         return self.rows[self.number[by, 0]], self.rows[self.number[by, 1]]
 
     def _answer(self, entity: Entity, right: Sequence[Number]) -> Shift:
-        """How an unknown moves so that the two rows of its hinge give the requested displacements."""
+        """Shift of an unknown with which the two rows of its hinge give their right sides."""
         (a, b), (c, d) = self._inverses[entity]
         pair = _dot((a, b), right), _dot((c, d), right)
         if entity.kind == "point":
@@ -197,7 +197,7 @@ class Linear:
         return matrix
 
     def reduce(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
-        """What right sides of all equations ask for at no free motion, and the right sides left over."""
+        """Shifts of eliminated unknowns for right sides without free motion, and the right sides left over."""
         moved: dict[Entity, Shift] = {}
         for entity, by, _first in self.pattern.follows:
             if by is None:
@@ -218,7 +218,7 @@ class Linear:
         return moved, rest
 
     def whole(self, moved: Mapping[Entity, Shift], free: Sequence[Number]) -> dict[Entity, Shift]:
-        """How all unknowns move: as requested at no free motion, and with free coordinates."""
+        """Shifts of all unknowns: those without free motion, and those by values of the free coordinates."""
         shifts: dict[Entity, Shift] = {}
         for entity, tangents in self.tangents.items():
             total = moved.get(entity, (0.0,) * entity.unknowns)
@@ -311,7 +311,7 @@ class GroupSystem:
 
     @cached_property
     def pattern(self) -> Pattern:
-        """What follows from what."""
+        """Order in which unknowns follow from free coordinates."""
         return pattern_of(self.group)
 
     @property
@@ -321,7 +321,7 @@ class GroupSystem:
 
     @property
     def turning(self) -> int:
-        """How many numbers of a state are angles with their turns: the last ones."""
+        """Count of the numbers of a state that are angles with their turns; they are its last ones."""
         return len(self._turns)
 
     @cached_property
@@ -364,7 +364,7 @@ class GroupSystem:
         return numbers + [at.angles[name] for name in self._turns]
 
     def weights(self) -> Array:
-        """What makes the numbers of a state comparable, (k, width): lengths count in the greatest length."""
+        """Weights (k, width) that make the numbers of a state comparable: lengths count in the greatest length."""
         length = 1.0 / self.numbers.scale
         weights = [length for _name in self.group.points for _axis in self.numbers.space.axes]
         rest = self.numbers.space.at_rest
@@ -539,7 +539,7 @@ class LinkChain:
 
     @property
     def pattern(self) -> Pattern:
-        """What follows from what."""
+        """Order in which unknowns follow from free coordinates."""
         return pattern_of(self.group)
 
     @cached_property
@@ -607,7 +607,7 @@ class LinkChain:
         )
 
     def _pivot(self, follow: Follow) -> Vector:
-        """What a link turns about, in its axes."""
+        """Point about which a link turns, in its axes [m]."""
         local = self.numbers.local[follow.entity.name]
         pivot: Vector = next(iter(local.values())) if follow.by is None else local[follow.by.point]
         return pivot
@@ -679,7 +679,7 @@ class Surroundings:
         return cast(Newton, self.kinematics.structure.groups[self.group])
 
     def known(self, parameter: Jet, lanes: Lanes) -> Positions:
-        """What the group's equations need of what is known before it, at a parameter given as a jet."""
+        """Positions that the group's equations need of the plan before it, at a parameter given as a jet."""
         used = self.kinematics.take(lanes)
         hooks = self.hooks(JETS, parameter.value, lanes)
         with np.errstate(all="ignore"):
@@ -692,7 +692,7 @@ class Surroundings:
         return needed_positions(self.equations, self.before(parameter, lanes))
 
     def before(self, parameter: Array, lanes: Lanes) -> Positions:
-        """Everything that is known before the group, at plain parameters."""
+        """Positions of the plan before the group, at plain parameters (k,)."""
         used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = used.frame(ARRAYS, parameter)

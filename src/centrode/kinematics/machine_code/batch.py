@@ -186,7 +186,7 @@ class _Many:
         return branches_at_start(self.ready.kinematics.path, start.signs, start.angles, smooth, self.lanes)
 
     def _some(self, lanes: Lanes) -> Solved:
-        """Some mechanisms by arrays."""
+        """Motion of some mechanisms by arrays, (lanes,) their numbers."""
         return solve(self.ready, self.span, take_lanes(self.numbers, lanes), len(lanes))
 
     def _fill(

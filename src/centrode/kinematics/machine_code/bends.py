@@ -86,7 +86,7 @@ def _driven(drive: str, value: Number, cells: Cells) -> Number:
 
 
 def bends_of(path: Path, mesh: Array) -> dict[str, Array]:
-    """What the variables of cells stand for at the nodes of a mesh: name -> (nodes,)."""
+    """Values of the variables of cells at the nodes of a mesh: name -> (nodes,)."""
     if not path.by_time:
         return {}
     half = half_widths(mesh)

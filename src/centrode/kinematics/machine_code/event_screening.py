@@ -58,7 +58,7 @@ START = "start"
 
 @dataclass(frozen=True)
 class Centring:
-    """How centres are found for the angles of some links of a traced plan."""
+    """Kernels that find centres of the angles of some links of a traced plan."""
 
     traced: Traced
     links: tuple[str, ...]
@@ -164,7 +164,7 @@ class ScreenedEvents:
 
 @dataclass(frozen=True)
 class EventScreening:
-    """How mechanisms of a traced plan are judged; `links` are those whose turns are requested."""
+    """Kernels that judge mechanisms of a traced plan; `links` are those whose turns are requested."""
 
     traced: Traced
     samples: Array
@@ -191,7 +191,7 @@ class EventScreening:
 
     @cached_property
     def walk(self) -> Walk:
-        """What is handed on along the path, where there are groups of higher class."""
+        """States handed on along the path, where there are groups of higher class."""
         return Walk(self.traced, self.links)
 
     def judge(self, values: Mapping[str, Array]) -> ScreenedEvents:

@@ -188,7 +188,7 @@ def crossing_of(group: int, k: int) -> str:
 
 
 def counts_of(branches: Branches) -> dict[int, int]:
-    """How many change points the signs of a batch have to know: the next power of two, so that kernels are few."""
+    """Group -> number of change points that its signs hold: the next power of two, so that kernels are few."""
     # where assemblies are kept, signs never flip
     if not branches.smooth:
         return {}
@@ -220,7 +220,7 @@ Writers: TypeAlias = Callable[[Mapping[int, int]], tuple[Traced, Writer]]
 
 
 def of_mesh(plan: Traced) -> dict[str, Nodes]:
-    """What is written on the mesh: radicands and divisors with slopes and bends, cosines and sines of angles."""
+    """Outputs on the mesh: radicands and divisors with slopes and bends, cosines and sines of angles."""
     nodes = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
     nodes |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
     for (kind, group), bent in plan.bends.items():
@@ -489,7 +489,7 @@ def largest_of(group: int) -> str:
 
 
 def _outputs(plan: Traced) -> dict[str, Nodes]:
-    """What is written: nothing where a group is open, and what is to be said of the sample."""
+    """Outputs at a sample: the motion, NaN where a group is open, and the judgement of the sample."""
     outputs = nodes_of(plan)
     lowest: Operand | None = None
     near: Node | None = None

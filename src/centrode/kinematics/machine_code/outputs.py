@@ -52,7 +52,7 @@ def nodes_of(plan: Traced) -> dict[str, Nodes]:
 
 @dataclass(frozen=True)
 class Writer:
-    """What writes arrays of nodes, each of one lane and one sample, for many mechanisms.
+    """Writer of arrays of nodes, each of one lane and one sample, for many mechanisms.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class Writer:
         run(self._along, of_lanes, out=room, steps=room.shape[1])
 
     def streams(self, room: Array) -> dict[str, Array]:
-        """What is written by name, views of the room: (numbers, lanes, n)."""
+        """Outputs by name, as views of the room: (numbers, lanes, n)."""
         streams, first = {}, 0
         for name, nodes in self.outputs.items():
             streams[name] = room[first : first + nodes.size]
@@ -137,7 +137,7 @@ class Writer:
         return streams
 
     def views(self, room: Array) -> dict[str, Array]:
-        """What is written by name, as views of the room with the shapes of a `Solved`: (..., lanes, samples, ...)."""
+        """Outputs by name, as views of the room with the shapes of a `Solved`: (..., lanes, samples, ...)."""
         return {
             name: _shape_numbers(name, stream, self.outputs[name].shape)
             for name, stream in self.streams(room).items()

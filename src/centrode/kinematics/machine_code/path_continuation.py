@@ -89,7 +89,7 @@ def _of_some(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array]:
 
 
 class _Beginning:
-    """What decides in the initial position, with the groups of higher class that are begun so far."""
+    """Policy of the initial position, with the groups of higher class that are begun so far."""
 
     def __init__(self, ready: Ready) -> None:
         self.signs = ready.assembled.signs
@@ -153,7 +153,7 @@ class PathLeg:
 
     @property
     def steps(self) -> int:
-        """How many places there are."""
+        """Number of places."""
         return len(self.inputs[PARAMETER])
 
     def parts(self, steps: int) -> Iterator[PathLeg]:
@@ -229,7 +229,7 @@ LEAST_LANES = 64
 
 @dataclass(frozen=True)
 class Walk:
-    """What is handed on from place to place.
+    """States handed on from place to place.
 
     Attributes
     ----------
@@ -312,7 +312,7 @@ class Walking:
         )
 
     def reduce(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
-        """What is left of all samples at the end, and how sure that is: name -> (lanes,)."""
+        """Reductions over all samples, and the margin by which they are sure: name -> (lanes,)."""
         state: dict[str, Array] = {}
         for leg in way.legs:
             state = self._run(leg, values, self._begun(values, state), kernels, threads, None)

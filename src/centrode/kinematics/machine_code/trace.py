@@ -212,6 +212,7 @@ def trace_motion(
     """
     refuse_untraceable(ready, span)
     known = ready.kinematics
+    # laws of time are not traced: values and derivatives of the drives are inputs then
     path = traced_path(known.path, span.parameter, ORDERS - 1)
     # phases of gears belong to the initial position of the description, as in `of_batch`
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
@@ -230,7 +231,7 @@ def trace_motion(
 
 
 def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:
-    """What tells the turns of a link's angle: the place before, or a centre that runs on with a drive."""
+    """Rule for the turns of a link's angle: by the place before, or by a centre that runs on with a drive."""
     return turns_along if walked else functools.partial(turns_of, winders=winders)
 
 
@@ -290,6 +291,7 @@ def _constant_angle(cosine: float, sine: float, start: float) -> float:
 def _motion_of_parts(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
     layout, kinematics = parts.layout, parts.kinematics
     fixed = Positions.of_frame(kinematics.numbers, {}, EXPRESSIONS).points
+    # derivatives of the frame are plain zeros, which cost no operation
     frame = np.full((ORDERS, layout.axes * len(fixed)), 0.0, dtype=object)
     frame[0] = box_array([x for place in fixed.values() for x in place])
     parameter = variable(PARAMETER)
@@ -314,6 +316,7 @@ def _motion_of_parts(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
         parts.columns[:, layout.first_slide : layout.first_rotor].reshape(ORDERS, 1, 1, -1),
         spins_of(layout, columns),
         attitudes_of(layout, columns),
+        # expressions have no branches: where this does not hold is judged beside them
         np.full((1, 1), Status.OK, dtype=np.int8),
         box_array([worst]).reshape(1, 1),
         UnitLength(""),

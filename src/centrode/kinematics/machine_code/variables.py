@@ -1,4 +1,4 @@
-"""What is a variable in a traced plan: the numbers of a batch, and the place on the path."""
+"""Variables of a traced plan: the numbers of a batch, and the place on the path."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Varied:
     scale: Operand
 
     def values(self, numbers: Dimensions) -> dict[str, Array]:
-        """What the variables stand for in a batch of the same kind: name -> (lanes,)."""
+        """Values of the variables in a batch of the same kind: name -> (lanes,)."""
         values = dict(zip(self.names, arrays_of(numbers), strict=True))
         if not isinstance(self.scale, float):
             values[SCALE] = np.asarray(numbers.scale, dtype=np.float64)
@@ -124,7 +124,7 @@ def grid_of_variables(span: SampleGrid) -> TracedGrid:
 
 
 def times_of(span: SampleGrid) -> dict[str, Array]:
-    """What the variables of a place that tell of time stand for at the samples of a span: name -> (samples,)."""
+    """Values of time and of the rates of the parameter at the samples of a span: name -> (samples,)."""
     return {
         TIME: span.time,
         RATE: span.rate,
@@ -170,7 +170,7 @@ def traced_path(path: Path, parameter: Array, order: int) -> Path:
 
 
 def places_of(path: Path, parameter: Array, order: int) -> dict[str, Array]:
-    """What the variables of places on the path stand for at parameters: name -> (n,)."""
+    """Values of the variables of places on the path at parameters (n,): name -> (n,)."""
     places = {PARAMETER: parameter}
     if not path.by_time:
         return places
@@ -182,12 +182,12 @@ def places_of(path: Path, parameter: Array, order: int) -> dict[str, Array]:
 
 
 def inputs_of(path: Path, span: SampleGrid) -> dict[str, Array]:
-    """What the variables of a place stand for at the samples of a span: name -> (samples,)."""
+    """Values of the variables of a place, time included, at the samples of a span: name -> (samples,)."""
     return {**places_of(path, span.parameter, ORDERS - 1), **times_of(span)}
 
 
 def winders_of(path: Path) -> dict[str, Operand]:
-    """What links may turn with: the drive's value, or those of several drives."""
+    """Drive -> its value, of the angle drives with which links may turn."""
     if not path.by_time:
         return {path.driven[0].drive.id: variable(PARAMETER)}
     values = path.drive_values(None, variable(PARAMETER))

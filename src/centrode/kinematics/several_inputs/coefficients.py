@@ -222,7 +222,7 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
 
 
 def most_samples(solved: Solved) -> int:
-    """How many samples' coefficients fit into the memory of an ordinary machine."""
+    """Most samples whose coefficients fit into the memory of an ordinary machine."""
     drives = len(solved.ready.mechanism.drives)
     return GREATEST_RESULT // (max(solved.layout.width, 1) * drives * drives)
 

@@ -1,4 +1,4 @@
-"""How far one drive can go while the others are held."""
+"""Limits of one drive while the others are held."""
 
 from __future__ import annotations
 
@@ -135,11 +135,11 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     old = ready.kinematics.path
     start = initial_values(ready)
     ways = {name: target[name] - value for name, value in start.items()}
+    # all drives arrive at time 1
     driven = tuple(
-        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id])
-        for one in old.driven
-        # all drives arrive at time 1
+        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
     )
+    # the mesh has to be fine enough for the drive that goes farthest in its own unit
     fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
     pace = TimeScale.of(lambda times: np.full(len(times), fastest))
     path = Path(driven, old.parameter.in_time(), 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)

@@ -111,11 +111,11 @@ def lines_along(
 
 
 def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first: int) -> Lines:
-    """Some of the lines together."""
+    """Grid lines that are followed together, the first with number `first`."""
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
+    # signs stay: the region is that of one assembly, and change points do not lead out of it
     branches = branches_at_start(
-        # signs stay: the region is that of one assembly, and change points do not lead out of it
         path,
         ready.assembled.signs,
         ready.assembled.angles,
@@ -152,6 +152,7 @@ class _Measuring(SampleJudging):
         return super().root(group, radicand)
 
     def divisor(self, group: int, divisor: Number) -> Number:
+        # a divisor is lost at zero from either side
         self.margins[group] = np.abs(self._spread(divisor))
         return divisor
 
@@ -192,6 +193,7 @@ def reached_from(
             if comes_round:
                 ends = here[0] | here[-1]
                 here[0], here[-1] = ends & closes[0], ends & closes[-1]
+            # row by row, each with all its columns: a sweep carries a passage as far as it goes
             for k in range(len(free)):
                 here[k + 1] |= here[k] & free[k]
             for k in range(len(free) - 1, -1, -1):

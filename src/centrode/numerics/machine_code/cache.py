@@ -50,7 +50,7 @@ def name_of(*parts: str) -> str:
 
 
 def read_entry(name: str) -> bytes | None:
-    """What is kept under a name; None if there is nothing, or nothing that can be trusted."""
+    """Bytes kept under a name; None where there are none, or their checksum does not fit."""
     place = folder()
     if place is None:
         return None

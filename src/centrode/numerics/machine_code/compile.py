@@ -36,7 +36,7 @@ class Target:
     has_fma: bool
 
     def width(self, bits: int) -> int:
-        """How many numbers of some bits a register holds."""
+        """Count of numbers of so many bits in one register."""
         return self.register // bits
 
 

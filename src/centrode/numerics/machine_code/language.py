@@ -137,7 +137,7 @@ class Code:
         return self.block.put(f"fneg {self.vector.name} {a}")
 
     def intrinsic(self, name: str, *arguments: Value) -> Value:
-        """One of LLVM's functions on vectors: sqrt, fabs, copysign, fma, fmuladd."""
+        """Call of a vector function of LLVM: sqrt, fabs, copysign, fma or fmuladd."""
         v = self.vector
         full = f"@llvm.{name}.{v.suffix}"
         types = ", ".join([v.name] * len(arguments))

@@ -58,7 +58,7 @@ class ColumnRows:
         self.block.line(f"store {self.vector.name} {value}, ptr {place}, align {self.vector.bits // 8}")
 
     def everywhere(self, place: Value) -> Value:
-        """One number in every lane."""
+        """Vector with one number of memory in every lane."""
         vector, block = self.vector, self.block
         # one load and a shuffle: the number of a step is the same for all lanes
         scalar = block.put(f"load {vector.number}, ptr {place}, align {vector.bits // 8}")
@@ -100,7 +100,7 @@ MOST_LEFT = 32
 
 @dataclass(frozen=True)
 class LoopStage:
-    """What one loop computes.
+    """Nodes that one loop computes.
 
     Attributes
     ----------
@@ -218,7 +218,7 @@ PIECE = 64
 
 @dataclass(frozen=True)
 class LoopShape:
-    """How a scan is carried out.
+    """Order of the loops that carry out a scan.
 
     Attributes
     ----------
@@ -364,7 +364,7 @@ class _Writer:
         early: set[Node],
         left: dict[Node, int],
     ) -> None:
-        """One stage over one piece of the lanes."""
+        """Write the loop of one stage over one piece of the lanes."""
         block, lane = self.block, f"%lane{i}"
         before = block.label
         block.line(f"br label %stage{i}")

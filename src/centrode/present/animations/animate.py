@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.followers.profile_results import FollowerProfileResults
     from centrode.cams.profiles import ProfileBody
+    from centrode.cams.results import CamProfileResults, WalkingWheelResults
     from centrode.cams.walking_wheel import WheelMover
     from centrode.model.mechanism import Mechanism
     from centrode.model.settings import Display
@@ -356,6 +357,18 @@ def animate_cam_body(
     """Write an animation (GIF or MP4) of a turn of a cam, that of `cam_body`, below its roller, or there and back."""
     stage = roller_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
     write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)
+
+
+def animate_step(results: WalkingWheelResults, path: Path, dark: bool = False) -> None:
+    """Write an animation of one step of the walking wheel of a result; nothing where there is none."""
+    if results.wheel is not None:
+        animate_walking(results.wheel, path, _(results.cam.title), results.cam.display, dark=dark)
+
+
+def animate_profile(results: CamProfileResults, path: Path, dark: bool = False) -> None:
+    """Write an animation of a turn of the cam of a result below its roller; nothing where there is no profile."""
+    if results.body is not None:
+        animate_cam_body(results.body, path, _(results.cam.title), results.cam.display, dark=dark)
 
 
 def animate_follower(

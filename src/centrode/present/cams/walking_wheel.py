@@ -3,71 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from centrode.cams.roller_path import frames
 from centrode.locale import _
-from centrode.present.curves import write_title
-from centrode.present.displayed_units import label_with_unit, shown_as
 from centrode.present.signs import ground, slider
-from centrode.present.style import GROUND, INK, MUTED, PALETTE, house_style
+from centrode.present.style import GROUND, INK, MUTED, PALETTE
 
 if TYPE_CHECKING:
     from centrode.cams.walking_wheel import WheelMover, WheelPose
-    from centrode.model.mechanism import Display
     from centrode.present.scene import Array
 
 POINTS = 361
-COLUMNS = 3
 CAM, STANDING, FREE, CARRIER, PRINT = PALETTE[0], PALETTE[1], PALETTE[2], "#606060", PALETTE[4]
-MOST_INSTANTS = 12
-
-
-def walking_figure(
-    wheel: WheelMover, turned: Sequence[float], title: str = "", display: Display | None = None
-) -> Figure:
-    """The wheel where its carrier has turned by the given angles.
-
-    Parameters
-    ----------
-    wheel : WheelMover
-        Of `walking_wheel`.
-    turned : sequence of float [rad]
-        At most the first twelve are drawn.
-    title : str
-    display : Display, optional
-        Its unit of length; metres if left out.
-    """
-    factor, unit = shown_as("m", display)
-    turned = list(turned)[:MOST_INSTANTS]
-    columns = min(COLUMNS, len(turned))
-    rows = -(-len(turned) // columns)
-    with house_style():
-        figure = Figure(figsize=(3.6 * columns + 0.6, 3.7 * rows + 1.3), layout="constrained")
-        grid = figure.subplots(rows, columns, squeeze=False).reshape(-1)
-        for axes in grid[len(turned) :]:
-            axes.set_visible(False)
-        for axes, angle in zip(grid, turned, strict=False):
-            pose = wheel.pose(angle)
-            draw_wheel(axes, wheel, pose, factor)
-            window(axes, wheel, pose, factor)
-            axes.set_title(f"{math.degrees(angle):.4g}°".replace("-", "−"))
-            axes.set_xlabel(label_with_unit("x", unit))
-        grid[0].set_ylabel(label_with_unit("y", unit))
-        keys = wheel_keys()
-        figure.legend(
-            [key for key, _name in keys], [name for _key, name in keys], loc="outside lower center", ncols=4
-        )
-        write_title(figure, _("The walking wheel where its carrier has turned by"), title)
-    return figure
 
 
 def draw_wheel(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> list[Artist]:

@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from centrode.present.equations.typst import shown as shown
+from centrode.render.document.typst import shown as shown
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.model.settings import Display
-from centrode.present.equations.typst import LONG, TypstSpelling, in_degrees, quote, strip_brackets
 from centrode.render.document.numbers import Numbers
+from centrode.render.document.typst import LONG, TypstSpelling, in_degrees, quote, strip_brackets
 
 
 def with_unit(numbers: Numbers, value: float, unit: str) -> str:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from centrode.locale import decimal_mark
 from centrode.model.settings import DIGITS, Display
-from centrode.present.equations.typst import decimal
 from centrode.quantities import display_unit, typeset_unit
+from centrode.render.document.typst import decimal
 
 MINUS, NOTHING, ENDLESS, NARROW = "\u2212", "\u2014", "\u221e", "\u202f"
 MOST_DECIMALS = 7

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 
 from centrode.equations.symbols import Letter
 from centrode.locale import _
-from centrode.present.equations.typst import TypstSpelling, decimal
 from centrode.render.document.blocks import TableBlock, shown
 from centrode.render.document.numbers import Numbers, respell
+from centrode.render.document.typst import TypstSpelling, decimal
 
 CONDITION = re.compile(r"\b(sin|cos)\(([^()]*\bphi\d+[^()]*)\) = 0")
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.present.equations.typst import TypstSpelling, quote, shown
 from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
+from centrode.render.document.typst import TypstSpelling, quote, shown
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
 from centrode.render.symbolic import spell_symbolic

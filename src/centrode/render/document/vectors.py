@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from centrode.present.equations.typst import decimal, in_degrees, quote, word
+from centrode.render.document.typst import decimal, in_degrees, quote, word
 
 GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}

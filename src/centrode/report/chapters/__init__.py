@@ -13,11 +13,7 @@ from typing import NamedTuple, TypeAlias
 from centrode.locale import mark
 from centrode.render.document.blocks import ChapterBlocks
 from centrode.report.chapters.curvature_cams import (
-    cam_choice_chapter,
-    cam_contact_chapter,
     cam_motion_chapter,
-    cam_profile_chapter,
-    cam_walking_chapter,
 )
 from centrode.report.chapters.followers.motion import follower_motion_chapter
 from centrode.report.chapters.linkages.data import data_chapter
@@ -60,10 +56,6 @@ OWN: Mapping[str, Kind] = {
     "structure": Kind(mark("Structure"), structure_chapter),
     "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
-    "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
-    "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
-    "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
 

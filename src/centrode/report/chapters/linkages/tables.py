@@ -12,7 +12,6 @@ import xarray as xr
 from centrode.errors import STATUSES_OF_MOTION, Status
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.present.equations.typst import word
 from centrode.quantities import QUANTITIES, status_word
 from centrode.render.document.blocks import (
     Block,
@@ -25,6 +24,7 @@ from centrode.render.document.blocks import (
 )
 from centrode.render.document.numbers import NOTHING, Numbers
 from centrode.render.document.rows import rows_table, sentence, small
+from centrode.render.document.typst import word
 from centrode.render.document.vectors import symbol
 from centrode.report.study import Moment, ReportStudy, moments_of
 

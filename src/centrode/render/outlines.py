@@ -1,18 +1,27 @@
-"""How each layer of a cam's outlines is drawn, in files and figures alike."""
+"""Outlines in true size as SVG and DXF; how each layer is drawn, in files and figures alike."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
 
 import numpy as np
 
+from centrode.present.dxf_files import dxf_document
+from centrode.render.spelling import PlainSpelling
+
 if TYPE_CHECKING:
     from centrode.cams.profiles import CamOutline
     from centrode.present.scene import Array
+    from centrode.sheets.outlines import OutlineSet
+
+_interpolate = partial(import_module, "scipy.interpolate")  # off the cold path
 
 
 @dataclass(frozen=True)
@@ -56,6 +65,19 @@ STROKES: Mapping[str, OutlineStroke] = {
 def group_by_layer(outlines: Sequence[CamOutline]) -> dict[str, list[CamOutline]]:
     """Outlines by their layers, in the order of `STROKES`."""
     return {layer: found for layer in STROKES if (found := [one for one in outlines if one.layer == layer])}
+
+
+def write_outlines(outlines: OutlineSet, path: Path) -> None:
+    """Write outlines as SVG, and as DXF where its library is installed; `path` is without its ending."""
+    title = PlainSpelling(None).text(outlines.title)
+    write_outlines_svg(outlines.pieces, path.with_suffix(".svg"), title)
+    if writes_dxf():
+        write_outlines_dxf(outlines.pieces, path.with_suffix(".dxf"), title)
+
+
+def writes_dxf() -> bool:
+    """Whether the library that writes DXF is installed."""
+    return find_spec("ezdxf") is not None
 
 
 # Outlines of a cam or a shoe as SVG in true size, for cutters and viewers: cubic curves with exact slopes.
@@ -115,3 +137,78 @@ def _cross() -> str:
 def _pair(point: Array) -> str:
     x, y = np.round(point, 7) + 0.0
     return f"{x:.7f},{y:.7f}"
+
+
+# Outlines as DXF: splines and the points they go through, in layers, in millimetres.
+
+DEGREE = 3
+TEXT = 3.5
+"""Height of the title [mm]."""
+CREASE = 1e-9
+"""Pieces whose ends are nearer than this share of a metre are one polyline."""
+
+
+def write_outlines_dxf(outlines: Sequence[CamOutline], path: Path, title: str = "") -> None:
+    """Write outlines as DXF (AutoCAD 2010), one unit a millimetre.
+
+    Each piece is a cubic spline through its points with its own slopes at both ends, on the layer of its name; the
+    points stand as polylines on the layer `points-` of it. The centre is marked, the title stands below. The same
+    outlines give the same bytes.
+
+    Raises
+    ------
+    InputError
+        The extra `drawings` is not installed.
+    """
+    with dxf_document(path) as (_library, document):
+        space = document.modelspace()
+        for layer, pieces in group_by_layer(outlines).items():
+            stroke = STROKES[layer]
+            document.layers.add(layer, color=stroke.number)
+            document.layers.add(f"points-{layer}", color=stroke.number)
+            for piece in pieces:
+                _spline(space, piece, layer)
+            for places in _joined(pieces):
+                space.add_lwpolyline(places.tolist(), dxfattribs={"layer": f"points-{layer}"})
+        _centre(document, space)
+        _title(document, space, outlines, title)
+
+
+def _spline(space: Any, piece: CamOutline, layer: str) -> None:
+    ends = 1e3 * piece.slopes[[0, -1]]
+    angles = piece.phi - piece.phi[0]  # knots that begin at 0: some readers know no others
+    curve = _interpolate().make_interp_spline(
+        angles, 1e3 * piece.places, k=DEGREE, bc_type=([(1, ends[0])], [(1, ends[1])])
+    )
+    controls = np.column_stack([curve.c, np.zeros(len(curve.c))])
+    space.add_open_spline(
+        controls.tolist(), degree=DEGREE, knots=curve.t.tolist(), dxfattribs={"layer": layer}
+    )
+
+
+def _joined(pieces: Sequence[CamOutline]) -> list[np.ndarray[Any, Any]]:
+    """Points [mm] of pieces, those end to end together."""
+    found: list[np.ndarray[Any, Any]] = []
+    for piece in pieces:
+        places = 1e3 * piece.places
+        if found and np.abs(found[-1][-1] - places[0]).max() < 1e3 * CREASE:
+            found[-1] = np.concatenate([found[-1], places[1:]])
+        else:
+            found.append(places)
+    return found
+
+
+def _centre(document: Any, space: Any) -> None:
+    document.layers.add("centre", color=7)
+    for end in ((CENTRE, 0.0), (0.0, CENTRE)):
+        space.add_line((-end[0], -end[1]), end, dxfattribs={"layer": "centre"})
+
+
+def _title(document: Any, space: Any, outlines: Sequence[CamOutline], title: str) -> None:
+    if not title:
+        return
+    document.layers.add("title", color=7)
+    places = 1e3 * np.concatenate([one.places for one in outlines])
+    left, bottom = float(places[:, 0].min()), float(places[:, 1].min())
+    text = space.add_text(title, height=TEXT, dxfattribs={"layer": "title"})
+    text.set_placement((left, bottom - 3.0 * TEXT))
