@@ -83,22 +83,21 @@ class Balance:
     def loads(self, hinges: set[str]) -> None:
         for load in self.mechanism.loads:
             if load.kind == "spring":
-                first, second = load.points or ("", "")
+                first, second = load.points
                 apart = self.at(second) - self.at(first)
                 length = np.linalg.norm(apart, axis=-1, keepdims=True)
                 pull = STIFFNESS * (length - FREE) * apart / length
                 self.add(self.bearer(first, hinges), pull, self.at(first))
                 self.add(self.bearer(second, hinges), -pull, self.at(second))
             elif load.kind == "friction":
-                self.friction(load.guide or "", hinges)
+                self.friction(load.guide, hinges)
             elif load.kind == "torque":
                 self.torque(load)
             else:
-                point = load.point or ""
+                point = load.point
                 force = np.asarray(load.vector if load.kind == "force" else down() * PUSH, dtype=np.float64)
-                turned = (
-                    rotation(self.mechanism, self.motion, load.axes) @ force if load.axes != FRAME else force
-                )
+                axes = getattr(load, "axes", FRAME)
+                turned = rotation(self.mechanism, self.motion, axes) @ force if axes != FRAME else force
                 self.add(self.bearer(point, hinges), turned, self.at(point))
 
     def torque(self, load: Any) -> None:

@@ -170,8 +170,7 @@ from .equations.integration import integrate as integrate
 from .equations.integration import integration_results as integration_results
 from .equations.integration import closed_motion as closed_motion
 from .study.variant_results import variants as variants
-from .study.variant_results import variant_rows as variant_rows
-from .study.variant_results import variants_summary as variants_summary
+from .study.variant_results import Variants as Variants
 from .study.variant_results import spoken_variants as spoken_variants
 
 # Many mechanisms
@@ -179,7 +178,6 @@ from .sweeps.sweep import sweep as sweep
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
 from .sweeps.sweep import read_sweep as read_sweep
-from .study.sweep_summary import sweep_rows as sweep_rows
 
 # Any result, shown
 from .topics.presentation import summary as summary
@@ -191,7 +189,6 @@ from .topics.presentation import Result as Result
 from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
-from .present import sweep_csv as sweep_csv
 from .render.netcdf import write_motion_netcdf as write_motion_netcdf
 from .study.among import motion_among as motion_among
 from .study.among import moving_points as moving_points

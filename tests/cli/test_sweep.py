@@ -96,7 +96,8 @@ def test_formulas_samples_and_a_mechanism_beside_the_study(centrode: Centrode, f
     ranges = {"links.AB.length": (3.4, 3.6), "links.DB.length": (2.9, 3.1)}
     design = ct.sample(ranges, 8, "sobol", seed=2)
     found = ct.sweep(ct.example("crank-rocker"), design, samples=9, reduce={"swing": "range(angle_DB)"})
-    assert (folder / "r.csv").read_text(encoding="utf-8") == ct.sweep_csv(found)
+    ct.write(found, folder / "again")
+    assert (folder / "r.csv").read_bytes() == (folder / "again" / "sweep.csv").read_bytes()
 
 
 def test_no_mechanism_that_moves_is_exit_3(centrode: Centrode, folder: Path, study: Path) -> None:

@@ -119,9 +119,9 @@ def coulomb(
 ) -> None:
     """Sizes and senses of friction, from the reactions beside them and from the motion."""
     for load in mechanism.loads:
-        if load.coefficient is None:
+        if not hasattr(load, "coefficient"):
             continue
-        if load.guide is not None:
+        if hasattr(load, "guide"):
             in_guide(mechanism, load, motion, found, good, limit)
             continue
         for label in found.bearing.to_numpy():

@@ -65,16 +65,16 @@ def powers(mechanism: ct.Mechanism, data: Any, clouds: dict[str, Cloud]) -> list
 
 
 def _power(mechanism: ct.Mechanism, load: Any, data: Any) -> Array:
-    if load.guide is not None:
+    if hasattr(load, "guide"):
         v = RADIUS * data.slide_velocity.sel(guide=load.guide).to_numpy()
         return np.asarray(-2.0 * np.abs(v) - 0.5 * v**2)
-    if load.points is not None:
+    if hasattr(load, "points"):
         first, second = (RADIUS * place(data, name) for name in load.points)
         apart = second - first
         speed = RADIUS * (place(data, load.points[1], "velocity") - place(data, load.points[0], "velocity"))
         length = np.sqrt(dot(apart, apart))
         return np.asarray(-40.0 * (length - 0.1) * dot(apart, speed) / length)
-    if load.point is not None:
+    if hasattr(load, "point"):
         return _of_force(mechanism, load, data)
     if load.axis is None:
         axis = place(data, next(iter(mechanism.links["link0"].coordinates)))

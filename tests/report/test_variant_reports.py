@@ -8,11 +8,14 @@ from pathlib import Path
 import pytest
 
 import centrode as ct
+from centrode.analysis.rotatability.causes import Cause, CauseKind, Tracer
 from centrode.errors import InputError
 from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
 from centrode.report.variants import files
-from centrode.report.variants.answer_sheet import answer_sheet
+from centrode.report.variants.answers import answer_sheet
 from centrode.report.variants.files import VariantReport
+from centrode.study.variant_answers import InstantAnswers, VariantAnswers, read_answers
+from centrode.study.variant_results import VariantRow, Variants
 from centrode.study.variant_tables import read_variants
 
 ROWS = [
@@ -34,7 +37,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_each_variant_has_its_report_and_the_teacher_the_answers(quick: None, tmp_path: Path) -> None:
     topology = ct.example("slider-between-cranks")
-    rows = ct.write_variant_reports(topology, ROWS, tmp_path, formats=("html",))
+    rows = ct.write_variant_reports(topology, ROWS, tmp_path, formats=("html",)).rows
     assert [row.status for row in rows] == ["ok", "refused"]
     assert (tmp_path / "answers.html").is_file() and not (tmp_path / "answers.pdf").exists()
     folder = tmp_path / "variant-first"
@@ -66,35 +69,45 @@ def test_what_is_finished_is_not_made_again(
     ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
     assert (tmp_path / "variant-first" / "report.html").read_bytes() == before
     assert (tmp_path / "answers.html").read_bytes() == sheet
-    rows = ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="ru")
+    rows = ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="ru").rows
     assert [row.status for row in rows] == ["fault"]  # another language is another report: it was to be made
+
+
+def answers_at(angle: float) -> VariantAnswers:
+    """Answers at one instant, with rounding in one of the speeds."""
+    links = {"AC": (angle, 1e-17, 2.0), "CB": (1.0, 1.0, 0.0)}
+    instant = InstantAnswers("OA = 0", True, 0.0, (0.0,), links, {}, {})
+    cause = Cause(
+        CauseKind.RODS_IN_LINE, ((Tracer.LINK, "AC"), (Tracer.LINK, "CB")), ("A", "$B$"), True, 2.25
+    )
+    return VariantAnswers(True, None, "", "", "", (cause,), 1, "", "", (instant,))
 
 
 def test_the_sheet_tells_every_variant() -> None:
     topology = ct.example("slider-between-cranks")
-    table = read_variants(topology, [{"variant": "a", "l2": 1.0}, {"variant": "$b$", "l2": 1.5}])
-    answers = {
-        name: {
-            "cause": "", "group": "", "formula": "", "mobility": 1, "turns_fully": True, "failure": "",
-            "instants": [{"title": "OA = 0", "reached": True, "points": {}, "drives": {},
-                          "links": {"AC": [angle, 1e-17, 2.0], "CB": [1.0, 1.0, 0.0]}}],
-        }
-        for name, angle in (("a", 0.5), ("$b$", 0.25))
-    }  # fmt: skip
-    row = ct.variants(topology, [{"variant": "a", "l2": 1.0}])[0].row
-    rows = [
+    given = read_variants(topology, [{"variant": "a", "l2": 1.0}, {"variant": "$b$", "l2": 1.5}])
+    row = ct.variants(topology, [{"variant": "a", "l2": 1.0}]).rows[0]
+    rows = (
         row,
-        type(row)("$b$", True, None, "", "", "", "ok"),
-        type(row)("c", None, None, "", "", "why", "refused"),
-    ]
-    sheet = answer_sheet(topology, table, rows, answers, 4)
+        VariantRow("$b$", True, None, "", "", "", "ok"),
+        VariantRow("c", None, None, "", "", "length 2.50000 is wrong", "refused"),
+    )
+    answers = {name: answers_at(angle) for name, angle in (("a", 0.5), ("$b$", 0.25))}
+    sheet = answer_sheet(Variants(topology, given, rows, answers=answers))
     blocks = [block for chapter in sheet.chapters for section in chapter.sections for block in section.blocks]
     tables = [block for block in blocks if isinstance(block, TableBlock)]
-    assert tables[0].rows == (("a", "1.000"), (r"\$b\$", "1.500"))
+    assert tables[0].rows == (("a", "1.0000"), (r"\$b\$", "1.5000"))
     assert [cells[0] for cells in tables[1].rows] == ["a", r"\$b\$", "c"]
-    assert tables[2].rows == (("a", "0.5000", "1.000"), (r"\$b\$", "0.2500", "1.000"))
+    assert tables[1].rows[0][4].endswith(r"fall in line, stretched out (A and \$B\$ are 2.25 m apart)")
+    assert tables[1].rows[2][4] == "length 2.50000 is wrong"  # as it was written
+    assert tables[2].rows == (("a", "0.50000", "1.0000"), (r"\$b\$", "0.25000", "1.0000"))
     assert [cells[1] for cells in tables[3].rows] == ["0", "0"]  # rounding beside the rates of its kind
     assert any(isinstance(block, ParagraphBlock) and "c" in block.text for block in blocks)
+
+
+def test_answers_read_back() -> None:
+    answers = answers_at(1 / 3)
+    assert read_answers(answers.json_text()) == answers
 
 
 def test_files_depend_on_formats_and_language() -> None:

@@ -67,7 +67,7 @@ def test_all_thirty_on_the_worked_topology() -> None:
 
 
 def test_results_of_a_variant() -> None:
-    results = ct.variants(WORKED, [{"variant": "seven", "l3": 1.2}])
+    results = ct.variants(WORKED, [{"variant": "seven", "l3": 1.2}]).results
     assert len(results) == 1
     assert results[0].row == VariantRow("seven", True, None, "", "", "", "ok")
     assert results[0].mechanism == WORKED
@@ -78,7 +78,7 @@ def test_results_of_a_variant() -> None:
 def test_one_wrong_variant_does_not_stop_the_others() -> None:
     table = [{"variant": "a", "l2": 1.0}, {"variant": "b", "l2": -1.0}, {"variant": "c", "l2": 1.1}]
     seen: list[tuple[int, int]] = []
-    found = ct.variants(WORKED, table, progress=lambda done, of: seen.append((done, of)))
+    found = ct.variants(WORKED, table, progress=lambda done, of: seen.append((done, of))).results
     assert [results.row.status for results in found] == ["ok", "refused", "ok"]
     assert "length must be positive" in found[1].row.cause
     assert found[1].study is None
@@ -87,7 +87,7 @@ def test_one_wrong_variant_does_not_stop_the_others() -> None:
 
 def test_what_cannot_be_integrated_is_noted() -> None:
     sphere = ct.example("spherical-four-bar")
-    found = ct.variants(sphere, [{"variant": "a", "links.BC.length": "44 deg"}])[0]
+    found = ct.variants(sphere, [{"variant": "a", "links.BC.length": "44 deg"}]).results[0]
     assert found.row.status == "ok" and found.row.turns_fully is True
     assert found.integration is None
     assert "not on the sphere" in found.note
@@ -112,7 +112,7 @@ def stamps(folder: Path) -> dict[str, int]:
 
 
 def test_a_folder_for_each(tmp_path: Path) -> None:
-    rows = ct.write_variants(WORKED, TWO, tmp_path / "out")
+    rows = ct.write_variants(WORKED, TWO, tmp_path / "out").rows
     assert [row.variant for row in rows] == ["a", "b"]
     for name in ("variant-a", "variant-b"):
         assert sorted(file.name for file in (tmp_path / "out" / name).iterdir()) == FILES
@@ -151,14 +151,14 @@ def test_changed_and_damaged_variants_are_computed_again(tmp_path: Path) -> None
     ct.write_variants(WORKED, TWO, tmp_path)
     before = stamps(tmp_path)
     changed = [TWO[0], {"variant": "b", "l2": -1.0}]
-    rows = ct.write_variants(WORKED, changed, tmp_path)
+    rows = ct.write_variants(WORKED, changed, tmp_path).rows
     assert [row.status for row in rows] == ["ok", "refused"]
     # nothing of the variant as it was is left beside the marker of what it is
     assert [file.name for file in (tmp_path / "variant-b").iterdir()] == ["variant.json"]
     assert stamps(tmp_path)["variant-a/variant.json"] == before["variant-a/variant.json"]
     (tmp_path / "variant-a" / "variant.json").write_text('{"digest": "', encoding="utf-8")
     (tmp_path / "variant-a" / "own notes.txt").write_text("kept", encoding="utf-8")
-    assert ct.write_variants(WORKED, TWO, tmp_path)[0].status == "ok"
+    assert ct.write_variants(WORKED, TWO, tmp_path).rows[0].status == "ok"
     assert (tmp_path / "variant-a" / "own notes.txt").read_text(encoding="utf-8") == "kept"
 
 
@@ -198,10 +198,10 @@ def test_a_fault_is_told_and_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
             raise ArithmeticError("a slip of ours")
 
         broken.setattr(folders, "compute_variant", fail)
-        rows = ct.write_variants(WORKED, TWO, tmp_path)
+        rows = ct.write_variants(WORKED, TWO, tmp_path).rows
     assert [row.status for row in rows] == ["fault", "fault"]
     assert rows[0].cause == "ArithmeticError: a slip of ours"
-    assert [row.status for row in ct.write_variants(WORKED, TWO, tmp_path)] == ["ok", "ok"]
+    assert [row.status for row in ct.write_variants(WORKED, TWO, tmp_path).rows] == ["ok", "ok"]
 
 
 def test_figures_of_each(tmp_path: Path) -> None:
@@ -236,11 +236,12 @@ def nested(folder: Path) -> None:
 @pytest.mark.parametrize("language", ["ru", "uk"])
 def test_causes_in_the_language_of_the_reader(language: str) -> None:
     table = [{"variant": "a", "l2": 1.0}, {"variant": "b", "l2": -1.0}, {"variant": "c", "l2": "300 mm"}]
-    rows = [results.row for results in ct.variants(WORKED, table)]
+    found = ct.variants(WORKED, table)
+    rows = found.rows
     assert [row.status for row in rows] == ["ok", "refused", "locks"]
-    assert ct.spoken_variants(WORKED, table, rows) == tuple(rows)
+    assert ct.spoken_variants(found) == found
     with speaking(language):
-        free, refused, locks = ct.spoken_variants(WORKED, table, rows)
+        free, refused, locks = ct.spoken_variants(found).rows
         limits = ct.rotatability(with_l2(0.3)).limits
         with pytest.raises(InputError) as refusal:
             with_l2(-1.0)

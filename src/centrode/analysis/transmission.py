@@ -40,8 +40,6 @@ from centrode.structure.groups import (
     Rod,
     Slot,
     Stop,
-    links_of,
-    points_of,
 )
 
 # Transmission angles on the sphere: between the arcs from a dyad's inner joint to the centres of its two
@@ -219,7 +217,7 @@ def transmission_angles(
     for number, group in enumerate(structure.groups):
         angle = _angle(data, structure.dimensions, group) if arcs is None else arcs.of(group)
         if angle is not None:
-            by_group["-".join(links_of(group) or points_of(group))] = angle
+            by_group["-".join(group.links or group.points)] = angle
             numbered.append(number)
     if not by_group:
         raise InputError(

@@ -50,12 +50,14 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
         raise InputError(
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
-    click.echo(render.aligned(ct.sweep_rows(data)))
+    sheet, display = ct.sheet_of(data), asked.mechanism.display
+    click.echo(render.sheet_text(sheet, display))
     click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
-    if data.attrs["mechanisms_none"] == data.attrs["mechanisms"]:
-        raise MotionError(
-            study, _("no mechanism is ok at any sample"), _("ask for another range, or change what varies")
+    if sheet.failure is not None:
+        what, repair = (
+            render.plain_text(text, display) for text in (sheet.failure.what, sheet.failure.repair)
         )
+        raise MotionError(study, what, repair)
 
 
 def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
@@ -71,7 +73,8 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
             data = _compute(asked, study, None)
         if data.attrs["mechanisms"] < data["samples_ok"].size:
             raise KeyboardInterrupt  # a part of a table looks like a whole one
-        draft.write_text(ct.sweep_csv(data), encoding="utf-8", newline="\n")
+        (table,) = ct.tables(data).values()
+        render.write_table(table, draft, asked.mechanism.display)
     return data
 
 

@@ -69,23 +69,21 @@ def variants(
                 progress.say(_("computing variants"), done, of)
 
             if reports:
-                rows = ct.write_variant_reports(
+                found = ct.write_variant_reports(
                     description, table, folder, jobs, figures, formats=kinds, progress=tell, spelling=spelling
                 )
             else:
-                rows = ct.write_variants(
+                found = ct.write_variants(
                     description, table, folder, jobs=jobs, figures=figures, progress=tell, spelling=spelling
                 )
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
         output.tell(note.format(folder=folder))
         raise
-    rows = ct.spoken_variants(description, table, rows)
-    header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))
-    click.echo(render.aligned(ct.variant_rows(rows), header))
-    summary, failure = ct.variants_summary(rows)
+    found = ct.spoken_variants(found)
+    sheet = ct.sheet_of(found)
+    click.echo(render.sheet_text(sheet, description.display))
     written = ["summary.csv", *(f"answers.{kind}" for kind in dict.fromkeys(kinds) if reports)]
-    lines = [_("wrote {file}").format(file=folder / name) for name in written]
-    click.echo("\n" + "\n".join([summary, *lines]))
-    if failure is not None:
-        raise MotionError(table, failure)
+    click.echo("\n".join(_("wrote {file}").format(file=folder / name) for name in written))
+    if sheet.failure is not None:
+        raise MotionError(table, render.plain_text(sheet.failure.what, description.display))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 from centrode.dynamics.state import Centre, Place, Radial, State
 from centrode.dynamics.wrenches import Vector, Wrench, couple, on_link, on_point
@@ -12,7 +12,7 @@ from centrode.errors import InputError
 from centrode.geometry.plane import rotate_vector
 from centrode.geometry.sphere import cross, unit, unit_vector
 from centrode.locale import _
-from centrode.model.loads import Load
+from centrode.model.loads import TurningLoad
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import Placed
 from centrode.numerics.jets import Jet
@@ -20,17 +20,9 @@ from centrode.numerics.jets import Jet
 Number: TypeAlias = Any
 
 
-class Coordinate(Protocol):
-    """A number that a load works along."""
-
-    def value(self, state: State) -> Number:
-        """The number itself [m or rad]."""
-
-    def slope(self, state: State) -> Jet:
-        """Derivative of the number by the parameter, at held directions, as a jet with its own derivative."""
-
-    def pulls(self, state: State) -> tuple[Wrench, ...]:
-        """Wrenches of a load of one unit along the number: its derivatives by the coordinates of points and links."""
+# A coordinate answers for itself: `value` is the number itself [m or rad]; `slope` its derivative by the parameter, at
+# held directions, as a jet with its own derivative; `pulls` what a load of one unit along it does to points and
+# links, its derivatives by their coordinates.
 
 
 @dataclass(frozen=True)
@@ -244,12 +236,15 @@ class Travel:
         raise NotImplementedError("no force on a link works along it")
 
 
-def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:
+Coordinate: TypeAlias = Turn | Slide | Distance | HalfSquare | Component | Spin | Travel
+"""What a load works along."""
+
+
+def turning_of(mechanism: Mechanism, load: TurningLoad, where: str, measured: bool) -> Turn | Spin:
     """The turning of a load's link against another; `measured` where the load asks for the angle itself.
 
     Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is requested.
     """
-    assert load.link is not None
     if mechanism.space != "sphere":
         return Turn(load.link, load.relative_to)
     axis = hinge_of(mechanism, load.link, load.relative_to, where) if load.axis is None else load.axis

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from math import hypot
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +26,25 @@ from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.path import JETS
 from centrode.locale import _
-from centrode.model.loads import LOAD_VARIABLES, PLAIN_SUM, Load
+from centrode.model.loads import (
+    LOAD_VARIABLES,
+    PLAIN_SUM,
+    AnyLoad,
+    BearingFriction,
+    CoefficientFriction,
+    GuideForce,
+    GuideFriction,
+    HingeDamper,
+    HingeFriction,
+    HingeSpring,
+    LinkWeight,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    PointWeight,
+    SliderFriction,
+    Torque,
+)
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.text_formula import TextFormula, compile_formula
@@ -55,27 +74,19 @@ class Situation:
     m: Any
 
 
-class LoadLaw(Protocol):
-    """A force [N] or moment [N m] along its coordinate."""
+# A law is a force [N] or moment [N m] along its coordinate, and answers for itself: `uses` is which of t, q, x, v it
+# depends on; `levels` the values of the coordinate at which it has a kink; `jumps` whether it may jump where the
+# coordinate turns round; `sensed` whether it depends on which way the coordinate goes; `by_place` whether it can be
+# represented by the value of the drive, once for each sense; `energy_class` what becomes of its work, and of what is
+# stored `energy` how much that is.
 
-    @property
-    def uses(self) -> frozenset[str]:
-        """Which of t, q, x, v it depends on."""
 
-    @property
-    def levels(self) -> tuple[float, ...]:
-        """Values of the coordinate at which it has a kink."""
+class EnergyClass(StrEnum):
+    """What becomes of the work of a load."""
 
-    @property
-    def jumps(self) -> bool:
-        """Whether it may jump where the coordinate turns round."""
-
-    @property
-    def sensed(self) -> bool:
-        """Whether it asks which way the coordinate goes."""
-
-    def __call__(self, now: Situation) -> Number:
-        """Its value."""
+    STORED = "stored"
+    FRICTION = "friction"
+    OTHER = "other"
 
 
 @dataclass(frozen=True)
@@ -88,8 +99,23 @@ class Constant:
     jumps: bool = False
     sensed: bool = False
 
+    energy_class = EnergyClass.OTHER
+    by_place = True
+
     def __call__(self, now: Situation) -> Number:
         return self.value
+
+
+@dataclass(frozen=True)
+class Weight(Constant):
+    """A constant force whose work is stored."""
+
+    energy_class = EnergyClass.STORED
+
+    def energy(self, x: Number) -> Number:
+        """Potential energy [J] at a value of its coordinate."""
+        # a constant force along x has the potential -F x
+        return -self.value * x
 
 
 @dataclass(frozen=True)
@@ -99,6 +125,8 @@ class LoadFormula:
     formula: TextFormula
     levels: tuple[float, ...] = ()
     sensed: bool = False
+    energy_class = EnergyClass.OTHER
+    by_place = False
 
     @classmethod
     def of(cls, text: str, where: str) -> LoadFormula:
@@ -130,6 +158,12 @@ class TorsionSpring:
     levels: tuple[float, ...] = ()
     jumps: bool = False
     sensed: bool = False
+    energy_class = EnergyClass.STORED
+    by_place = False
+
+    def energy(self, x: Number) -> Number:
+        """Potential energy [J] at a value of its coordinate."""
+        return 0.5 * self.stiffness * (x - self.free) ** 2
 
     def __call__(self, now: Situation) -> Number:
         return -self.stiffness * (now.x - self.free)
@@ -145,6 +179,13 @@ class StraightSpring:
     levels: tuple[float, ...] = ()
     jumps: bool = False
     sensed: bool = False
+    energy_class = EnergyClass.STORED
+    by_place = True
+
+    def energy(self, x: Number) -> Number:
+        """Potential energy [J] at a value of its coordinate."""
+        # the coordinate is half the squared distance, so that it is smooth at length zero
+        return 0.5 * self.stiffness * (np.sqrt(2.0 * x) - self.free) ** 2
 
     def __call__(self, now: Situation) -> Number:
         if self.free == 0.0:
@@ -162,6 +203,8 @@ class Damper:
     levels: tuple[float, ...] = ()
     jumps: bool = False
     sensed: bool = False
+    energy_class = EnergyClass.FRICTION
+    by_place = False
 
     def __call__(self, now: Situation) -> Number:
         return -self.damping * now.v
@@ -175,6 +218,8 @@ class Friction:
     viscous: Number = 0.0
     quadratic: Number = 0.0
     levels: tuple[float, ...] = ()
+    energy_class = EnergyClass.FRICTION
+    by_place = False
 
     @property
     def uses(self) -> frozenset[str]:
@@ -205,6 +250,8 @@ class Square:
     levels: tuple[float, ...] = ()
     jumps: bool = False
     sensed: bool = False
+    energy_class = EnergyClass.FRICTION
+    by_place = False
 
     def __call__(self, now: Situation) -> Number:
         return -self.quadratic * now.v * now.v
@@ -216,6 +263,8 @@ class LoadDiagram:
 
     label: str
     rows: tuple[tuple[float, ...], ...]
+    energy_class = EnergyClass.OTHER
+    by_place = True
 
     @property
     def uses(self) -> frozenset[str]:
@@ -260,6 +309,21 @@ class LoadDiagram:
         )
         text = what.format(value=x, low=self.rows[0][0], high=self.rows[-1][0])
         return InputError(self.label, text, _("add rows up to the ends of the stroke"))
+
+
+StoredLaw: TypeAlias = Weight | TorsionSpring | StraightSpring
+"""What has a potential energy."""
+LoadLaw: TypeAlias = (
+    Constant
+    | Weight
+    | LoadFormula
+    | TorsionSpring
+    | StraightSpring
+    | Damper
+    | Friction
+    | Square
+    | LoadDiagram
+)
 
 
 # Loads as efforts: amounts along coordinates, and how great they are in a state.
@@ -384,7 +448,7 @@ def loads_of(
     masses: Sequence[Mass],
     given: Given | None = None,
     m: Namespace = ARRAYS,
-    described: Sequence[Load] | None = None,
+    described: Sequence[AnyLoad] | None = None,
 ) -> tuple[AppliedLoad, ...]:
     """Loads of the description, or some of them, then the weights that gravity adds; each with a label of its own.
 
@@ -415,11 +479,11 @@ def _masses_with_weight(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Ma
     """Links that gravity acts on and whose weight the description does not give itself."""
     if not mechanism.gravity or not _strength(mechanism):
         return []
-    given = {load.link for load in mechanism.loads if load.kind == "weight"}
+    given = {load.link for load in mechanism.loads if isinstance(load, LinkWeight)}
     return [mass for mass in masses if mass.weighs and mass.link not in given]
 
 
-def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass]) -> list[str]:
+def _labels(loads: Sequence[AnyLoad], mechanism: Mechanism, masses: Iterable[Mass]) -> list[str]:
     names = [load.label for load in loads]
     names += [f"weight {mass.link}" for mass in _masses_with_weight(mechanism, masses)]
     found: list[str] = []
@@ -434,30 +498,51 @@ def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass])
 
 def _terms_of_load(
     mechanism: Mechanism,
-    load: Load,
+    load: AnyLoad,
     masses: Sequence[Mass],
     where: str,
     given: Given | None,
     m: Namespace,
 ) -> Iterable[LoadTerm]:
-    if load.kind == "friction":
-        return [_friction(mechanism, load, where)]
-    if load.kind == "weight":
-        return [_given_weight(mechanism, load, masses, where, given, m)]
-    if load.kind == "force":
-        return _force(load, where)
-    if load.kind == "torque":
-        amount = _amount(load.value, where)
-        return [LoadTerm(turning_of(mechanism, load, where, "x" in amount.uses), amount)]
-    return [_between(mechanism, load, where)]
+    match load:
+        case PointForce():
+            return _force(load, where)
+        case GuideForce(guide=guide, value=value, table=table):
+            return [
+                LoadTerm(Slide(guide), _amount(value, where) if table is None else LoadDiagram(where, table))
+            ]
+        case Torque(value=value):
+            amount = _amount(value, where)
+            return [LoadTerm(turning_of(mechanism, load, where, "x" in amount.uses), amount)]
+        case PointSpring(stiffness=stiffness, free_length=free):
+            first, second = load.points
+            return [LoadTerm(HalfSquare(first, second), StraightSpring(stiffness, free or 0.0))]
+        case HingeSpring(stiffness=stiffness, free_angle=free):
+            turn = turning_of(mechanism, load, where, measured=True)
+            return [LoadTerm(turn, TorsionSpring(stiffness, free or 0.0))]
+        case PointDamper(damping=damping):
+            first, second = load.points
+            return [LoadTerm(Distance(first, second), Damper(damping))]
+        case HingeDamper(damping=damping):
+            return [LoadTerm(turning_of(mechanism, load, where, measured=False), Damper(damping))]
+        case LinkWeight():
+            return [_weight_of_link(mechanism, load, masses, where, given, m)]
+        case PointWeight():
+            return [_weight_in_point(mechanism, load, where)]
+        case HingeFriction():
+            return [_friction_in_hinge(mechanism, load, where)]
+        case GuideFriction(guide=guide, value=value, viscous=viscous, quadratic=quadratic):
+            dry = _amount(value, where)
+            return [LoadTerm(Slide(guide), Friction(dry, viscous or 0.0, quadratic or 0.0))]
+        case BearingFriction() | SliderFriction():
+            what = _("friction by a coefficient needs the reactions")
+            repair = _("ask for the reactions (ct.reactions, centrode reactions), or give the size by value")
+            raise NotComputedYet(where, what, repair)
+        case _:
+            assert_never(load)
 
 
-def _force(load: Load, where: str) -> list[LoadTerm]:
-    if load.guide is not None:
-        amount = LoadDiagram(where, load.table) if load.table is not None else _amount(load.value, where)
-        return [LoadTerm(Slide(load.guide), amount)]
-    assert load.point is not None
-    assert load.vector is not None
+def _force(load: PointForce, where: str) -> list[LoadTerm]:
     point, axes = load.point, load.axes
     gate = None if load.while_moving is None else Component(point, load.while_moving, axes)
     if all(isinstance(value, float) for value in load.vector):
@@ -473,16 +558,9 @@ def _force(load: Load, where: str) -> list[LoadTerm]:
     ]
 
 
-def _friction(mechanism: Mechanism, load: Load, where: str) -> LoadTerm:
+def _friction_in_hinge(mechanism: Mechanism, load: HingeFriction, where: str) -> LoadTerm:
     """Friction of a given size: dry, and parts that grow with the speed and its square."""
-    if load.coefficient is not None:
-        what = _("friction by a coefficient needs the reactions")
-        repair = _("ask for the reactions (ct.reactions, centrode reactions), or give the size by value")
-        raise NotComputedYet(where, what, repair)
     dry = _amount(load.value, where)
-    if load.guide is not None:
-        amount = Friction(dry, load.viscous or 0.0, load.quadratic or 0.0)
-        return LoadTerm(Slide(load.guide), amount)
     turn = turning_of(mechanism, load, where, "x" in dry.uses)
     if load.form == PLAIN_SUM:
         if len(mechanism.drives) > 1:
@@ -492,22 +570,12 @@ def _friction(mechanism: Mechanism, load: Load, where: str) -> LoadTerm:
     return LoadTerm(turn, Friction(dry, load.viscous or 0.0, load.quadratic or 0.0))
 
 
-def _between(mechanism: Mechanism, load: Load, where: str) -> LoadTerm:
-    """A spring or a damper, between two points or in a hinge."""
-    if load.link is not None:
-        turn = turning_of(mechanism, load, where, load.kind == "spring")
-        if load.kind == "damper":
-            return LoadTerm(turn, Damper(load.damping or 0.0))
-        return LoadTerm(turn, TorsionSpring(load.stiffness or 0.0, load.free_angle or 0.0))
-    assert load.points is not None
-    first, second = load.points
-    if load.kind == "damper":
-        return LoadTerm(Distance(first, second), Damper(load.damping or 0.0))
-    return LoadTerm(HalfSquare(first, second), StraightSpring(load.stiffness or 0.0, load.free_length or 0.0))
-
-
-def _amount(value: float | str | None, where: str) -> LoadLaw:
+def _amount(value: float | str | None, where: str) -> Constant | LoadFormula:
     return LoadFormula.of(value, where) if isinstance(value, str) else Constant(value or 0.0)
+
+
+def _weight_law(value: float | str, where: str) -> Weight | LoadFormula:
+    return LoadFormula.of(value, where) if isinstance(value, str) else Weight(value)
 
 
 def _strength(mechanism: Mechanism) -> float:
@@ -523,29 +591,31 @@ def _down(mechanism: Mechanism, where: str) -> tuple[float, ...]:
 
 
 def _weight(mechanism: Mechanism, mass: Mass, size: Number) -> LoadTerm:
-    return LoadTerm(Component(mass.centre, _down(mechanism, mass.link)), Constant(size))
+    return LoadTerm(Component(mass.centre, _down(mechanism, mass.link)), Weight(size))
 
 
-def _given_weight(
+def _weight_in_point(mechanism: Mechanism, load: PointWeight, where: str) -> LoadTerm:
+    down = _down(mechanism, where)
+    if load.value is None:
+        what = _("a point has no mass of its own")
+        raise InputError(where, what, _("give the weight's value, or name a link that has a mass"))
+    return LoadTerm(Component(load.point, down, FRAME), _weight_law(load.value, where))
+
+
+def _weight_of_link(
     mechanism: Mechanism,
-    load: Load,
+    load: LinkWeight,
     masses: Sequence[Mass],
     where: str,
     given: Given | None,
     m: Namespace,
 ) -> LoadTerm:
-    """A weight of its own value, or of mass times gravity, at a link's centre or a point."""
+    """A weight of its own value, or of mass times gravity, at a link's centre of mass."""
     down = _down(mechanism, where)
-    if load.point is not None:
-        if load.value is None:
-            what = _("a point has no mass of its own")
-            raise InputError(where, what, _("give the weight's value, or name a link that has a mass"))
-        return LoadTerm(Component(load.point, down, FRAME), _amount(load.value, where))
-    assert load.link is not None
     mass = next((mass for mass in masses if mass.link == load.link and mass.weighs), None)
     if load.value is not None:
         at = centre_of(mechanism, load.link, given, m) if mass is None else mass.centre
-        return LoadTerm(Component(at, down, FRAME), _amount(load.value, where))
+        return LoadTerm(Component(at, down, FRAME), _weight_law(load.value, where))
     if mass is None:
         what = _("link {link} has no mass").format(link=load.link)
         raise InputError(where, what, _("give its mass, or the weight's value"))
@@ -578,12 +648,12 @@ class MassesAndLoads:
     @classmethod
     def for_reactions(cls, mechanism: Mechanism) -> MassesAndLoads:
         """The same without friction by coefficients, as forces on points and links; InputError for what is no force."""
-        loads = [load for load in mechanism.loads if load.coefficient is None]
+        loads = [load for load in mechanism.loads if not isinstance(load, CoefficientFriction)]
         return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
 
     @classmethod
     def _of(
-        cls, mechanism: Mechanism, given: Given | None, m: Namespace, described: Sequence[Load]
+        cls, mechanism: Mechanism, given: Given | None, m: Namespace, described: Sequence[AnyLoad]
     ) -> MassesAndLoads:
         masses = masses_of(mechanism, given, m)
         loads = loads_of(mechanism, masses, given, m, described)

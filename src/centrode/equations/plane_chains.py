@@ -14,7 +14,7 @@ from centrode.equations.linear import Condition, Draft, UnknownPlace, polar
 from centrode.equations.symbol_table import SymbolLine, SymbolRod, SymbolTable, lines_of, rods_of
 from centrode.equations.symbols import Angle, Sum, quarters_of
 from centrode.structure.constraints import FRAME, AngleDrive, NoTurning
-from centrode.structure.groups import Group, links_of, points_of
+from centrode.structure.groups import Group
 
 # Where vector chains close: what guides and cylinders say whose ends are all placed, and places met again.
 
@@ -210,7 +210,7 @@ class Chains:
 
     def lay(self, group: Group, number: int, draft: Draft) -> None:
         """Add a group of the plan to a draft: its angles, its chains, the constraints where they close."""
-        links, points = links_of(group), points_of(group)
+        links, points = group.links, group.points
         draft.links += links
         draft.points += points
         draft.plan.append(number)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import degrees, radians
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 import numpy.typing as npt
@@ -55,17 +55,18 @@ from centrode.structure.groups import (
     AngleEquation,
     AngleGiven,
     Arm,
+    Following,
     Group,
     Meet,
     Meshed,
     Newton,
+    RigidPoint,
+    Rolled,
     Rolloff,
     Train,
     TurnedLink,
     Turning,
     TwoPointLink,
-    links_of,
-    points_of,
 )
 from centrode.structure.rank import columns_of, independent_rows, match
 
@@ -91,25 +92,43 @@ def phases_before(
     kinematics: Kinematics, group: Group, at: Positions, choices: SideChoices
 ) -> dict[str, float]:
     """Constants that a group needs before it is solved in the initial position."""
-    if isinstance(group, Train):
-        return _of_train(kinematics, group, at, choices)
-    if not isinstance(group, (TurnedLink, Meet)):
-        return {}
-    phases: dict[str, float] = {}
-    link = group.link if isinstance(group, TurnedLink) else group.carriage
-    if link is not None and group.turning is not None and not isinstance(group.turning, Turning):
-        meshing = group.turning.gear if isinstance(group.turning, Meshed) else group.turning.rolling
-        trial = at.copy()
-        # as if the link stood where the description says: the constant is what the meshing then lacks
-        trial.angles[link] = stated_angle(kinematics, link)
-        phases[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
-    if isinstance(group, Meet):
-        # a wheel that something else turns stands with its centre at the line's own point, by definition
-        for locus in group.loci:
-            if isinstance(locus, Rolloff):
-                ahead = with_phases(kinematics, phases)
-                phases[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
-    return phases
+    match group:
+        case Train():
+            return _of_train(kinematics, group, at, choices)
+        case TurnedLink():
+            return _phase_of_turning(kinematics, group.link, group.turning, at)
+        case Meet():
+            turning = None if group.carriage is None else group.turning
+            phases = _phase_of_turning(kinematics, group.carriage or "", turning, at)
+            # a wheel that something else turns stands with its centre at the line's own point, by definition
+            for locus in group.loci:
+                if isinstance(locus, Rolloff):
+                    ahead = with_phases(kinematics, phases)
+                    phases[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
+            return phases
+        case RigidPoint() | TwoPointLink() | Aim() | Newton():
+            return {}
+        case _:
+            assert_never(group)
+
+
+def _phase_of_turning(
+    kinematics: Kinematics, link: str, turning: Turning | Following | None, at: Positions
+) -> dict[str, float]:
+    """The constant of a gear or a rolling contact that turns a link; none where something else does."""
+    match turning:
+        case None | Turning():
+            return {}
+        case Meshed(gear):
+            meshing: Meshing = gear
+        case Rolled(rolling):
+            meshing = rolling
+        case _:
+            assert_never(turning)
+    trial = at.copy()
+    # as if the link stood where the description says: the constant is what the meshing then lacks
+    trial.angles[link] = stated_angle(kinematics, link)
+    return {identity_of(meshing): float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))}
 
 
 def phases_after(kinematics: Kinematics, at: Positions) -> dict[str, float]:
@@ -235,9 +254,15 @@ def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: Side
 
 
 def _mesh_of(equation: AngleEquation) -> Meshing | None:
-    if isinstance(equation, AngleGiven):
-        return None
-    return equation.rolling if isinstance(equation, Arm) else equation
+    match equation:
+        case AngleGiven():
+            return None
+        case Arm(rolling=rolling):
+            return rolling
+        case GearRatio() | NoSlip():
+            return equation
+        case _:
+            assert_never(equation)
 
 
 def _links_by_preference(
@@ -372,7 +397,7 @@ def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bo
 
 def _distance(space: Space, group: Group, one: Positions, other: Positions) -> float:
     """Distance of the two assemblies of a group: the greatest over its points and links."""
-    apart = [np.linalg.norm(np.subtract(one.points[p], other.points[p])) for p in points_of(group)]
+    apart = [np.linalg.norm(np.subtract(one.points[p], other.points[p])) for p in group.points]
     if isinstance(group, Aim):
         arm = np.linalg.norm(np.subtract(one.points[group.target], one.points[group.pivot]))
         # an aimed link has no unknown point: the arm to its target makes its turn a length
@@ -381,7 +406,7 @@ def _distance(space: Space, group: Group, one: Positions, other: Positions) -> f
 
 
 def _check_angles(kinematics: Kinematics, group: Group, at: Positions, tolerance: float) -> None:
-    for link in links_of(group):
+    for link in group.links:
         angle = kinematics.structure.mechanism.links[link].angle
         if angle is None or link not in at.poses or not is_measured(kinematics.numbers, at, link):
             continue
@@ -417,8 +442,8 @@ def _check_apart(kinematics: Kinematics, group: Group) -> None:
 
 
 def _check_finite(group: Group, at: Positions) -> None:
-    values = [x for p in points_of(group) for x in at.points[p]]
-    values += [x for link in links_of(group) for vector in at.poses[link] for x in vector]
+    values = [x for p in group.points for x in at.points[p]]
+    values += [x for link in group.links for vector in at.poses[link] for x in vector]
     if not all(np.isfinite(float(x)) for x in values):
         raise undetermined_error(group)
 

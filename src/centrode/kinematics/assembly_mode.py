@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import remainder, tau
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 
@@ -33,10 +33,11 @@ from centrode.structure.groups import (
     Newton,
     Rail,
     Rod,
+    Rolloff,
+    Slot,
+    Stop,
     Touch,
     TwoPointLink,
-    links_of,
-    points_of,
 )
 from centrode.structure.plan import drives_against_mobility
 from centrode.structure.rank import residuals_at
@@ -73,7 +74,7 @@ def side_names(group: Group) -> tuple[str, ...]:
     """Names under which [assembly] sides may speak of a group: its unknown points, or the guide of an RPR group."""
     if isinstance(group, Aim):
         return (group.contact.rolling if group.contact else group.guide, group.target)
-    return points_of(group)
+    return group.points
 
 
 def side_words(space: Space, group: Group) -> tuple[str, str]:
@@ -95,7 +96,7 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
     left, right = options.values()
     hints = {
         link: links[link].angle
-        for link in links_of(group)
+        for link in group.links
         # a link that points the same way in both assemblies tells nothing
         if links[link].angle is not None
         and is_measured(kinematics.numbers, left, link)
@@ -106,7 +107,7 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
             name_of(group),
             _("nothing says on which side it is assembled"),
             _("give the initial angle of {links}, or [assembly] sides, {words}").format(
-                links=_(" or ").join(links_of(group)), words=side_choice(kinematics.numbers.space, group)
+                links=_(" or ").join(group.links), words=side_choice(kinematics.numbers.space, group)
             ),
         )
     # the sum over all links that tell: one link alone may be drawn badly
@@ -234,13 +235,17 @@ def _of_circles(reason: int, names: list[str], by: str) -> str:
 
 def circle_name(locus: Locus) -> str:
     """Name of what draws the circle of a locus, for messages; empty for a line."""
-    if isinstance(locus, Rod):
-        return _("link {link}").format(link=locus.link)
-    if isinstance(locus, CylinderCircle):
-        return _("cylinder {drive}").format(drive=locus.drive)
-    if isinstance(locus, Touch) and locus.letter == "R":
-        return _("wheel {wheel}").format(wheel=locus.contact.rolling)
-    return ""
+    match locus:
+        case Rod(link=link):
+            return _("link {link}").format(link=link)
+        case CylinderCircle(drive=drive):
+            return _("cylinder {drive}").format(drive=drive)
+        case Touch(contact=contact, letter="R"):
+            return _("wheel {wheel}").format(wheel=contact.rolling)
+        case Touch() | Rail() | Slot() | Stop() | Rolloff():
+            return ""
+        case _:
+            assert_never(locus)
 
 
 def line_name(group: Aim) -> str:

@@ -24,7 +24,6 @@ from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
 from centrode.structure.constraints import Positions, mapped_pose
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import links_of, points_of
 
 # What a group gives next to its change points: power series about the change point.
 #
@@ -137,21 +136,21 @@ def inside(windows: Windows, along: Array, lanes: Lanes | None) -> tuple[Index, 
 def numbers_of(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
     """Coordinates and angles that a group gives, number by number."""
     which = kinematics.structure.groups[group]
-    numbers = [x for point in points_of(which) for x in at.points[point]]
-    for link in links_of(which):
+    numbers = [x for point in which.points for x in at.points[point]]
+    for link in which.links:
         numbers += [x for vector in at.poses[link] for x in vector]
-    return numbers + [at.angles[link] for link in links_of(which) if link in at.angles]
+    return numbers + [at.angles[link] for link in which.links if link in at.angles]
 
 
 def set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: list[Number]) -> None:
     """Put numbers in the order of `numbers_of` back into positions."""
     which = kinematics.structure.groups[group]
     rest = iter(numbers)
-    for point in points_of(which):
+    for point in which.points:
         at.points[point] = tuple(next(rest) for _old in at.points[point])
-    for link in links_of(which):
+    for link in which.links:
         at.poses[link] = mapped_pose(at.poses[link], lambda _old: next(rest))
-    for link in links_of(which):
+    for link in which.links:
         if link in at.angles:
             at.angles[link] = next(rest)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from centrode.kinematics.preparation import Ready, ready
 from centrode.model.mechanism import Mechanism
-from centrode.structure.assur import AssurGroup, assur_groups, step_of, structural_formula
+from centrode.structure.assur import AssurGroup, assur_groups, structural_formula
 from centrode.structure.rank import Count, count
 
 
@@ -60,6 +60,6 @@ def check_of(prepared: Ready) -> MechanismCheck:
         tuple(constraint.label for constraint in structure.redundant),
         assur_groups(structure),
         structural_formula(structure),
-        tuple(step_of(group) for group in structure.groups),
+        tuple(group.sentence for group in structure.groups),
         prepared.assembled.residual,
     )

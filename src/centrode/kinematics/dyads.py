@@ -7,7 +7,7 @@ Each takes the positions known before it and adds its own; where a formula has s
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias, assert_never
 
 from centrode.geometry.plane import (
     Line,
@@ -106,13 +106,16 @@ def follow_contact(
     continued: Continued,
 ) -> tuple[Vector, Number | None]:
     """Rotor and angle of a link that a gear or a rolling contact turns; no angle where its turns are not known."""
-    if isinstance(turning, Meshed):
-        angle = meshed_angle(turning, link, numbers, at)
-        return rotor_of(m, angle), angle
-    on = turning.rolling.on
-    turn = rolled_turn(turning.rolling, m, numbers, at, continued)
-    rotor = rotate_vector(at.poses[on].rotor, rotor_of(m, turn))
-    return rotor, at.angles[on] + turn if on in at.angles else None
+    match turning:
+        case Meshed():
+            angle = meshed_angle(turning, link, numbers, at)
+            return rotor_of(m, angle), angle
+        case Rolled(rolling):
+            turn = rolled_turn(rolling, m, numbers, at, continued)
+            rotor = rotate_vector(at.poses[rolling.on].rotor, rotor_of(m, turn))
+            return rotor, at.angles[rolling.on] + turn if rolling.on in at.angles else None
+        case _:
+            assert_never(turning)
 
 
 def touched_circle(locus: Touch, numbers: Dimensions, at: Positions, rotor: Vector | None) -> Vector:
@@ -226,21 +229,26 @@ def equation_at(
 ) -> tuple[Mapping[str, Number], Number]:
     """Factors of the angles in an equation by link, and its right side."""
     gearing = numbers.gearing
-    if isinstance(equation, GearRatio):
-        return equation.weights(numbers), gearing.phase[equation.gear]
-    if isinstance(equation, NoSlip):
-        return {equation.link: 1.0, equation.on: -1.0}, rolled_turn(equation, m, numbers, at, continued)
-    if isinstance(equation, Arm):
-        rolling = equation.rolling
-        spin = gearing.spin(rolling.rolling)
-        right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
-        # the arm follows the wheel's centre: its angle less its direction in its own axes is the bearing of
-        # the centre
-        return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
-    given = _given_angle(equation, m, numbers, at)
-    if numbers.reference(equation.link) is not None:  # on the sphere the angle is that between the two
-        return {equation.link: 1.0}, given
-    return {equation.link: 1.0, equation.relative_to: -1.0}, given
+    match equation:
+        case GearRatio():
+            return equation.weights(numbers), gearing.phase[equation.gear]
+        case NoSlip():
+            return {equation.link: 1.0, equation.on: -1.0}, rolled_turn(equation, m, numbers, at, continued)
+        case Arm(rolling=rolling):
+            spin = gearing.spin(rolling.rolling)
+            right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
+            # the arm follows the wheel's centre: its angle less its direction in its own axes is the bearing of
+            # the centre
+            return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
+        case AngleGiven():
+            given = _given_angle(equation, m, numbers, at)
+            if (
+                numbers.reference(equation.link) is not None
+            ):  # on the sphere the angle is that between the two
+                return {equation.link: 1.0}, given
+            return {equation.link: 1.0, equation.relative_to: -1.0}, given
+        case _:
+            assert_never(equation)
 
 
 def arm_angle(arm: Arm, m: Namespace, numbers: Dimensions) -> Number:
@@ -324,21 +332,24 @@ class Choices(Protocol):
 
 def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
     """Add the places of a group's points and links to the positions."""
-    if isinstance(group, RigidPoint):
-        local = numbers.local[group.link][group.point]
-        at.points[group.point] = numbers.space.place(m, at.poses[group.link], local)
-    elif isinstance(group, TwoPointLink):
-        _two_points(group.link, group.first, group.second, m, numbers, at)
-    elif isinstance(group, TurnedLink):
-        at.poses[group.link] = _turned_link(group, m, numbers, at, choices)
-    elif isinstance(group, Aim):
-        _aim(group, m, numbers, at, choices.root)
-    elif isinstance(group, Meet):
-        _meet(group, m, numbers, at, choices)
-    elif isinstance(group, Train):
-        solve_train(group, m, numbers, at, choices.continue_angle)
-    elif isinstance(group, Newton):
-        choices.higher(m, at)
+    match group:
+        case RigidPoint():
+            local = numbers.local[group.link][group.point]
+            at.points[group.point] = numbers.space.place(m, at.poses[group.link], local)
+        case TwoPointLink():
+            _two_points(group.link, group.first, group.second, m, numbers, at)
+        case TurnedLink():
+            at.poses[group.link] = _turned_link(group, m, numbers, at, choices)
+        case Aim():
+            _aim(group, m, numbers, at, choices.root)
+        case Meet():
+            _meet(group, m, numbers, at, choices)
+        case Train():
+            solve_train(group, m, numbers, at, choices.continue_angle)
+        case Newton():
+            choices.higher(m, at)
+        case _:
+            assert_never(group)
 
 
 def _turned_link(
@@ -441,10 +452,7 @@ def _locus(
     rotor: Vector | None,
 ) -> Any:
     """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
-    if isinstance(locus, CylinderCircle | Touch | Rolloff):
-        curve = _driven_or_rolled(locus, numbers, at, rotor)
-    else:
-        curve = _of_point(locus, m, numbers, at, rotor)
+    curve = _of_point(locus, m, numbers, at, rotor)
     # without a carriage the point is unknown itself
     if rotor is None:
         return curve
@@ -455,36 +463,31 @@ def _locus(
     return Line(subtract(curve.through, arm), curve.direction)
 
 
-def _of_point(
-    locus: Rod | Rail | Slot | Stop, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None
-) -> Any:
-    """Locus of a point of the group; of the unknown vector itself, if it is a slot of the carriage."""
-    if isinstance(locus, Rod):
-        local = numbers.local[locus.link]
-        return numbers.space.circle(m, at.points[locus.centre], local[locus.centre], local[locus.point])
-    # the slot lies on the turned carriage: its origin is the point less the slot's place
-    if isinstance(locus, Slot):
-        assert rotor is not None
-        arm = rotate_vector(numbers.through[locus.guide], rotor)
-        direction = rotate_vector(numbers.direction[locus.guide], rotor)
-        return Line(subtract(at.points[locus.point], arm), direction)
-    assert isinstance(locus, (Rail, Stop))
-    pose, curve = at.poses[locus.on], numbers.curve(locus.guide)
-    if isinstance(locus, Rail):
-        return numbers.space.rail(m, pose, curve)
-    return numbers.space.stop(m, pose, curve, at.drives[locus.drive])
-
-
-def _driven_or_rolled(
-    locus: CylinderCircle | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
-) -> PlaneCircle | Line:
-    """Locus of a point at a cylinder or a track; of the unknown vector itself, if the carriage holds the track."""
-    if isinstance(locus, CylinderCircle):
-        return PlaneCircle(at.points[locus.centre], at.drives[locus.drive])
-    if isinstance(locus, Rolloff):
-        turn = at.angles[locus.rolling.link] - at.angles[locus.rolling.on]
-        return Line(*rolloff_line(locus, turn, numbers, at, rotor))
-    if locus.letter == "R":
-        reach = numbers.gearing.reach(locus.contact.rolling)
-        return PlaneCircle(touched_circle(locus, numbers, at, rotor), reach)
-    return Line(*touched_line(locus, numbers, at, rotor))
+def _of_point(locus: Locus, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None) -> Any:
+    """Locus of a point of the group; of the unknown vector itself, if the carriage has the slot or the track."""
+    match locus:
+        case Rod(point, centre, link):
+            local = numbers.local[link]
+            return numbers.space.circle(m, at.points[centre], local[centre], local[point])
+        case CylinderCircle(centre=centre, drive=drive):
+            return PlaneCircle(at.points[centre], at.drives[drive])
+        case Rail(guide=guide, on=on):
+            return numbers.space.rail(m, at.poses[on], numbers.curve(guide))
+        case Slot(point, guide):
+            # the slot lies on the turned carriage: its origin is the point less the slot's place
+            assert rotor is not None
+            arm = rotate_vector(numbers.through[guide], rotor)
+            direction = rotate_vector(numbers.direction[guide], rotor)
+            return Line(subtract(at.points[point], arm), direction)
+        case Stop(guide=guide, on=on, drive=drive):
+            return numbers.space.stop(m, at.poses[on], numbers.curve(guide), at.drives[drive])
+        case Touch(letter="R"):
+            reach = numbers.gearing.reach(locus.contact.rolling)
+            return PlaneCircle(touched_circle(locus, numbers, at, rotor), reach)
+        case Touch():
+            return Line(*touched_line(locus, numbers, at, rotor))
+        case Rolloff():
+            turn = at.angles[locus.rolling.link] - at.angles[locus.rolling.on]
+            return Line(*rolloff_line(locus, turn, numbers, at, rotor))
+        case _:
+            assert_never(locus)

@@ -44,7 +44,7 @@ from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
-from centrode.structure.groups import Aim, Meet, Newton, links_of, points_of
+from centrode.structure.groups import Aim, Meet, Newton
 
 # A plan run over bent numbers: bounds of second derivatives over cells, through interpolated stretches as
 # well.
@@ -116,9 +116,9 @@ class Bending(Rough):
         super().higher(group, JETS, known)
         which = self.continuation.kinematics.structure.groups[group]
         assert isinstance(which, Newton)
-        at.points.update({name: known.points[name] for name in points_of(which)})
-        at.poses.update({name: known.poses[name] for name in links_of(which)})
-        at.angles.update({name: known.angles[name] for name in links_of(which) if name in known.angles})
+        at.points.update({name: known.points[name] for name in which.points})
+        at.poses.update({name: known.poses[name] for name in which.links})
+        at.angles.update({name: known.angles[name] for name in which.links if name in known.angles})
 
     def after(self, group: int, at: Positions) -> None:
         continuation = self.continuation

@@ -13,6 +13,7 @@ from centrode.model import reading
 from centrode.model.description import Description, value_at_start
 from centrode.model.drives import Drive
 from centrode.model.links import Gear, Link, Rolling
+from centrode.model.loads import AnyLoad, TurningLoad
 from centrode.model.reading import FRAME, Place, Problem, nearest, two_points, value_text
 from centrode.model.values import Placed, Vector, makes_arc, unit_vector
 
@@ -178,7 +179,7 @@ def _spherical_keys(mechanism: Description) -> Iterator[Problem]:
         if link.shape == "arc":
             yield _spherical("arc", _("write rod, disc or ring"), ("links", name, "shape"))
     for index, load in enumerate(mechanism.loads):
-        if load.axis is not None:
+        if isinstance(load, TurningLoad) and load.axis is not None:
             yield _spherical("axis", _("take it out"), ("loads", index, "axis"))
 
 
@@ -210,7 +211,7 @@ def _planar_keys(mechanism: Description) -> Iterator[Problem]:
             repair = _('write "left" or "right" of the arc between the two known points or poles')
             yield _planar(side, repair, ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
-        if isinstance(load.axis, str):
+        if isinstance(load, TurningLoad) and isinstance(load.axis, str):
             yield from unknown_name_problems(load.axis, mechanism.points, "point", ("loads", index, "axis"))
 
 
@@ -491,22 +492,29 @@ def _rest(mechanism: Description) -> Iterator[Problem]:
     for name in mechanism.assembly.sides:
         yield from unknown_name_problems(name, names, "point, link or guide", ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
-        at: Place = ("loads", index)
-        if load.point:
-            yield from unknown_name_problems(load.point, mechanism.points, "point", (*at, "point"))
-        if load.link:
-            yield from link_known(mechanism, load.link, (*at, "link"), moving=True)
-        if load.guide:
-            yield from unknown_name_problems(
-                load.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide")
-            )
-        if load.pin:
-            yield from link_known(mechanism, load.pin, (*at, "pin"))
-        yield from two_known_points(mechanism, load.points, (*at, "points"))
-        yield from link_known(mechanism, load.axes, (*at, "axes"))
-        yield from link_known(mechanism, load.relative_to, (*at, "relative_to"))
+        yield from _names_of_load(mechanism, load, ("loads", index))
     for point in mechanism.report.points:
         yield from unknown_name_problems(point, mechanism.points, "point", ("report", "points"))
+
+
+def _names_of_load(mechanism: Description, load: AnyLoad, at: Place) -> Iterator[Problem]:
+    """What the keys of a load name has to be there."""
+    guides = [guide.id for guide in mechanism.guides]
+    for key, field in load.keys().items():
+        name = getattr(load, field)
+        match key:
+            case "point" if name:
+                yield from unknown_name_problems(name, mechanism.points, "point", (*at, key))
+            case "guide" if name:
+                yield from unknown_name_problems(name, guides, "guide", (*at, key))
+            case "link" if name:
+                yield from link_known(mechanism, name, (*at, key), moving=True)
+            case "pin" if name:
+                yield from link_known(mechanism, name, (*at, key))
+            case "axes" | "relative_to":
+                yield from link_known(mechanism, name, (*at, key))
+            case "points":
+                yield from two_known_points(mechanism, name, (*at, key))
 
 
 def _loose(mechanism: Description) -> Iterator[Problem]:

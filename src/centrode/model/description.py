@@ -14,7 +14,7 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.drives import Drive, motion_parameter_of
 from centrode.model.links import Frame, Gear, Guide, Link, Rolling
-from centrode.model.loads import Load
+from centrode.model.loads import AnyLoad, read_load
 from centrode.model.motion_parameter import (
     UNDRIVEN,
     DriveCoordinate,
@@ -77,7 +77,9 @@ class Description(DescriptionPart):
     rolling: Annotated[tuple[Rolling, ...], bounded_list(reading.LINKS)] = ()
     drives: Annotated[tuple[Drive, ...], bounded_list(reading.DRIVES)] = ()
     assembly: Assembly = Assembly()
-    loads: Annotated[tuple[Load, ...], bounded_list(reading.LOADS)] = ()
+    loads: Annotated[
+        tuple[Annotated[AnyLoad, PlainValidator(read_load)], ...], bounded_list(reading.LOADS)
+    ] = ()
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()

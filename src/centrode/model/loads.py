@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias, assert_never
 
-from pydantic import PlainValidator, ValidationInfo, field_validator
+from pydantic import ConfigDict, PlainValidator, ValidationError
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -14,11 +14,15 @@ from centrode.model.reading import (
     FRAME,
     DescriptionPart,
     Problem,
+    Problems,
     bounded_list,
     choice,
     missing_key,
     one_of,
+    problems_within,
+    read_choice,
     read_name,
+    unknown_keys,
     value_text,
 )
 from centrode.model.values import (
@@ -72,24 +76,23 @@ _ALLOWED: dict[str, tuple[str, ...]] = {
 }
 
 
-def load_key_problems(kind: str, given: Mapping[str, Any], defaults: Mapping[str, Any]) -> list[Problem]:
-    """What is wrong with the keys of a load of a known kind; `defaults` are those of all its keys."""
-    present = {key for key, value in given.items() if value is not None}
-    said = {key for key in present if key not in defaults or given[key] != defaults[key]}
+def load_key_problems(kind: str, given: Mapping[str, Any]) -> list[Problem]:
+    """What is wrong with the keys of a load of a known kind; keys that are given as their defaults are not counted."""
+    said = {key for key in given if given[key] != LOAD_DEFAULTS[key]}
     alternatives, needed = _ALTERNATIVES[kind], _NEEDED[kind]
     known = {"kind", "name", *alternatives, *needed, *_ALLOWED[kind]}
-    problems = [missing_key(key) for key in needed if key not in present]
-    problems += [_foreign(key, kind) for key in defaults if key in said and key not in known]
-    acts_on = present & set(alternatives)
+    problems = [missing_key(key) for key in needed if key not in given]
+    problems += [_foreign(key, kind) for key in LOAD_DEFAULTS if key in said and key not in known]
+    acts_on = set(given) & set(alternatives)
     if kind == "friction" and "point" in acts_on:
         acts_on -= {"link"}  # at a hinge it says which of the links rubs
     if len(acts_on) != 1:
         words = ", ".join(alternatives)
         problems.append(Problem(_("a {kind} acts on one of: {keys}").format(kind=kind, keys=words)))
     elif kind == "force":
-        problems += _of_force(given, present, said)
+        problems += _of_force(given, set(given), said)
     elif kind == "friction":
-        problems += _of_friction(given, present, said)
+        problems += _of_friction(given, set(given), said)
     return problems
 
 
@@ -159,7 +162,7 @@ LOAD_VARIABLES = ("t", "q", "x", "v")
 
 Amount = float | str
 Kinds = Literal["force", "torque", "spring", "damper", "weight", "friction"]
-KINDS = ("force", "torque", "spring", "damper", "weight", "friction")
+KINDS: tuple[Kinds, ...] = ("force", "torque", "spring", "damper", "weight", "friction")
 
 Form = Literal["virtual work", "plain sum"]
 VIRTUAL_WORK: Form = "virtual work"
@@ -169,6 +172,19 @@ Fit = Literal["clearance", "new", "worn-in"]
 CLEARANCE: Fit = "clearance"
 FITS = (CLEARANCE, "new", "worn-in")
 LEAST_ROWS = 2
+
+_KEYS = (
+    *("kind", "name", "point", "link", "guide", "points", "vector", "axes", "value", "table", "stiffness"),
+    *("damping", "viscous", "quadratic", "coefficient", "radius", "fit", "pin", "length", "height", "form"),
+    *("free_length", "free_angle", "relative_to", "axis", "while_moving"),
+)
+LOAD_DEFAULTS: Mapping[str, str | None] = dict.fromkeys(_KEYS) | {
+    "axes": FRAME,
+    "fit": CLEARANCE,
+    "form": VIRTUAL_WORK,
+    "relative_to": FRAME,
+}
+"""Every key that some load has, in the order of a file, with what it is where it is left out."""
 
 
 def _amount(value: object, kind: str) -> Amount:
@@ -198,108 +214,322 @@ def _read_axis(value: object) -> str | tuple[float, ...]:
     return read_name(value) if isinstance(value, str) else read_heading(value)
 
 
+def _resistance(kind: str) -> PlainValidator:
+    """A number of a kind that is not negative, or none."""
+    return PlainValidator(lambda value: None if value is None else not_negative(value, kind))
+
+
+def _amount_or_none(kind: str) -> PlainValidator:
+    """An amount of a kind, or none."""
+    return PlainValidator(lambda value: None if value is None else _amount(value, kind))
+
+
+def _dry_friction(kind: str) -> PlainValidator:
+    """An amount of a kind that is not negative where it is a number, or none."""
+
+    def read(value: object) -> Amount | None:
+        if value is None:
+            return None
+        amount = _amount(value, kind)
+        return amount if isinstance(amount, str) else not_negative(amount, kind)
+
+    return PlainValidator(read)
+
+
+def _read_diagram(value: object) -> tuple[tuple[float, ...], ...] | None:
+    if value is None:
+        return None
+    columns = TableColumns(("length", "force", "force"), "[displacement, force, force]", 2)
+    rows = read_rows(value, columns, READING.get().folder)
+    if len(rows) < LEAST_ROWS or any(not low[0] < high[0] for low, high in pairwise(rows)):
+        what = _("a diagram needs two rows or more, with displacements that increase")
+        raise Problem(what, _("sort the rows, and keep one of equal displacements"))
+    return rows
+
+
+ForceAmount = Annotated[Amount | None, _amount_or_none("force")]
+Diagram = Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_diagram)]
+Axis = Annotated[str | tuple[float, ...], PlainValidator(_read_axis)] | None
+FreeLength = Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None
+TwoPoints = Annotated[tuple[Name, ...], bounded_list(2)]
+
+# The loads themselves. Each has the keys that mean something for it, in the order in which a file has them.
+
+
 class Load(DescriptionPart):
-    """A load of one kind.
+    """What every load has; `AnyLoad` is the union of them.
 
     Attributes
     ----------
     kind : "force", "torque", "spring", "damper", "weight" or "friction"
     name : str or None
         What results call it; left out, its kind and what it acts on.
-    point, link, guide, points : str, str, str, two names
-        What it acts on: a force on a point or along a guide, a torque on a link, a spring or damper between two
-        points or in a link's hinge, friction in a link's hinge or a guide, a weight in a link's centre or a point.
-    vector : (x, y) [N], each a number or a formula; on the sphere (x, y, z)
-    axes : "frame" or the link whose axes `vector` is given in
-    value : float or formula [N m]; along a guide [N]; of a weight [N], where it is not mass times gravity
-        Dry friction: the moment in a hinge [N m] or the force in a guide [N], against the motion.
-    viscous, quadratic : float [N m s/rad, N m s^2/rad^2]; in a guide [N s/m, N s^2/m^2]
-        Friction that grows with the relative speed, and with its square.
-    coefficient : float
-        Friction that grows with the reaction, in the hinge of a point or in a guide.
-    radius, fit, pin : float [m], "clearance", "new" or "worn-in", the name of a link
-        Of the pin of that hinge; how its bearings fit; the link that the pin is fixed in.
-    length, height : float [m]
-        Of the slider in that guide, along and across; by them it tilts, and friction has an arm.
-    form : "virtual work" or "plain sum"
-        The plain sum takes the moments of quadratic friction from the driving moment as they are, as a source does.
-    table : rows of (displacement [m], force [N]) or (displacement, force forwards, force backwards)
-        Indicator diagram of a force along a guide. In a file it may be the path of a CSV file beside it.
-    stiffness [N/m or N m/rad], damping [N s/m or N m s/rad], free_length [m], free_angle [rad]
-    relative_to : "frame" or the link against which a torque, spring, damper or friction works
-    axis : a point's name, or (x, y, z) in the axes of the frame
-        On the sphere: about what it works, where the links do not share exactly one point.
-    while_moving : (x, y); on the sphere (x, y, z)
-        The force acts only while its point moves this way.
     """
+
+    # built when the first load is read: most mechanisms have none
+    model_config = ConfigDict(defer_build=True)
 
     kind: Annotated[Kinds, choice(*KINDS)]
     name: Name | None = None
-    point: Name | None = None
-    link: Name | None = None
-    guide: Name | None = None
-    points: Annotated[tuple[Name, ...], bounded_list(2)] | None = None
-    vector: Annotated[tuple[Amount, ...], PlainValidator(_read_force)] | None = None
-    axes: Name = FRAME
-    value: Amount | None = None
-    table: tuple[tuple[float, ...], ...] | None = None
-    stiffness: float | None = None
-    damping: float | None = None
-    viscous: float | None = None
-    quadratic: float | None = None
-    coefficient: Annotated[float, quantity("ratio", not_negative)] | None = None
-    radius: PositiveLength | None = None
-    fit: Annotated[Fit, choice(*FITS)] = CLEARANCE
-    pin: Name | None = None
-    length: PositiveLength | None = None
-    height: PositiveLength | None = None
-    form: Annotated[Form, choice(*FORMS)] = VIRTUAL_WORK
-    free_length: Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None = None
-    free_angle: Angle | None = None
-    relative_to: Name = FRAME
-    axis: Annotated[str | tuple[float, ...], PlainValidator(_read_axis)] | None = None
-    while_moving: Heading | None = None
 
-    @field_validator("value", "stiffness", "damping", "viscous", "quadratic", mode="plain")
     @classmethod
-    def _by_what_it_acts_on(cls, value: object, info: ValidationInfo) -> Amount | None:
-        if value is None:
-            return None
-        straight = info.data.get("link") is None or info.data.get("kind") == "weight"
-        if info.field_name == "value":
-            amount = _amount(value, "force" if straight else "torque")
-            if info.data.get("kind") == "friction" and not isinstance(amount, str):
-                return not_negative(amount, "force" if straight else "torque")
-            return amount
-        kind = {"viscous": "damping", "quadratic": "quadratic damping"}.get(
-            info.field_name or "", info.field_name
-        )
-        return not_negative(value, f"{'' if straight else 'angular '}{kind}")
+    def keys(cls) -> dict[str, str]:
+        """Field of each key; of what every load has, those of all loads."""
+        return {key: key for key in LOAD_DEFAULTS} if cls is Load else super().keys()
 
-    @field_validator("table", mode="plain")
-    @classmethod
-    def _rows(cls, value: object) -> tuple[tuple[float, ...], ...] | None:
-        if value is None:
-            return None
-        columns = TableColumns(("length", "force", "force"), "[displacement, force, force]", 2)
-        rows = read_rows(value, columns, READING.get().folder)
-        if len(rows) < LEAST_ROWS or any(not low[0] < high[0] for low, high in pairwise(rows)):
-            what = _("a diagram needs two rows or more, with displacements that increase")
-            raise Problem(what, _("sort the rows, and keep one of equal displacements"))
-        return rows
+    @property
+    def place(self) -> str:
+        """What it acts on: a point, a link, a guide, or two points."""
+        places = (getattr(self, key, None) for key in ("point", "link", "guide", "points"))
+        place = next(place for place in places if place is not None)
+        return place if isinstance(place, str) else "-".join(place)
 
     @property
     def label(self) -> str:
         """What it is called where its `name` does not say so: "force H", "spring A-D"."""
-        return (
-            self.name or f"{self.kind} {self.point or self.link or self.guide or '-'.join(self.points or ())}"
-        )
+        return self.name or f"{self.kind} {self.place}"
 
-    @classmethod
-    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
-        """What is wrong with the keys that are given, by the rules of this part."""
-        problems = super().key_problems(given)
-        kind = given.get("kind")
-        if problems or kind not in KINDS:
-            return problems
-        return load_key_problems(kind, given, {key: field.default for key, field in cls.model_fields.items()})
+
+class PointForce(Load):
+    """A force in a point.
+
+    Attributes
+    ----------
+    vector : (x, y) [N], each a number or a formula; on the sphere (x, y, z)
+    axes : "frame" or the link whose axes `vector` is given in
+    while_moving : (x, y); on the sphere (x, y, z)
+        The force acts only while its point moves this way.
+    """
+
+    kind: Literal["force"]
+    point: Name
+    vector: Annotated[tuple[Amount, ...], PlainValidator(_read_force)]
+    axes: Name = FRAME
+    while_moving: Heading | None = None
+
+
+class GuideForce(Load):
+    """A force along a guide, by its value [N] or by an indicator diagram.
+
+    Attributes
+    ----------
+    table : rows of (displacement [m], force [N]) or (displacement, force forwards, force backwards)
+        In a file it may be the path of a CSV file beside it.
+    """
+
+    kind: Literal["force"]
+    guide: Name
+    value: ForceAmount = None
+    table: Diagram = None
+
+
+class Torque(Load):
+    """A torque [N m] on a link, against another.
+
+    Attributes
+    ----------
+    relative_to : "frame" or the link against which it works
+    axis : a point's name, or (x, y, z) in the axes of the frame
+        On the sphere: about what it works, where the links do not share exactly one point.
+    """
+
+    kind: Literal["torque"]
+    link: Name
+    value: Annotated[Amount, PlainValidator(lambda value: _amount(value, "torque"))]
+    relative_to: Name = FRAME
+    axis: Axis = None
+
+
+class PointSpring(Load):
+    """A spring between two points: its stiffness [N/m] and its length without force [m]."""
+
+    kind: Literal["spring"]
+    points: TwoPoints
+    stiffness: Annotated[float, _resistance("stiffness")]
+    free_length: FreeLength = None
+
+
+class HingeSpring(Load):
+    """A spring between two links: its stiffness [N m/rad] and its angle without moment [rad].
+
+    `relative_to` and `axis` are as of a torque.
+    """
+
+    kind: Literal["spring"]
+    link: Name
+    stiffness: Annotated[float, _resistance("angular stiffness")]
+    free_angle: Angle | None = None
+    relative_to: Name = FRAME
+    axis: Axis = None
+
+
+class PointDamper(Load):
+    """A damper between two points [N s/m]."""
+
+    kind: Literal["damper"]
+    points: TwoPoints
+    damping: Annotated[float, _resistance("damping")]
+
+
+class HingeDamper(Load):
+    """A damper between two links [N m s/rad]; `relative_to` and `axis` are as of a torque."""
+
+    kind: Literal["damper"]
+    link: Name
+    damping: Annotated[float, _resistance("angular damping")]
+    relative_to: Name = FRAME
+    axis: Axis = None
+
+
+class LinkWeight(Load):
+    """The weight of a link, in its centre of mass [N]; mass times gravity if `value` is left out."""
+
+    kind: Literal["weight"]
+    link: Name
+    value: ForceAmount = None
+
+
+class PointWeight(Load):
+    """A weight in a point [N]."""
+
+    kind: Literal["weight"]
+    point: Name
+    value: ForceAmount = None
+
+
+class HingeFriction(Load):
+    """Friction of a given size between two links.
+
+    Attributes
+    ----------
+    value : dry friction: its moment against the motion [N m]
+    viscous, quadratic : what grows with the relative speed and with its square [N m s/rad, N m s^2/rad^2]
+    form : "virtual work" or "plain sum"
+        The plain sum takes the moments of quadratic friction from the driving moment as they are, as a source does.
+    relative_to, axis : as of a torque
+    """
+
+    kind: Literal["friction"]
+    link: Name
+    value: Annotated[Amount | None, _dry_friction("torque")] = None
+    viscous: Annotated[float | None, _resistance("angular damping")] = None
+    quadratic: Annotated[float | None, _resistance("angular quadratic damping")] = None
+    form: Annotated[Form, choice(*FORMS)] = VIRTUAL_WORK
+    relative_to: Name = FRAME
+    axis: Axis = None
+
+
+class GuideFriction(Load):
+    """Friction of a given size in a guide: dry [N], viscous [N s/m] and quadratic [N s^2/m^2]."""
+
+    kind: Literal["friction"]
+    guide: Name
+    value: Annotated[Amount | None, _dry_friction("force")] = None
+    viscous: Annotated[float | None, _resistance("damping")] = None
+    quadratic: Annotated[float | None, _resistance("quadratic damping")] = None
+
+
+class BearingFriction(Load):
+    """Friction in the hinge of a point that grows with the reaction.
+
+    Attributes
+    ----------
+    link : str or None
+        Which link rubs; all but the one with the pin if left out.
+    radius, fit, pin : float [m], "clearance", "new" or "worn-in", the name of a link
+        Of the pin of the hinge; how its bearings fit; the link that the pin is fixed in.
+    """
+
+    kind: Literal["friction"]
+    point: Name
+    link: Name | None = None
+    coefficient: Annotated[float, quantity("ratio", not_negative)]
+    radius: PositiveLength
+    fit: Annotated[Fit, choice(*FITS)] = CLEARANCE
+    pin: Name | None = None
+
+
+class SliderFriction(Load):
+    """Friction in a guide that grows with the reaction.
+
+    Attributes
+    ----------
+    length, height : float [m]
+        Of the slider, along and across; by them it tilts, and friction has an arm.
+    """
+
+    kind: Literal["friction"]
+    guide: Name
+    coefficient: Annotated[float, quantity("ratio", not_negative)]
+    length: PositiveLength | None = None
+    height: PositiveLength | None = None
+
+
+TurningLoad: TypeAlias = Torque | HingeSpring | HingeDamper | HingeFriction
+"""Loads along the angle between two links."""
+CoefficientFriction: TypeAlias = BearingFriction | SliderFriction
+"""Friction that needs the reactions, which need it."""
+AnyLoad: TypeAlias = (
+    PointForce
+    | GuideForce
+    | Torque
+    | PointSpring
+    | HingeSpring
+    | PointDamper
+    | HingeDamper
+    | LinkWeight
+    | PointWeight
+    | HingeFriction
+    | GuideFriction
+    | BearingFriction
+    | SliderFriction
+)
+
+
+def _class_of(kind: Kinds, given: Mapping[str, Any]) -> type[AnyLoad]:
+    """The load that keys without problems describe."""
+    match kind:
+        case "force":
+            return PointForce if "point" in given else GuideForce
+        case "torque":
+            return Torque
+        case "spring":
+            return PointSpring if "points" in given else HingeSpring
+        case "damper":
+            return PointDamper if "points" in given else HingeDamper
+        case "weight":
+            return PointWeight if "point" in given else LinkWeight
+        case "friction":
+            if "coefficient" in given:
+                return SliderFriction if "guide" in given else BearingFriction
+            return GuideFriction if "guide" in given else HingeFriction
+        case _:
+            assert_never(kind)
+
+
+def read_load(value: object) -> AnyLoad:
+    """A load from the table of a file; raises Problems that say which key is wrong.
+
+    Keys that mean nothing for the load are left out where they are none of its kind's or have their defaults.
+    """
+    if isinstance(value, AnyLoad):
+        return value
+    if not isinstance(value, Mapping):
+        raise Problem(_("expected a table, got {value}").format(value=value_text(value)))
+    given = {key: entry for key, entry in value.items() if entry is not None}
+    unknown = unknown_keys(value, LOAD_DEFAULTS)
+    if unknown or "kind" not in value:
+        raise Problems([*unknown, *([] if "kind" in value else [missing_key("kind")])])
+    try:
+        kind = read_choice(value["kind"], KINDS)
+    except Problem as problem:
+        raise Problem(problem.what, problem.repair, ("kind",)) from None
+    problems = load_key_problems(kind, given)
+    if problems:
+        raise Problems(problems)
+    load = _class_of(kind, given)
+    own = {key: value[key] for key, _field in load.keys().items() if key in value}
+    try:
+        return load.model_validate(own)
+    except ValidationError as error:
+        raise Problems(problems_within(error)) from None

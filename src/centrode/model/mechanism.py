@@ -10,7 +10,7 @@ from centrode.model.checks import problems_of_parts
 from centrode.model.description import Description
 from centrode.model.drives import Drive
 from centrode.model.links import Frame, Gear, Guide, Link, Rolling, Track
-from centrode.model.loads import Load
+from centrode.model.loads import AnyLoad
 from centrode.model.placement import resolve_placement
 from centrode.model.reading import FRAME, Problems
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
@@ -26,7 +26,7 @@ __all__ = [
     "Gear",
     "Guide",
     "Link",
-    "Load",
+    "AnyLoad",
     "Machine",
     "Mechanism",
     "Placed",

@@ -6,7 +6,7 @@ import difflib
 import re
 import stat
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -170,12 +170,19 @@ def problems_of(error: dict[str, Any]) -> list[Problem]:
     return [Problem(_("this value does not fit here: {value}").format(value=value_text(error.get("input"))))]
 
 
+def problems_within(error: ValidationError) -> list[Problem]:
+    """The problems that pydantic gathered, each with its place in what was read."""
+    return [
+        Problem(problem.what, problem.repair, place + problem.at)
+        for entry in error.errors(include_url=False)
+        for place in [tuple(part for part in entry["loc"] if part != "[key]")]
+        for problem in problems_of(dict(entry))
+    ]
+
+
 def input_error(error: ValidationError, source: str) -> InputError:
     """One InputError that tells the first few problems pydantic gathered, one a line."""
-    found: list[InputError] = []
-    for entry in error.errors(include_url=False):
-        place: Place = tuple(part for part in entry["loc"] if part != "[key]")
-        found += [error_at_place(problem, place, source) for problem in problems_of(dict(entry))]
+    found = [error_at_place(problem, (), source) for problem in problems_within(error)]
     first, rest = found[0], found[1:PROBLEMS_SHOWN]
     lines = [str(other) for other in rest]
     left = len(found) - 1 - len(rest)
@@ -259,11 +266,7 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given; a part adds its own rules."""
         keys = cls.keys()
-        known = {**keys, **{name: name for name in cls.model_fields}}
-        unknown = [
-            Problem(_("unknown key {key}").format(key=value_text(key)), nearest(str(key), keys))
-            for key in islice((key for key in given if key not in known), PROBLEMS_SOUGHT)
-        ]
+        unknown = unknown_keys(given, keys, cls.model_fields)
         missing = [
             missing_key(key)
             for key, name in keys.items()
@@ -282,6 +285,17 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
         if problems:
             raise Problems(problems)
         return dict(data)
+
+
+def unknown_keys(
+    given: Mapping[str, Any], keys: Collection[str], names: Collection[str] = ()
+) -> list[Problem]:
+    """The problems of keys that are neither in `keys`, as files spell them, nor in `names`, as Python does."""
+    unknown = (key for key in given if key not in keys and key not in names)
+    return [
+        Problem(_("unknown key {key}").format(key=value_text(key)), nearest(str(key), keys))
+        for key in islice(unknown, PROBLEMS_SOUGHT)
+    ]
 
 
 def missing_key(key: str) -> Problem:
@@ -303,19 +317,24 @@ def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
 # Words, lists and tables in a description, of bounded sizes.
 
 
+Word = TypeVar("Word", bound=str)
+
+
+def read_choice(value: object, options: Sequence[Word]) -> Word:
+    """One of a few words; raises Problem for anything else."""
+    for option in options:
+        if isinstance(value, str) and value == option:
+            return option
+    words = ", ".join(value_text(option) for option in options)
+    repair = likely(value, options) if isinstance(value, str) else ""
+    raise Problem(
+        _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair
+    )
+
+
 def choice(*options: str) -> BeforeValidator:
     """One of a few words."""
-
-    def read(value: object) -> object:
-        if isinstance(value, str) and value in options:
-            return value
-        words = ", ".join(value_text(option) for option in options)
-        repair = likely(value, options) if isinstance(value, str) else ""
-        raise Problem(
-            _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair
-        )
-
-    return BeforeValidator(read)
+    return BeforeValidator(lambda value: read_choice(value, options))
 
 
 def entries(value: object, most: int) -> tuple[object, ...]:

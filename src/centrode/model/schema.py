@@ -126,7 +126,11 @@ def schema_of(
 
 
 def _object(part: type[DescriptionPart], properties: Mapping[type[DescriptionPart], Schema]) -> Schema:
-    required = [key for key, name in part.keys().items() if part.model_fields[name].is_required()]
+    required = [
+        key
+        for key, name in part.keys().items()
+        if name in part.model_fields and part.model_fields[name].is_required()
+    ]
     schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
     return {**schema, "required": required} if required else schema
 

@@ -4,7 +4,6 @@
 from .workbooks import workbook_of_csv as workbook_of_csv
 from .spelled_tables import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling
-from .tables import sweep_csv as sweep_csv
 
 # Figures of motions
 from .figure_files import save_figures as save_figures

@@ -254,7 +254,7 @@ class Section:
 class Chapter:
     """A chapter of a document."""
 
-    title: Sentence
+    title: Text
     sections: tuple[Section, ...]
 
 

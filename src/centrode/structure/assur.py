@@ -7,14 +7,14 @@ RPP. A mechanism has the class of its highest group.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import assert_never
 
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import body_word
 from centrode.structure.groups import (
     Aim,
-    AngleGiven,
     CylinderCircle,
     Group,
     Locus,
@@ -31,10 +31,7 @@ from centrode.structure.groups import (
     Touch,
     Train,
     TurnedLink,
-    Turning,
     TwoPointLink,
-    links_of,
-    points_of,
 )
 from centrode.structure.plan import Structure
 from centrode.structure.rank import is_bare, slider_of
@@ -173,18 +170,24 @@ def structural_formula(structure: Structure) -> str:
 
 
 def _term(mechanism: Mechanism, group: Group, members: tuple[str, ...]) -> AssurGroup:
-    if is_input(group):
+    if group.is_input:
         return AssurGroup("I", 1, group.kind, members)
-    if isinstance(group, TurnedLink) and not isinstance(group.turning, Turning):
-        return AssurGroup("II", 2, _("gear") if isinstance(group.turning, Meshed) else _("rolling"), members)
-    if isinstance(group, Train):
-        return AssurGroup("II", len(group.links), _("gear train"), members)
-    if isinstance(group, (Meet, Aim)):
-        return AssurGroup("II", 2, group.kind, members)
-    if isinstance(group, Newton):
-        contours = contours_of(mechanism, group)
-        return AssurGroup(roman(contours.highest), contours.outer, _("higher class"), members)
-    return AssurGroup("0", 0, group.kind, members)
+    match group:
+        case TurnedLink(turning=Meshed()):
+            return AssurGroup("II", 2, _("gear"), members)
+        case TurnedLink(turning=Rolled()):
+            return AssurGroup("II", 2, _("rolling"), members)
+        case Train():
+            return AssurGroup("II", len(group.links), _("gear train"), members)
+        case Meet() | Aim():
+            return AssurGroup("II", 2, group.kind, members)
+        case Newton():
+            contours = contours_of(mechanism, group)
+            return AssurGroup(roman(contours.highest), contours.outer, _("higher class"), members)
+        case RigidPoint() | TwoPointLink() | TurnedLink():
+            return AssurGroup("0", 0, group.kind, members)
+        case _:
+            assert_never(group)
 
 
 def roman(number: int) -> str:
@@ -199,119 +202,49 @@ def roman(number: int) -> str:
     return numeral
 
 
-def is_input(group: Group) -> bool:
-    """Whether a drive acts inside the group."""
-    if isinstance(group, TurnedLink):
-        return isinstance(group.turning, Turning) and group.turning.drive is not None
-    if isinstance(group, Train):
-        return any(isinstance(e, AngleGiven) and e.drive is not None for e in group.equations)
-    if isinstance(group, Meet):
-        driven = isinstance(group.turning, Turning) and group.turning.drive is not None
-        return driven or any(isinstance(locus, (Stop, CylinderCircle)) for locus in group.loci)
-    return False
-
-
 def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
     """Links of a group, with the sliders of its guides: a slider's own link belongs to the dyad it slides in."""
-    names = list(links_of(group))
-    if isinstance(group, Aim) and group.contact is not None:
-        names.append(group.contact.link)
-    elif isinstance(group, Aim) and group.block is None:
-        guide = mechanism.guide(group.guide)
-        names.append(slider_of(guide))
-    if isinstance(group, Meet):
-        for locus in group.loci:
-            if isinstance(locus, (Rail, Slot, Stop)):
-                guide = mechanism.guide(locus.guide)
-                # a guided link that belongs to the group is there already
-                if is_bare(guide) or guide.link not in names:
-                    names.append(slider_of(guide))
-            if isinstance(locus, CylinderCircle):
-                names.append(_("cylinder {drive}").format(drive=locus.drive))
-    if isinstance(group, Newton):
-        bare = [guide for guide in mechanism.guides if is_bare(guide)]
-        names += [slider_of(g) for g in bare if g.point in group.points or g.on in group.links]
+    names = list(group.links)
+    match group:
+        case Aim():
+            if group.contact is not None:
+                names.append(group.contact.link)
+            elif group.block is None:
+                names.append(slider_of(mechanism.guide(group.guide)))
+        case Meet():
+            for locus in group.loci:
+                names += _members_of_locus(mechanism, locus, names)
+        case Newton():
+            bare = [guide for guide in mechanism.guides if is_bare(guide)]
+            names += [slider_of(g) for g in bare if g.point in group.points or g.on in group.links]
+        case RigidPoint() | TwoPointLink() | TurnedLink() | Train():
+            pass
+        case _:
+            assert_never(group)
     # a dict keeps the first place of each name
     return tuple(dict.fromkeys(names))
 
 
-# The steps of a plan in words: what is found, and from what.
-
-
-def step_of(group: Group) -> str:
-    """Line of text that describes one group of a plan."""
-    if isinstance(group, RigidPoint):
-        return _("point {point} of link {link}").format(point=group.point, link=group.link)
-    if isinstance(group, TwoPointLink):
-        return _("link {link} through {first} and {second}").format(
-            link=group.link, first=group.first, second=group.second
-        )
-    if isinstance(group, Train):
-        return _("gear train: links {links} turned together").format(links=", ".join(group.links))
-    if isinstance(group, TurnedLink):
-        if isinstance(group.turning, Meshed):
-            return _("link {link} about {point}, turned by gear {gear}").format(
-                link=group.link, point=group.pivot, gear=group.turning.gear.gear
-            )
-        if isinstance(group.turning, Rolled):
-            return _("wheel {link} about {point}, turned by rolling on {on}").format(
-                link=group.link, point=group.pivot, on=body_word(group.turning.rolling.on)
-            )
-        if group.turning.drive is not None:
-            return _("link {link} about {point}, turned by its drive").format(
-                link=group.link, point=group.pivot
-            )
-        return _("link {link} at {point}, kept from turning by guide {guide}").format(
-            link=group.link, point=group.pivot, guide=group.turning.guide
-        )
-    if isinstance(group, Aim) and group.contact is not None:
-        return _("RPR: link {link} about {point}, resting on wheel {wheel} about {target}").format(
-            link=group.link, point=group.pivot, wheel=group.contact.rolling, target=group.target
-        )
-    if isinstance(group, Aim):
-        return _("RPR: link {link} about {point}, its guide {guide} through {target}").format(
-            link=group.link, point=group.pivot, guide=group.guide, target=group.target
-        )
-    if isinstance(group, Newton):
-        return _("higher class: {names}").format(names=", ".join(group.points + group.links))
-    return _meeting_text(group)
-
-
-def _meeting_text(group: Meet) -> str:
-    one, other = (_locus(locus) for locus in group.loci)
-    if group.carriage is None:
-        return _("{kind}: point {point}, where {one} meets {other}").format(
-            kind=group.kind, point=group.points[0], one=one, other=other
-        )
-    return _("{kind}: link {link} of known angle, where {one} meets {other}").format(
-        kind=group.kind, link=group.carriage, one=one, other=other
-    )
-
-
-def _locus(locus: Locus) -> str:
-    if isinstance(locus, Rod):
-        return _("the circle of {link} about {point}").format(link=locus.link, point=locus.centre)
-    if isinstance(locus, CylinderCircle):
-        return _("the circle about {point} as large as the cylinder is long").format(point=locus.centre)
-    if isinstance(locus, Rail):
-        return _("the line of guide {guide}").format(guide=locus.guide)
-    if isinstance(locus, Slot):
-        return _("guide {guide} through {point}").format(guide=locus.guide, point=locus.point)
-    if isinstance(locus, Touch):
-        return (
-            _("the line beside the track of wheel {wheel}").format(wheel=locus.contact.rolling)
-            if locus.letter == "P"
-            else _("the circle about the track of wheel {wheel}").format(wheel=locus.contact.rolling)
-        )
-    if isinstance(locus, Rolloff):
-        return _("the place to which wheel {wheel} rolls").format(wheel=locus.rolling.rolling)
-    return _("the stop that the drive of guide {guide} sets").format(guide=locus.guide)
+def _members_of_locus(mechanism: Mechanism, locus: Locus, names: Sequence[str]) -> Iterator[str]:
+    """A slider or a cylinder that draws a locus; links, which are in `names`, are counted already."""
+    match locus:
+        case Rail(guide=name) | Slot(guide=name) | Stop(guide=name):
+            guide = mechanism.guide(name)
+            # a guided link that belongs to the group is there already
+            if is_bare(guide) or guide.link not in names:
+                yield slider_of(guide)
+        case CylinderCircle(drive=drive):
+            yield _("cylinder {drive}").format(drive=drive)
+        case Rod() | Touch() | Rolloff():
+            pass
+        case _:
+            assert_never(locus)
 
 
 def name_of(group: Group) -> str:
     """A group by its links and points, as messages and tables name it."""
-    links = "-".join(links_of(group))
-    count, points = len(points_of(group)), ", ".join(points_of(group))
+    links = "-".join(group.links)
+    count, points = len(group.points), ", ".join(group.points)
     if links and points:
         name = ngettext("group {links} (point {points})", "group {links} (points {points})", count)
         return name.format(links=links, points=points)

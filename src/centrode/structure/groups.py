@@ -3,13 +3,20 @@
 Assur groups of class II (dyads) are named by their joints, R a hinge and P a guide, in the order outer,
 inner, outer: RRR, RRP, RPR, PRP, RPP (Artobolevsky, Theory of Mechanisms and Machines, kinds 1 to 5). Rigid
 points, links by two points, cranks and parallel links are solved on the way.
+
+Every group answers for itself: `kind` and whether it is `signed`, the `links` whose pose and the `points` whose place
+it gives, whether a drive acts inside it (`is_input`), and a `sentence` that says in the language of the reader what is
+found and from what. What tells groups or loci apart ends in `assert_never`, so the type checker names every place that
+a new one concerns.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
+from centrode.locale import _
+from centrode.model.reading import body_word
 from centrode.structure.constraints import Constraint, Contact, GearRatio, NoSlip
 
 # What gears and rolling wheels add to the groups of a plan: angles that follow, loci, trains.
@@ -41,6 +48,13 @@ class Touch:
     carried: bool
     letter: str
 
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        if self.letter == "P":
+            return _("the line beside the track of wheel {wheel}").format(wheel=self.contact.rolling)
+        return _("the circle about the track of wheel {wheel}").format(wheel=self.contact.rolling)
+
 
 @dataclass(frozen=True)
 class Rolloff:
@@ -50,6 +64,11 @@ class Rolloff:
     rolling: NoSlip
     carried: bool
     letter = "P"
+
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        return _("the place to which wheel {wheel} rolls").format(wheel=self.rolling.rolling)
 
 
 @dataclass(frozen=True)
@@ -95,16 +114,37 @@ class Train:
         """Links in the order of placing."""
         return tuple(link for link, _point in self.places)
 
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Points whose place the group gives."""
+        return tuple(point for point, _link in self.brought)
+
+    @property
+    def is_input(self) -> bool:
+        """Whether a drive acts inside the group."""
+        return any(
+            isinstance(equation, AngleGiven) and equation.drive is not None for equation in self.equations
+        )
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        return _("gear train: links {links} turned together").format(links=", ".join(self.links))
+
 
 def angles_in(equation: AngleEquation) -> tuple[str, ...]:
     """Links whose angles an equation ties together."""
-    if isinstance(equation, GearRatio):
-        return equation.links
-    if isinstance(equation, NoSlip):
-        return equation.link, equation.on
-    if isinstance(equation, Arm):
-        return equation.rolling.link, equation.rolling.on, equation.link
-    return equation.link, equation.relative_to
+    match equation:
+        case GearRatio():
+            return equation.links
+        case NoSlip():
+            return equation.link, equation.on
+        case Arm():
+            return equation.rolling.link, equation.rolling.on, equation.link
+        case AngleGiven():
+            return equation.link, equation.relative_to
+        case _:
+            assert_never(equation)
 
 
 @dataclass(frozen=True)
@@ -115,6 +155,18 @@ class RigidPoint:
     link: str
     kind = "rigid point"
     signed = False
+    links = ()
+    is_input = False
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Points whose place the group gives."""
+        return (self.point,)
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        return _("point {point} of link {link}").format(point=self.point, link=self.link)
 
 
 @dataclass(frozen=True)
@@ -126,6 +178,20 @@ class TwoPointLink:
     second: str
     kind = "link by two points"
     signed = False
+    points = ()
+    is_input = False
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links whose pose the group gives."""
+        return (self.link,)
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        return _("link {link} through {first} and {second}").format(
+            link=self.link, first=self.first, second=self.second
+        )
 
 
 @dataclass(frozen=True)
@@ -148,6 +214,7 @@ class TurnedLink:
     link: str
     pivot: str
     turning: Turning | Following
+    points = ()
     signed = False
 
     @property
@@ -155,6 +222,36 @@ class TurnedLink:
         if isinstance(self.turning, Turning):
             return "crank" if self.turning.drive is not None else "parallel link"
         return "rolling wheel" if isinstance(self.turning, Rolled) else "gear"
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links whose pose the group gives."""
+        return (self.link,)
+
+    @property
+    def is_input(self) -> bool:
+        """Whether a drive acts inside the group."""
+        return isinstance(self.turning, Turning) and self.turning.drive is not None
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        place = {"link": self.link, "point": self.pivot}
+        match self.turning:
+            case Meshed(gear):
+                return _("link {link} about {point}, turned by gear {gear}").format(**place, gear=gear.gear)
+            case Rolled(rolling):
+                return _("wheel {link} about {point}, turned by rolling on {on}").format(
+                    **place, on=body_word(rolling.on)
+                )
+            case Turning(drive=None, guide=guide):
+                return _("link {link} at {point}, kept from turning by guide {guide}").format(
+                    **place, guide=guide
+                )
+            case Turning():
+                return _("link {link} about {point}, turned by its drive").format(**place)
+            case _:
+                assert_never(self.turning)
 
 
 @dataclass(frozen=True)
@@ -175,6 +272,29 @@ class Aim:
     contact: Contact | None = None
     kind = "RPR"
     signed = True
+    is_input = False
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links whose pose the group gives."""
+        return (self.link,) if self.block is None else (self.link, self.block)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Points whose place the group gives."""
+        return () if self.sliding is None else (self.sliding,)
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        place = {"link": self.link, "point": self.pivot, "target": self.target}
+        if self.contact is not None:
+            return _("RPR: link {link} about {point}, resting on wheel {wheel} about {target}").format(
+                **place, wheel=self.contact.rolling
+            )
+        return _("RPR: link {link} about {point}, its guide {guide} through {target}").format(
+            **place, guide=self.guide
+        )
 
 
 @dataclass(frozen=True)
@@ -186,6 +306,11 @@ class Rod:
     link: str
     letter = "R"
 
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        return _("the circle of {link} about {point}").format(link=self.link, point=self.centre)
+
 
 @dataclass(frozen=True)
 class Rail:
@@ -196,6 +321,11 @@ class Rail:
     on: str
     letter = "P"
 
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        return _("the line of guide {guide}").format(guide=self.guide)
+
 
 @dataclass(frozen=True)
 class Slot:
@@ -204,6 +334,11 @@ class Slot:
     point: str
     guide: str
     letter = "P"
+
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        return _("guide {guide} through {point}").format(guide=self.guide, point=self.point)
 
 
 @dataclass(frozen=True)
@@ -216,6 +351,11 @@ class Stop:
     drive: str
     letter = "P"
 
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        return _("the stop that the drive of guide {guide} sets").format(guide=self.guide)
+
 
 @dataclass(frozen=True)
 class CylinderCircle:
@@ -225,6 +365,11 @@ class CylinderCircle:
     centre: str
     drive: str
     letter = "R"
+
+    @property
+    def sentence(self) -> str:
+        """What it is, as a part of a sentence."""
+        return _("the circle about {point} as large as the cylinder is long").format(point=self.centre)
 
 
 Locus: TypeAlias = Rod | CylinderCircle | Rail | Slot | Stop | Touch | Rolloff
@@ -271,6 +416,30 @@ class Meet:
         # a stop is a single place already: nothing has to be chosen
         return not any(isinstance(locus, Stop) for locus in self.loci)
 
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links whose pose the group gives."""
+        carriage = () if self.carriage is None else (self.carriage,)
+        return carriage + tuple(rod.link for rod in self.rods)
+
+    @property
+    def is_input(self) -> bool:
+        """Whether a drive acts inside the group."""
+        driven = isinstance(self.turning, Turning) and self.turning.drive is not None
+        return driven or any(isinstance(locus, (Stop, CylinderCircle)) for locus in self.loci)
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        one, other = (locus.sentence for locus in self.loci)
+        if self.carriage is None:
+            return _("{kind}: point {point}, where {one} meets {other}").format(
+                kind=self.kind, point=self.points[0], one=one, other=other
+            )
+        return _("{kind}: link {link} of known angle, where {one} meets {other}").format(
+            kind=self.kind, link=self.carriage, one=one, other=other
+        )
+
 
 @dataclass(frozen=True)
 class Newton:
@@ -284,33 +453,12 @@ class Newton:
     equations: tuple[tuple[Constraint, int], ...]
     kind = "higher class"
     signed = False
+    is_input = False
+
+    @property
+    def sentence(self) -> str:
+        """What is found, and from what."""
+        return _("higher class: {names}").format(names=", ".join(self.points + self.links))
 
 
 Group: TypeAlias = RigidPoint | TwoPointLink | TurnedLink | Train | Aim | Meet | Newton
-
-
-def links_of(group: Group) -> tuple[str, ...]:
-    """Links whose pose the group gives."""
-    if isinstance(group, RigidPoint):
-        return ()
-    if isinstance(group, (Newton, Train)):
-        return group.links
-    if isinstance(group, Aim):
-        return (group.link,) if group.block is None else (group.link, group.block)
-    if isinstance(group, Meet):
-        carriage = () if group.carriage is None else (group.carriage,)
-        return carriage + tuple(rod.link for rod in group.rods)
-    return (group.link,)
-
-
-def points_of(group: Group) -> tuple[str, ...]:
-    """Points whose place the group gives."""
-    if isinstance(group, RigidPoint):
-        return (group.point,)
-    if isinstance(group, (Newton, Meet)):
-        return group.points
-    if isinstance(group, Train):
-        return tuple(point for point, _link in group.brought)
-    if isinstance(group, Aim) and group.sliding is not None:
-        return (group.sliding,)
-    return ()

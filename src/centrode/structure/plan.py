@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, assert_never
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.geometry.space import Space
@@ -55,7 +55,6 @@ from centrode.structure.groups import (
     Turning,
     TwoPointLink,
     angles_in,
-    links_of,
 )
 from centrode.structure.rank import (
     Matrix,
@@ -230,17 +229,21 @@ def _pivots(group: GroupToSolve, equations: Sequence[AngleEquation]) -> tuple[tu
 
 def _weights(mechanism: Mechanism, equation: AngleEquation) -> Mapping[str, float]:
     """Link -> factor of its angle, with the numbers of the description."""
-    if isinstance(equation, GearRatio):
-        ratio = _ratio(mechanism, equation)
-        first, second = shares_of(mechanism, equation.gear)
-        return {equation.first: -ratio, equation.second: 1.0, equation.carrier: ratio * first - second}
-    if isinstance(equation, Arm):
-        spin = _spin(_description(mechanism, equation.rolling.rolling))
-        return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}
-    # on the sphere the angle is the one that is given, measured on the body it is against
-    if mechanism.space == "sphere":
-        return {equation.link: 1.0}
-    return dict(zip(angles_in(equation), (1.0, -1.0), strict=True))
+    match equation:
+        case GearRatio():
+            ratio = _ratio(mechanism, equation)
+            first, second = shares_of(mechanism, equation.gear)
+            return {equation.first: -ratio, equation.second: 1.0, equation.carrier: ratio * first - second}
+        case Arm(rolling=rolling):
+            spin = _spin(_description(mechanism, rolling.rolling))
+            return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}
+        case NoSlip() | AngleGiven():
+            # on the sphere the angle is the one that is given, measured on the body it is against
+            if mechanism.space == "sphere":
+                return {equation.link: 1.0}
+            return dict(zip(angles_in(equation), (1.0, -1.0), strict=True))
+        case _:
+            assert_never(equation)
 
 
 def _ratio(mechanism: Mechanism, gear: GearRatio) -> float:
@@ -496,7 +499,7 @@ class Structure:
         for group in self.groups:
             if isinstance(group, Train):
                 wanted.update(link for equation in group.equations for link in angles_in(equation))
-        return tuple(tuple(link for link in links_of(group) if link in wanted) for group in self.groups)
+        return tuple(tuple(link for link in group.links if link in wanted) for group in self.groups)
 
     @property
     def drives(self) -> int:

@@ -14,6 +14,7 @@ from centrode.sheets.texts import Joined, Name, Number, Sentence
 from centrode.views.rotatability import cause_text
 
 if TYPE_CHECKING:
+    from centrode.analysis.rotatability.causes import Cause
     from centrode.kinematics.preparation import Ready
     from centrode.model.settings import Display
     from centrode.sheets.texts import Text
@@ -31,6 +32,7 @@ class Rotation:
         the limit in the other one [rad or m].
     unit : of the limit
     group, cause, condition : which group stops it, why in words, and in symbols; empty where nothing does
+    causes : the causes as data
     """
 
     turns_fully: bool | None
@@ -39,6 +41,7 @@ class Rotation:
     group: str = ""
     cause: str = ""
     condition: str = ""
+    causes: tuple[Cause, ...] = ()
 
 
 def rotation_of(prepared: Ready) -> Rotation:
@@ -57,6 +60,7 @@ def rotation_of(prepared: Ready) -> Rotation:
         _join(limit.group for limit in met),
         _join(_spoken(cause_text(limit.cause), display) for limit in met),
         _join(str(limit.condition) for limit in met),
+        tuple(dict.fromkeys(limit.cause for limit in met)),
     )
 
 

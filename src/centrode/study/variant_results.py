@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.dynamics.motion_results import MotionResults, study
 from centrode.equations.integration import integrate
 from centrode.errors import InputError
 from centrode.kinematics.preparation import ready
-from centrode.locale import _, chosen_language, mark, ngettext, speaking
+from centrode.locale import chosen_language, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import Rotation, rotation_of
+from centrode.study.variant_answers import VariantAnswers
 from centrode.study.variant_tables import Table, Variant, read_variants
 
 if TYPE_CHECKING:
@@ -24,15 +24,6 @@ Progress: TypeAlias = Callable[[int, int], None]
 STEPS = 100
 """Fixed steps of the integration beside the motion, as the assignment has them."""
 COMPUTED, LOCKS, REFUSED, FAULT = "ok", "locks", "refused", "fault"
-NOT_COMPUTED = (REFUSED, FAULT)
-SHOWN = 5
-"""Causes told together; all stand in the summary."""
-STATUS_WORDS: Mapping[str, str] = {
-    COMPUTED: mark("ok"),
-    LOCKS: mark("locks"),
-    REFUSED: mark("refused"),
-    FAULT: mark("fault"),
-}
 
 
 @dataclass(frozen=True)
@@ -57,6 +48,11 @@ class VariantRow:
     cause: str
     status: str
 
+    @property
+    def is_computed(self) -> bool:
+        """Whether the variant is a mechanism whose motion is known, as far as it gets."""
+        return self.status in (COMPUTED, LOCKS)
+
     def as_dict(self) -> dict[str, str | float | bool | None]:
         """As a marker holds it."""
         return asdict(self)
@@ -76,9 +72,27 @@ class VariantResults:
     note: str = ""
 
 
-def variants(
-    topology: Mechanism, table: Table, progress: Progress | None = None
-) -> tuple[VariantResults, ...]:
+@dataclass(frozen=True)
+class Variants:
+    """Every variant of a table.
+
+    Attributes
+    ----------
+    mechanism : the topology, whose numbers the table varies
+    given : the rows of the table
+    rows : one a variant, in the order of the table
+    results : everything about each, where it is kept in memory; empty of variants that are written into folders
+    answers : name of a variant -> what a teacher checks of it, where reports have been written
+    """
+
+    mechanism: Mechanism
+    given: tuple[Variant, ...]
+    rows: tuple[VariantRow, ...]
+    results: tuple[VariantResults, ...] = ()
+    answers: Mapping[str, VariantAnswers] = field(default_factory=dict)
+
+
+def variants(topology: Mechanism, table: Table, progress: Progress | None = None) -> Variants:
     """The study, the rotatability and the integrated motion of every variant of a topology.
 
     Parameters
@@ -94,13 +108,13 @@ def variants(
     InputError
         The table is wrong. A variant that is no mechanism has the status "refused" instead.
     """
-    rows = read_variants(topology, table)
-    found = []
-    for number, variant in enumerate(rows, start=1):
-        found.append(compute_variant(topology, variant))
+    given = read_variants(topology, table)
+    results = []
+    for number, variant in enumerate(given, start=1):
+        results.append(compute_variant(topology, variant))
         if progress is not None:
-            progress(number, len(rows))
-    return tuple(found)
+            progress(number, len(given))
+    return Variants(topology, given, tuple(result.row for result in results), tuple(results))
 
 
 def compute_variant(topology: Mechanism, variant: Variant) -> VariantResults:
@@ -137,52 +151,20 @@ def cause_of(rotation: Rotation) -> str:
     return f"{rotation.cause}: {rotation.condition}" if rotation.condition else rotation.cause
 
 
-def variants_summary(rows: Sequence[VariantRow]) -> tuple[str, str | None]:
-    """How many variants there are of each status; and why some were not computed, None where all were."""
-    found = Counter(row.status for row in rows)
-    said = ", ".join(f"{_(word)} {found[status]}" for status, word in STATUS_WORDS.items() if found[status])
-    summary = ngettext("{n} variant", "{n} variants", len(rows)).format(n=len(rows)) + f": {said}"
-    missing = [row for row in rows if row.status in NOT_COMPUTED]
-    if not missing:
-        return summary, None
-    what = ngettext("{n} variant was not computed", "{n} variants were not computed", len(missing))
-    causes = [f"{row.variant}: {row.cause}" for row in missing[:SHOWN]]
-    return summary, "\n".join([what.format(n=len(missing)), *causes])
+# Variants in the language of the reader: summaries, which files hold, are English.
 
 
-def variant_rows(rows: Iterable[VariantRow]) -> list[tuple[str, str, str, str, str]]:
-    """What `centrode variants` prints of each variant: name, full turn, limit, group, status."""
-    words = {True: _("yes"), False: _("no"), None: ""}
-    return [
-        (
-            row.variant,
-            words[row.turns_fully],
-            "" if row.limit is None else f"{row.limit:.9g} {row.unit}",
-            row.group,
-            _(STATUS_WORDS[row.status]),
-        )
-        for row in rows
-    ]
+def spoken_variants(variants: Variants) -> Variants:
+    """The same with the groups and causes of its rows in the language that is spoken.
 
-
-# What is said of variants in the language of the reader: summaries, which files hold, are English.
-
-
-def spoken_variants(topology: Mechanism, table: Table, rows: Sequence[VariantRow]) -> tuple[VariantRow, ...]:
-    """Rows of a summary with groups and causes in the language that is spoken.
-
-    What a variant was refused for, or where it locks, is asked for anew: some 0.1 s each. Faults of the program
-    stay English.
-
-    Parameters
-    ----------
-    topology, table : as of `variants`
-    rows : those that were computed of them, or some of these
+    Why a variant was refused, and where it locks, is computed anew: some 0.1 s each. Faults of the program stay
+    English.
     """
     if chosen_language() == "en":
-        return tuple(rows)
-    variants = {variant.name: variant for variant in read_variants(topology, table)}
-    return tuple(_spoken(topology, variants[row.variant], row) for row in rows)
+        return variants
+    given = {variant.name: variant for variant in variants.given}
+    rows = (_spoken(variants.mechanism, given[row.variant], row) for row in variants.rows)
+    return replace(variants, rows=tuple(rows))
 
 
 def _spoken(topology: Mechanism, variant: Variant, row: VariantRow) -> VariantRow:

@@ -110,3 +110,8 @@ def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tu
 def bare(executor: str) -> str:
     """Name of the executor without the reason why it is this one: the part that decides the bits."""
     return executor.partition(" (")[0]
+
+
+def reason_of(executor: str) -> str:
+    """Why it is this executor, marked for the catalogues; nothing where that needs no reason."""
+    return executor.partition(" (")[2].removesuffix(")")

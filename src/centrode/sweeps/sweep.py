@@ -106,13 +106,54 @@ def sweep(
     frame = frame_of(motion, design, units, task.asked, told_of_it)
     blocks = _blocks(frame, task, chosen)
     if store is None:
-        return _in_memory(frame, blocks, task, chosen, progress)
+        return _in_memory(frame, blocks, task, chosen, progress).assign_attrs(topic="sweep")
     _check_size(frame, designs.IN_STORE, _("reduce it, or ask for fewer"))
     with open_store(Path(store), frame, blocks, task) as kept:
         finished = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
     data = with_tally(read_store(Path(store), frame), frame, kept.tally)
-    return data.assign_attrs(mechanisms_found=finished)
+    # a store says what was computed, and not how that is shown: the topic is only in what is returned
+    return data.assign_attrs(mechanisms_found=finished, topic="sweep")
+
+
+TABLE_ROWS = 100_000
+"""Mechanisms of one table."""
+
+
+@dataclass(frozen=True)
+class SweepResults:
+    """Many mechanisms of one structure.
+
+    Attributes
+    ----------
+    mechanism : the one whose numbers vary
+    data : what `sweep` gives of it
+    """
+
+    mechanism: Mechanism
+    data: xr.Dataset
+
+
+def sweep_results(
+    mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample, *arguments: Any, **options: Any
+) -> SweepResults:
+    """What `sweep` computes, with the mechanism whose numbers vary.
+
+    Parameters
+    ----------
+    mechanism, vary, arguments, options : as of `sweep`
+    """
+    return SweepResults(mechanism, sweep(mechanism, vary, *arguments, **options))
+
+
+def check_table(data: xr.Dataset) -> None:
+    """Raise InputError where a sweep is no table: it is not reduced, or has more than `TABLE_ROWS` mechanisms."""
+    if "sample" in data.dims:
+        raise InputError("", _("a table holds reduced results only"), _("reduce them, or write zarr"))
+    count = data["samples_ok"].size
+    if count > TABLE_ROWS:
+        what = _("a table holds at most {most} mechanisms, here are {count}")
+        raise InputError("", what.format(most=TABLE_ROWS, count=count), _("write zarr"))
 
 
 def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:

@@ -64,7 +64,12 @@ def is_result(dataset: Any) -> bool:
     attributes = getattr(dataset, "attrs", None)
     if not isinstance(attributes, dict) or attributes.get("topic") not in RESTORED:
         return False
-    return isinstance(attributes.get(RESTORED[attributes["topic"]].subject), str)
+    return isinstance(attributes.get(_key_of_description(attributes["topic"])), str)
+
+
+def _key_of_description(topic: str) -> str:
+    """The attribute in which a dataset of a topic holds its description."""
+    return "cam" if RESTORED[topic].subject == "cam" else "mechanism"
 
 
 def restored_result(result: Any) -> Any:
@@ -87,8 +92,8 @@ def restored_result(result: Any) -> Any:
 
 def _description_of(dataset: xarray.Dataset) -> Mechanism | AnyCam:
     """The mechanism or cam that a dataset of a result holds as text."""
-    subject = RESTORED[dataset.attrs["topic"]].subject
-    return cast("Mechanism | AnyCam", PARSERS[subject](dataset.attrs[subject]))
+    key = _key_of_description(dataset.attrs["topic"])
+    return cast("Mechanism | AnyCam", PARSERS[key](dataset.attrs[key]))
 
 
 def _incomplete(absent: Exception) -> InputError:

@@ -614,6 +614,23 @@ CHECK = Topic(
     ),
 )
 
+SWEEP = Topic(
+    name="sweep",
+    compute=Lazily("centrode.sweeps.sweep", "sweep_results"),
+    result=Lazily("centrode.sweeps.sweep", "SweepResults"),
+    view=Lazily("centrode.views.sweeps", "sheet"),
+    subject="mechanisms",
+    restore=Lazily("centrode.sweeps.sweep", "SweepResults"),
+)
+
+VARIANTS = Topic(
+    name="variants",
+    compute=Lazily("centrode.study.variant_results", "variants"),
+    result=Lazily("centrode.study.variant_results", "Variants"),
+    view=Lazily("centrode.views.variants", "sheet"),
+    subject="mechanisms",
+)
+
 EQUATIONS = Topic(
     name="equations",
     compute=Lazily("centrode.equations.instants", "equation_results"),
@@ -837,6 +854,8 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     RUN,
     CHECK,
+    SWEEP,
+    VARIANTS,
     GIVEN_MASSES,
     DESCRIBE,
     BASE_RADIUS,

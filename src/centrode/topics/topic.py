@@ -200,7 +200,7 @@ class InDocuments:
 
 @dataclass(frozen=True)
 class Topic:
-    """One analysis of a mechanism or of a cam.
+    """One analysis of a mechanism, of a cam, or of many mechanisms of one structure.
 
     Attributes
     ----------
@@ -211,7 +211,8 @@ class Topic:
     concerns : whether a mechanism has what the topic is about; every one has if None
     command : None where only documents and Python have the topic
     document : its chapters
-    subject : "mechanism", or "cam": those of cams have one command together, with the options of all of them
+    subject : "mechanism"; "cam": those have one command together, with the options of all of them; "mechanisms":
+        many of one structure, whose commands read a file of their own and go on with what is in a folder
     flag : option of that command without which it leaves the topic out
     restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
         computation has no dataset that says everything
@@ -224,6 +225,6 @@ class Topic:
     concerns: Lazily | None = None
     command: Command | None = None
     document: InDocuments = InDocuments()
-    subject: Literal["mechanism", "cam"] = "mechanism"
+    subject: Literal["mechanism", "cam", "mechanisms"] = "mechanism"
     flag: str = ""
     restore: Lazily | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from centrode.errors import Status
@@ -16,15 +17,19 @@ if TYPE_CHECKING:
 
 def instant_title(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text:
     """The values of the drives at a sample, behind the time where they do not follow from a constant speed."""
-    parameter, values = mechanism.motion_parameter, motion["drive_value"].to_numpy()[sample]
+    values = motion["drive_value"].to_numpy()[sample].tolist()
+    return place_title(mechanism, values, float(motion["time"][sample]))
+
+
+def place_title(mechanism: Mechanism, values: Sequence[float], time: float) -> Text:
+    """The same of values of the drives [rad or m] and a time [s]."""
+    parameter = mechanism.motion_parameter
     parts: list[Text] = [
-        _equal(drive.name, Number(float(value), drive.unit, digits="", degrees_too=True))
+        _equal(drive.name, Number(value, drive.unit, digits="", degrees_too=True))
         for drive, value in zip(parameter.drives, values, strict=True)
     ]
     if not parameter.is_uniform:
-        parts.insert(
-            0, _equal(parameter.instant.symbol, Number(float(motion["time"][sample]), "s", digits=""))
-        )
+        parts.insert(0, _equal(parameter.instant.symbol, Number(time, "s", digits="")))
     return Joined(parts)
 
 

@@ -4,11 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
 from centrode.dynamics.state import Centre
+from centrode.model.loads import (
+    AnyLoad,
+    BearingFriction,
+    GuideForce,
+    GuideFriction,
+    HingeDamper,
+    HingeFriction,
+    HingeSpring,
+    LinkWeight,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    PointWeight,
+    SliderFriction,
+    Torque,
+)
+from centrode.model.reading import FRAME
 from centrode.sheets.sheet import Block, Chapter, Column, Fact, FactTable, Paragraph, Section, Sheet, Table
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
 from centrode.views.load_names import KINDS, load_text
@@ -16,7 +33,6 @@ from centrode.views.load_names import KINDS, load_text
 if TYPE_CHECKING:
     from centrode.dynamics.masses import LinkMasses
     from centrode.dynamics.state import Mass
-    from centrode.model.loads import Load
     from centrode.model.mechanism import Mechanism
     from centrode.model.settings import Machine, Shaft
 
@@ -115,30 +131,38 @@ def _loads(mechanism: Mechanism) -> Iterator[Block]:
         yield Table(tuple(Column(name, values, head=head) for name, values, head in columns))
 
 
-def _acts_on(load: Load) -> Text:
+def _acts_on(load: AnyLoad) -> Text:
     """Point, link, guide or two points."""
-    if load.guide is not None:
-        return Sentence("guide {name}", name=Name(load.guide))
-    if load.points is not None:
-        return _names(load.points)
-    if load.link is not None:
-        return _names((load.link,) if load.relative_to == "frame" else (load.link, load.relative_to))
-    return Name(load.point or "")
+    match load:
+        case GuideForce(guide=guide) | GuideFriction(guide=guide) | SliderFriction(guide=guide):
+            return Sentence("guide {name}", name=Name(guide))
+        case PointSpring(points=points) | PointDamper(points=points):
+            return _names(points)
+        case Torque() | HingeSpring() | HingeDamper() | HingeFriction():
+            return _names((load.link,) if load.relative_to == FRAME else (load.link, load.relative_to))
+        case LinkWeight(link=link):
+            return Name(link)
+        case BearingFriction(point=point, link=link):
+            return Name(point if link is None else link)
+        case PointForce(point=point) | PointWeight(point=point):
+            return Name(point)
+        case _:
+            assert_never(load)
 
 
-def _amount(load: Load) -> Text:
+def _amount(load: AnyLoad) -> Text:
     """Vector, value and coefficients of a load, in SI; a table by the number of its rows."""
     parts: list[Text] = []
-    if load.vector is not None:
+    if isinstance(load, PointForce):
         parts.append(_bracketed(load.vector))
     for key, before in AMOUNTS:
-        value = getattr(load, key)
+        value = getattr(load, key, None)
         if value is not None:
             parts.append(_number(value) if before == NOTHING else Joined((before, _number(value)), " = "))
-    if load.table is not None:
+    if isinstance(load, GuideForce) and load.table is not None:
         count = Number(len(load.table), digits="d")
         parts.append(Sentence("indicator diagram of {count} points", count=count))
-    if load.while_moving is not None:
+    if isinstance(load, PointForce) and load.while_moving is not None:
         way = _vector(load.while_moving)
         parts.append(Sentence("while the point moves towards ({way})", way=way))
     return Joined(parts) if parts else UNKNOWN

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from centrode.model.reading import FRAME, two_points
 from centrode.sheets.sheet import Chapter, Paragraph, Section, Sheet
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text
-from centrode.structure.assur import assur_groups, is_input
+from centrode.structure.assur import assur_groups
 from centrode.structure.groups import (
     Aim,
     CylinderCircle,
@@ -21,7 +21,6 @@ from centrode.structure.groups import (
     TurnedLink,
     Turning,
     TwoPointLink,
-    links_of,
 )
 from centrode.structure.rank import is_bare
 from centrode.views.instants import place_number
@@ -456,7 +455,7 @@ def _on_motion(structure: Structure, roles: LinkRoles) -> Iterator[Text]:
             )
         elif not isinstance(group, RigidPoint):
             yield from _on_group(structure, roles, group, named)
-        named.update(links_of(group))
+        named.update(group.links)
 
 
 def _on_group(structure: Structure, roles: LinkRoles, group: Group, named: set[str]) -> Iterator[Text]:
@@ -516,7 +515,7 @@ def _on_meeting(structure: Structure, roles: LinkRoles, group: Meet) -> Iterator
         yield _on_slider(roles, rods[0], rails[0])
     elif rods:
         yield Sentence("Link {link} follows.", link=quoted_name(rods[0].link))
-    elif not is_input(group):
+    elif not group.is_input:
         yield Sentence("The slider in {point} is led by both its guides.", point=Name(group.points[0]))
 
 

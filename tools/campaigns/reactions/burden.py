@@ -110,14 +110,14 @@ def _power(load: Any, data: xr.Dataset) -> Array:
     if load.kind == "weight":
         unit = complex(*GRAVITY) / abs(complex(*GRAVITY))
         return dot(float(load.value) * unit, point(data, load.point, "velocity"))
-    if load.guide is not None:
+    if hasattr(load, "guide"):
         x, v = slide(data, load.guide), slide(data, load.guide, "slide_velocity")
         if load.kind == "friction":
             return np.asarray(-1.1 * abs(v) - 0.3 * v**2)
         return np.asarray((1.5 - 0.5 * x + 0.2 * v) * v)
     if load.kind == "force":
         return _power_of_force(load, data)
-    if load.points is not None:
+    if hasattr(load, "points"):
         return _power_between(load, data)
     base = 0.0 if load.relative_to == "frame" else link(data, load.relative_to)
     slow = 0.0 if load.relative_to == "frame" else link(data, load.relative_to, "angular_velocity")

@@ -106,13 +106,13 @@ class Balance:
         if load.kind == "weight":
             down = complex(*GRAVITY) / abs(complex(*GRAVITY))
             self.add(self.bearer(load.point), load.value * down, self.at(load.point))
-        elif load.guide is not None:
+        elif hasattr(load, "guide"):
             x, v = slide(self.motion, load.guide), slide(self.motion, load.guide, "slide_velocity")
             friction = -1.1 * sense(v) - 0.3 * v
             self.along_guide(load.guide, friction if load.kind == "friction" else 1.5 - 0.5 * x + 0.2 * v)
         elif load.kind == "force":
             self.add(self.bearer(load.point), self.force_of(load), self.at(load.point))
-        elif load.points is not None:
+        elif hasattr(load, "points"):
             self.between(load)
         else:
             self.twist(load)

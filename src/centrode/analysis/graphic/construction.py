@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import assert_never
 
 from centrode.analysis.graphic.loci import (
     Ray,
@@ -34,7 +35,6 @@ from centrode.analysis.graphic.stage import (
 )
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.structure.assur import step_of
 from centrode.structure.groups import (
     Aim,
     Group,
@@ -70,38 +70,47 @@ def construct_groups(groups: Sequence[Group], stage: ConstructionStage) -> None:
     for group in groups:
         equations, triangle = _construct(group, stage)
         if equations:
-            stage.steps.append(ConstructionStep(step_of(group), tuple(equations), triangle))
+            stage.steps.append(ConstructionStep(group.sentence, tuple(equations), triangle))
 
 
 def _construct(group: Group, stage: ConstructionStage) -> tuple[list[str], Triangle | None]:
-    if isinstance(group, RigidPoint):
-        return _image(stage, group.link, group.point), None
-    if isinstance(group, TwoPointLink):
-        return _through_two(stage, group), None
-    if isinstance(group, TurnedLink):
-        stage.bases[group.link] = group.pivot
-        stage.turns[group.link] = _turn_of(stage, group.turning, group.link)
-        return wheel_equations(stage, group.turning), None
-    if isinstance(group, Aim):
-        return _aim(stage, group)
-    if isinstance(group, Meet):
-        return _meet(stage, group)
-    if isinstance(group, Train):
-        return _train(stage, group), None
-    raise InputError(step_of(group), _("the construction does not apply to it"), _("take it from the motion"))
+    match group:
+        case RigidPoint():
+            return _image(stage, group.link, group.point), None
+        case TwoPointLink():
+            return _through_two(stage, group), None
+        case TurnedLink():
+            stage.bases[group.link] = group.pivot
+            stage.turns[group.link] = _turn_of(stage, group.turning, group.link)
+            return wheel_equations(stage, group.turning), None
+        case Aim():
+            return _aim(stage, group)
+        case Meet():
+            return _meet(stage, group)
+        case Train():
+            return _train(stage, group), None
+        case Newton():
+            what = _("the construction does not apply to it")
+            raise InputError(group.sentence, what, _("take it from the motion"))
+        case _:
+            assert_never(group)
 
 
 def _turn_of(stage: ConstructionStage, turning_of: Turning | Meshed | Rolled, link: str) -> float:
     """Turning [rad/s or rad/s^2] of a link that a drive, a guide, a gear or a rolling contact turns."""
-    if isinstance(turning_of, Meshed):
-        return meshed_rate(stage, turning_of.gear, link)
-    if isinstance(turning_of, Rolled):
-        return rolled_rate(stage, turning_of.rolling) + stage.turns[turning_of.rolling.on]
-    rate = 0.0 if turning_of.drive is None else stage.driven[turning_of.drive]
-    if link == turning_of.link:
-        return stage.turns[turning_of.relative_to] + rate
-    # the link is the one that the other is measured from: its turn is the other way round
-    return stage.turns[turning_of.link] - rate
+    match turning_of:
+        case Meshed(gear):
+            return meshed_rate(stage, gear, link)
+        case Rolled(rolling):
+            return rolled_rate(stage, rolling) + stage.turns[rolling.on]
+        case Turning():
+            rate = 0.0 if turning_of.drive is None else stage.driven[turning_of.drive]
+            if link == turning_of.link:
+                return stage.turns[turning_of.relative_to] + rate
+            # the link is the one that the other is measured from: its turn is the other way round
+            return stage.turns[turning_of.link] - rate
+        case _:
+            assert_never(turning_of)
 
 
 def _image(stage: ConstructionStage, link: str, point: str) -> list[str]:

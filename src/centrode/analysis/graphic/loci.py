@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +25,6 @@ from centrode.analysis.graphic.stage import (
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.dyads import solved_angles
 from centrode.locale import _
-from centrode.structure.assur import step_of
 from centrode.structure.constraints import (
     FRAME,
     AngleDrive,
@@ -215,22 +214,29 @@ def carrying_ray(stage: ConstructionStage, link: str, point: str, direction: com
 def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
     """The vector equation of a locus, for the place it is about."""
     drawing = stage.drawing
-    numbers = drawing.numbers
-    if isinstance(locus, Rod):
-        return around(stage, locus.point, locus.centre, locus.link)
-    if isinstance(locus, CylinderCircle):
-        return cylinder(stage, locus)
-    if isinstance(locus, Rail):
-        direction = drawing.heading(locus.on, numbers.direction[locus.guide])
-        return sliding_ray(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
-    if isinstance(locus, Slot):
-        direction = drawing.heading(carriage or "", numbers.direction[locus.guide])
-        return carrying_ray(stage, carriage or "", locus.point, direction, locus.guide)
-    if isinstance(locus, Stop):
-        direction = drawing.heading(locus.on, numbers.direction[locus.guide])
-        ray = sliding_ray(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
-        return _driven(ray, stage.driven[locus.drive])
-    return _of_wheel(stage, locus)
+    match locus:
+        case Rod():
+            return around(stage, locus.point, locus.centre, locus.link)
+        case CylinderCircle():
+            return cylinder(stage, locus)
+        case Rail():
+            return _along_guide(stage, locus)
+        case Slot():
+            direction = drawing.heading(carriage or "", drawing.numbers.direction[locus.guide])
+            return carrying_ray(stage, carriage or "", locus.point, direction, locus.guide)
+        case Stop():
+            return _driven(_along_guide(stage, locus), stage.driven[locus.drive])
+        case Touch() | Rolloff():
+            return _of_wheel(stage, locus)
+        case _:
+            assert_never(locus)
+
+
+def _along_guide(stage: ConstructionStage, locus: Rail | Stop) -> Ray:
+    """A point that slides along a guide of a known body."""
+    drawing = stage.drawing
+    direction = drawing.heading(locus.on, drawing.numbers.direction[locus.guide])
+    return sliding_ray(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
 
 
 def _driven(ray: Ray, rate: float) -> Ray:
@@ -371,17 +377,20 @@ def train_rates(stage: ConstructionStage, group: Train) -> dict[str, float]:
 def _row(stage: ConstructionStage, equation: AngleEquation) -> tuple[Mapping[str, float], float]:
     """Factors of the turnings in an equation, and what they sum up to."""
     numbers = stage.drawing.numbers
-    if isinstance(equation, GearRatio):
-        return dict(equation.weights(numbers)), 0.0
-    if isinstance(equation, NoSlip):
-        return {equation.link: 1.0, equation.on: -1.0}, rolled_rate(stage, equation)
-    if isinstance(equation, Arm):
-        spin = numbers.gearing.spin(equation.rolling.rolling)
-        # w_wheel - w_on = spin (w_arm - w_on), all to one side
-        return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}, 0.0
-    assert isinstance(equation, AngleGiven)
-    rate = 0.0 if equation.drive is None else stage.driven[equation.drive]
-    return {equation.link: 1.0, equation.relative_to: -1.0}, rate
+    match equation:
+        case GearRatio():
+            return dict(equation.weights(numbers)), 0.0
+        case NoSlip():
+            return {equation.link: 1.0, equation.on: -1.0}, rolled_rate(stage, equation)
+        case Arm(rolling=rolling):
+            spin = numbers.gearing.spin(rolling.rolling)
+            # w_wheel - w_on = spin (w_arm - w_on), all to one side
+            return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, 0.0
+        case AngleGiven():
+            rate = 0.0 if equation.drive is None else stage.driven[equation.drive]
+            return {equation.link: 1.0, equation.relative_to: -1.0}, rate
+        case _:
+            assert_never(equation)
 
 
 # Groups of higher class by the method of false position.
@@ -459,7 +468,7 @@ def solve_by_trials(
     trial = ConstructionTrial(
         opened.turned, tuple(values), tuple(misfits), fitting, tuple(cut.name for cut in opened.cuts)
     )
-    stage.steps.append(ConstructionStep(step_of(group), (), trial=trial))
+    stage.steps.append(ConstructionStep(group.sentence, (), trial=trial))
     # the trials are thrown away: only the drawing with the right turns stays
     _adopt(stage, _construct_trial(stage, opened, fitting, construct))
     for cut in opened.cuts:
@@ -557,7 +566,7 @@ def open_up(structure: Structure, group: Newton) -> Opened:
                 if groups is not None:
                     return Opened(chosen, turned, groups)
     raise InputError(
-        step_of(group),
+        group.sentence,
         _("the method of false position does not apply: two trials at once do not make dyads of the group"),
         _("take velocities from the motion"),
     )

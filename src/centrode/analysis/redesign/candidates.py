@@ -26,7 +26,7 @@ from centrode.model.values import Placed
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import SPACES, Dimensions, dimensions_of
-from centrode.structure.groups import Group, Meet, Rail, Rod, TurnedLink, links_of
+from centrode.structure.groups import Group, Meet, Rail, Rod, TurnedLink
 
 # What may change in a repair: numbers by their paths, between bounds, and how large a change counts.
 
@@ -335,7 +335,7 @@ def signs_at_start(
 
 def _hints(mechanism: Mechanism, group: Group, angles: Mapping[str, Number]) -> dict[str, Number]:
     hints: dict[str, Number] = {}
-    for link in links_of(group):
+    for link in group.links:
         angle = mechanism.links[link].angle
         if link in angles:
             hints[link] = np.asarray(angles[link])[:, None]
@@ -402,7 +402,7 @@ def _positions(batch: Batch) -> Positions:
 
 
 def _links_with_angles(mechanism: Mechanism, groups: Sequence[Group]) -> list[str]:
-    names = dict.fromkeys(link for group in groups for link in links_of(group))
+    names = dict.fromkeys(link for group in groups for link in group.links)
     return [name for name in names if mechanism.links[name].angle is not None]
 
 

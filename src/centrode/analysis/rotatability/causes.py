@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from math import atan2, pi, remainder
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, assert_never
 
 import numpy as np
 
@@ -22,7 +22,24 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, CylinderCircle, Group, Locus, Meet, Rail, Rod, Slot, Stop
+from centrode.structure.groups import (
+    Aim,
+    CylinderCircle,
+    Group,
+    Locus,
+    Meet,
+    Newton,
+    Rail,
+    RigidPoint,
+    Rod,
+    Rolloff,
+    Slot,
+    Stop,
+    Touch,
+    Train,
+    TurnedLink,
+    TwoPointLink,
+)
 
 # Conditions in symbols: the angle phi of each link by its number in the description, and what vanishes of
 # them.
@@ -196,15 +213,19 @@ def cause_of(
     """Why a group is at a limit, or at a change point (`crossing`), at a value of the drive, and what holds there."""
     mechanism, numbers = tour.prepared.mechanism, tour.continuation.kinematics.numbers
     place = _Place(tour, mechanism, numbers, index, value)
-    if isinstance(group, Aim):
-        return _cause_of_aim(place, group)
-    if not isinstance(group, Meet):
-        return Cause(CauseKind.POSITIONS_MEET if crossing else CauseKind.TURNS_BACK), HIGHER
-    if group.kind == "RRR":
-        return _of_two_rods(place, group)
-    if group.kind == "RRP":
-        return _of_rod_and_line(place, group)
-    return _of_two_lines(place, group)
+    match group:
+        case Aim():
+            return _cause_of_aim(place, group)
+        case Meet(kind="RRR"):
+            return _of_two_rods(place, group)
+        case Meet(kind="RRP"):
+            return _of_rod_and_line(place, group)
+        case Meet():
+            return _of_two_lines(place, group)
+        case RigidPoint() | TwoPointLink() | TurnedLink() | Train() | Newton():
+            return Cause(CauseKind.POSITIONS_MEET if crossing else CauseKind.TURNS_BACK), HIGHER
+        case _:
+            assert_never(group)
 
 
 @dataclass(frozen=True)
@@ -232,32 +253,40 @@ def _as_float(x: Number) -> float:
 
 def body_of(locus: Locus) -> tuple[Tracer, str]:
     """A locus by what draws it: a link, a cylinder, a guide or a wheel."""
-    if isinstance(locus, Rod):
-        return Tracer.LINK, locus.link
-    if isinstance(locus, CylinderCircle):
-        return Tracer.CYLINDER, locus.drive
-    if isinstance(locus, (Rail, Slot, Stop)):
-        return Tracer.GUIDE, locus.guide
-    return Tracer.WHEEL, ""
+    match locus:
+        case Rod(link=link):
+            return Tracer.LINK, link
+        case CylinderCircle(drive=drive):
+            return Tracer.CYLINDER, drive
+        case Rail(guide=guide) | Slot(guide=guide) | Stop(guide=guide):
+            return Tracer.GUIDE, guide
+        case Touch() | Rolloff():
+            return Tracer.WHEEL, ""
+        case _:
+            assert_never(locus)
 
 
 def bearing_of_locus(
     mechanism: Mechanism, numbers: Dimensions, locus: Locus, carriage: str
 ) -> PivotSymbol | None:
     """Bearing of a rod, or of a line on which a point moves; None where a wheel draws it."""
-    if isinstance(locus, Rod):
-        return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
-    if isinstance(locus, CylinderCircle):
-        return PivotSymbol((AngleSymbol("psi", locus.drive.replace("-", "")),))
-    if isinstance(locus, Rail):
-        return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
-    if isinstance(locus, Slot):
-        return bearing_of(mechanism, carriage, numbers.direction[locus.guide])
-    if isinstance(locus, Stop):
-        x, y = numbers.direction[locus.guide]
-        # a stop is the line across the guide at the displacement that a drive gives
-        return bearing_of(mechanism, locus.on, (-y, x))
-    return None
+    match locus:
+        case Rod():
+            return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
+        case CylinderCircle(drive=drive):
+            return PivotSymbol((AngleSymbol("psi", drive.replace("-", "")),))
+        case Rail():
+            return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
+        case Slot():
+            return bearing_of(mechanism, carriage, numbers.direction[locus.guide])
+        case Stop():
+            x, y = numbers.direction[locus.guide]
+            # a stop is the line across the guide at the displacement that a drive gives
+            return bearing_of(mechanism, locus.on, (-y, x))
+        case Touch() | Rolloff():
+            return None
+        case _:
+            assert_never(locus)
 
 
 def _bearings(place: _Place, group: Meet) -> tuple[PivotSymbol, PivotSymbol] | None:

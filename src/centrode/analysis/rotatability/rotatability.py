@@ -43,7 +43,6 @@ from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import name_of
-from centrode.structure.groups import links_of
 
 
 @dataclass(frozen=True)
@@ -246,7 +245,7 @@ def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFo
         tour.drive.id,
         side,
         name_of(group),
-        links_of(group),
+        group.links,
         *cause_of(tour, group, event.group, event.at),
     )
 

@@ -12,13 +12,13 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, assert_never
 
 import numpy as np
 
 from centrode.analysis.graphic.stage import VectorDrawing, cross
 from centrode.analysis.instant_centres.bodies import sliders_of
-from centrode.dynamics.load_coordinates import Component, Distance, HalfSquare, Slide, Turn
+from centrode.dynamics.load_coordinates import Component, Distance, HalfSquare, Slide, Spin, Travel, Turn
 from centrode.dynamics.loads import AppliedLoad, LoadTerm, MassesAndLoads
 from centrode.dynamics.state import Centre, Mass, Radial, State
 from centrode.errors import MotionError, NotComputedYet
@@ -26,7 +26,7 @@ from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Guide, Mechanism
 from centrode.numerics.operations import PLAIN
 from centrode.structure.constraints import Contact, GearRatio, NoSlip, contact_point
-from centrode.structure.groups import Group, TurnedLink, Turning, links_of, points_of
+from centrode.structure.groups import Group, TurnedLink, Turning
 from centrode.structure.plan import Structure
 from centrode.structure.rank import in_order, match, strong_components
 
@@ -61,8 +61,8 @@ class FreeBodies:
         of_point: dict[str, int] = dict.fromkeys(mechanism.frame.points, -1)
         for number, group in enumerate(structure.groups):
             first = _with_its_point(group, number, of_point, order)
-            order |= {link: first for link in links_of(group) if link not in order}
-            of_point |= {point: number for point in points_of(group) if point not in of_point}
+            order |= {link: first for link in group.links if link not in order}
+            of_point |= {point: number for point in group.points if point not in of_point}
         for name, guide in sliders.items():
             order[name] = max(of_point.get(guide.point, -1), order[guide.on])
         carried = {point for link in mechanism.links.values() for point in link.coordinates}
@@ -410,28 +410,31 @@ class ActionReader:
     def actions(self, effort: LoadTerm, strength: float) -> Iterator[tuple[str, complex, complex, float]]:
         """Body, force, place and moment of each action that an effort of this strength is."""
         along = effort.coordinate if effort.works is None else effort.works
-        if isinstance(along, Component):
-            body = self.bodies.host(along.at) if isinstance(along.at, str) else along.at.link
-            yield body, strength * self.direction(along), self.place(along.at), 0.0
-        elif isinstance(along, Turn):
-            yield along.link, 0j, 0j, strength
-            yield along.base, 0j, 0j, -strength
-        elif isinstance(along, Slide):
-            guide = self.bodies.mechanism.guide(along.guide)
-            unit = complex(*self.drawing.numbers.direction[guide.id])
-            force = strength * unit * complex(*self.drawing.at.poses[guide.on].rotor)
-            # on both bodies at the place of the sliding point: the pair has no moment
-            place = self.drawing.point(guide.point)
-            yield self.bodies.carrier(guide), force, place, 0.0
-            yield guide.on, -force, place, 0.0
-        elif not isinstance(along, (Distance, HalfSquare)):
-            along.pulls(self.state)  # says why it acts on no body
-        else:
-            ends = self.drawing.point(along.first), self.drawing.point(along.second)
-            apart = ends[1] - ends[0]
-            force = strength * (apart if isinstance(along, HalfSquare) else apart / abs(apart))
-            yield self.bodies.host(along.second), force, ends[1], 0.0
-            yield self.bodies.host(along.first), -force, ends[0], 0.0
+        match along:
+            case Component():
+                body = self.bodies.host(along.at) if isinstance(along.at, str) else along.at.link
+                yield body, strength * self.direction(along), self.place(along.at), 0.0
+            case Turn(link, base):
+                yield link, 0j, 0j, strength
+                yield base, 0j, 0j, -strength
+            case Slide():
+                guide = self.bodies.mechanism.guide(along.guide)
+                unit = complex(*self.drawing.numbers.direction[guide.id])
+                force = strength * unit * complex(*self.drawing.at.poses[guide.on].rotor)
+                # on both bodies at the place of the sliding point: the pair has no moment
+                place = self.drawing.point(guide.point)
+                yield self.bodies.carrier(guide), force, place, 0.0
+                yield guide.on, -force, place, 0.0
+            case Distance(first, second) | HalfSquare(first, second):
+                ends = self.drawing.point(first), self.drawing.point(second)
+                apart = ends[1] - ends[0]
+                force = strength * (apart if isinstance(along, HalfSquare) else apart / abs(apart))
+                yield self.bodies.host(second), force, ends[1], 0.0
+                yield self.bodies.host(first), -force, ends[0], 0.0
+            case Spin() | Travel():
+                along.pulls(self.state)  # says why it acts on no body
+            case _:
+                assert_never(along)
 
     def direction(self, along: Component) -> complex:
         """Unit vector of a component as it stands."""

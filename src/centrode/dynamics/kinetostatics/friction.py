@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import pi
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ from centrode.errors import InputError, NotComputedYet
 from centrode.geometry.plane import rotate_vector
 from centrode.kinematics.preparation import Ready
 from centrode.locale import _
-from centrode.model.loads import Load
+from centrode.model.loads import BearingFriction, CoefficientFriction, SliderFriction
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.constraints import Constraint, NoTurning, PointOnGuide
 
@@ -110,16 +110,13 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     """
     by_label: dict[str, Contact] = {}
     for load in mechanism.loads:
-        if load.coefficient is None:
+        if not isinstance(load, CoefficientFriction):
             continue
         where = f"[[loads]] {load.label}"
         if mechanism.space == "sphere":
             what = _("friction by a coefficient on the sphere is not computed yet")
             raise NotComputedYet(where, what, _("give the size of the friction, or leave it out"))
-        contacts = (
-            [_sliding_friction(mechanism, load, where)] if load.guide else _bearings(mechanism, load, where)
-        )
-        for contact in contacts:
+        for contact in _contacts(mechanism, load, where):
             if contact.label in by_label:
                 what = _("friction at {contact} is given twice").format(contact=contact.label)
                 raise InputError(where, what, _("keep one of them"))
@@ -127,9 +124,19 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     return tuple(by_label.values())
 
 
+def _contacts(mechanism: Mechanism, load: CoefficientFriction, where: str) -> Sequence[Contact]:
+    match load:
+        case BearingFriction():
+            return _bearings(mechanism, load, where)
+        case SliderFriction():
+            return [_sliding_friction(mechanism, load, where)]
+        case _:
+            assert_never(load)
+
+
 def without_friction(mechanism: Mechanism) -> Mechanism:
     """The mechanism without friction by coefficients."""
-    loads = tuple(load for load in mechanism.loads if load.coefficient is None)
+    loads = tuple(load for load in mechanism.loads if not isinstance(load, CoefficientFriction))
     return mechanism.model_copy(update={"loads": loads})
 
 
@@ -153,17 +160,17 @@ def refuse_undetermined(
             raise InputError(contact.where, what.format(contact=contact.label), repair)
 
 
-def _sliding_friction(mechanism: Mechanism, load: Load, where: str) -> Sliding:
-    guide = mechanism.guide(load.guide or "")
+def _sliding_friction(mechanism: Mechanism, load: SliderFriction, where: str) -> Sliding:
+    guide = mechanism.guide(load.guide)
     if guide.link is None and (load.length or load.height):
         what = _("guide {guide} has no slider of its own that could tilt").format(guide=guide.id)
         raise InputError(where, what, _("take length and height out, or give the guide a link"))
-    coefficient, length, height = load.coefficient or 0.0, load.length or 0.0, load.height or 0.0
-    return Sliding(guide.id, guide.link, guide.on, coefficient, length, height, where)
+    length, height = load.length or 0.0, load.height or 0.0
+    return Sliding(guide.id, guide.link, guide.on, load.coefficient, length, height, where)
 
 
-def _bearings(mechanism: Mechanism, load: Load, where: str) -> list[HingeBearing]:
-    point = load.point or ""
+def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[HingeBearing]:
+    point = load.point
     bodies = _bodies(mechanism, point)
     if len(bodies) < 2:
         what = _("nothing turns at the point {point}: it is no hinge").format(point=point)
@@ -191,8 +198,8 @@ def _bearings(mechanism: Mechanism, load: Load, where: str) -> list[HingeBearing
             )
         links = [load.link]
     # the fit is a factor of the moment, so it goes into the coefficient
-    coefficient = (load.coefficient or 0.0) * FITS[load.fit]
-    return [HingeBearing(point, link, pin, coefficient, load.radius or 0.0, where) for link in links]
+    coefficient = load.coefficient * FITS[load.fit]
+    return [HingeBearing(point, link, pin, coefficient, load.radius, where) for link in links]
 
 
 def _bodies(mechanism: Mechanism, point: str) -> list[str]:

@@ -17,12 +17,11 @@ from numpy.polynomial import legendre
 from centrode.dynamics.load_coordinates import Coordinate
 from centrode.dynamics.loads import (
     AppliedLoad,
-    Constant,
+    EnergyClass,
     LoadDiagram,
     LoadTerm,
     Situation,
-    StraightSpring,
-    TorsionSpring,
+    StoredLaw,
 )
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer
@@ -31,7 +30,6 @@ from centrode.dynamics.steady_motion.cycle import NODES, resolve_panels
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.plan_evaluation import AT_THE_START
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import DRIVING_LAW_VARIABLES, MOST_TURNS, Simulation
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.search import maxima_between
@@ -42,23 +40,27 @@ from centrode.numerics.text_formula import TextFormula, compile_formula
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
 
-STORED, FRICTION, OTHER = "stored", "friction", "other"
+STORED, FRICTION, OTHER = EnergyClass
 SORTS = (STORED, FRICTION, OTHER)
 """Weights and springs; what is described as friction or damper; all else."""
 
 
 @dataclass(frozen=True)
 class Sorted:
-    """An effort of a load with its sort; `placed` ones depend on the place and the sense of motion alone."""
+    """An effort of a load; `placed` ones depend on the place and the sense of motion alone."""
 
     label: str
     effort: LoadTerm
-    sort: str
+
+    @property
+    def sort(self) -> EnergyClass:
+        """What becomes of its work."""
+        return self.effort.amount.energy_class
 
     @property
     def is_positional(self) -> bool:
         """Whether it can be represented by the drive's value, once for each sense."""
-        return isinstance(self.effort.amount, (Constant, StraightSpring, LoadDiagram))
+        return self.effort.amount.by_place
 
     @property
     def one_sided(self) -> bool:
@@ -70,38 +72,14 @@ class Sorted:
 
     def energy(self, state: State) -> Number:
         """Potential energy [J] that belongs to its coordinate; of stored efforts alone."""
-        x, amount = self.effort.coordinate.value(state), self.effort.amount
-        if isinstance(amount, TorsionSpring):
-            return 0.5 * amount.stiffness * (x - amount.free) ** 2
-        if isinstance(amount, StraightSpring):
-            # the coordinate of a straight spring is half the squared distance, so that it is smooth at length
-            # zero
-            return 0.5 * amount.stiffness * (np.sqrt(2.0 * x) - amount.free) ** 2
-        assert isinstance(amount, Constant)
-        # a constant force along x has the potential -F x
-        return -amount.value * x
+        amount = self.effort.amount
+        assert isinstance(amount, StoredLaw)
+        return amount.energy(self.effort.coordinate.value(state))
 
 
-def sort_load_terms(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[Sorted, ...]:
-    """The efforts of a mechanism's loads, in the order of the loads."""
-    kinds: list[str] = [load.kind for load in mechanism.loads]
-    kinds += ["weight"] * (
-        len(loads) - len(kinds)
-    )  # those that gravity makes stand behind the described ones
-    return tuple(
-        Sorted(load.label, effort, _sort(kind, effort))
-        for kind, load in zip(kinds, loads, strict=True)
-        for effort in load.efforts
-    )
-
-
-def _sort(kind: str, effort: LoadTerm) -> str:
-    if kind in ("friction", "damper"):
-        return FRICTION
-    stores = kind in ("weight", "spring") and effort.gate is None
-    if stores and isinstance(effort.amount, (Constant, TorsionSpring, StraightSpring)):
-        return STORED
-    return OTHER
+def sort_load_terms(loads: Sequence[AppliedLoad]) -> tuple[Sorted, ...]:
+    """The efforts of loads, in their order."""
+    return tuple(Sorted(load.label, effort) for load in loads for effort in load.efforts)
 
 
 def formulas_of(efforts: tuple[Sorted, ...]) -> tuple[Sorted, ...]:
@@ -151,7 +129,7 @@ class ReducedFunctions:
     @cached_property
     def efforts(self) -> tuple[Sorted, ...]:
         """All efforts of loads."""
-        return sort_load_terms(self.reducer.ready.mechanism, self.reducer.burden.loads)
+        return sort_load_terms(self.reducer.burden.loads)
 
     @cached_property
     def formulas(self) -> tuple[Sorted, ...]:

@@ -258,7 +258,7 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     for mass in burden.masses:
         inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
     moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for term in sort_load_terms(mechanism, burden.loads):
+    for term in sort_load_terms(burden.loads):
         along = term.effort.along(state)
         moments[term.sort] = moments[term.sort] + term.effort.strength(state) * along
     driven = driving.over(EXPRESSIONS, time, value, rate)

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
-from centrode.model.settings import DIGITS
 from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
 from centrode.report.document import report
 from centrode.report.files import FORMATS, check_formats, document, write_report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
-from centrode.report.variants.answer_sheet import Answers, answer_sheet, answers_of
+from centrode.report.variants.answers import answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, write_variants
+from centrode.study.variant_answers import VariantAnswers, read_answers
 from centrode.study.variant_results import spoken_variants
-from centrode.study.variant_tables import Table, read_variants
+from centrode.study.variant_tables import Table
 
 if TYPE_CHECKING:
     from centrode.present.spelled_tables import TableSpelling
-    from centrode.study.variant_results import VariantResults, VariantRow
+    from centrode.study.variant_results import VariantResults, VariantRow, Variants
 
 ANSWERS = "answers.json"
 
@@ -38,7 +38,7 @@ class VariantReport:
     @property
     def key(self) -> str:
         """All that the files depend on besides the variant."""
-        return json.dumps(["report", sorted(self.formats), self.language])
+        return json.dumps(["report and answers", sorted(self.formats), self.language])
 
     def __call__(self, results: VariantResults, folder: Path) -> None:
         """Write `report.html`, `report.pdf` and `answers.json`."""
@@ -52,7 +52,7 @@ class VariantReport:
             named = Report(title, made.subtitle, made.language, made.chapters)
             write_report(named, folder, self.formats)
             study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
-            text = json.dumps(answers_of(study), indent=1, ensure_ascii=False) + "\n"
+            text = answers_of(study).json_text()
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")
 
 
@@ -66,7 +66,7 @@ def write_variant_reports(
     language: str | None = None,
     progress: Progress | None = None,
     spelling: TableSpelling | None = None,
-) -> tuple[VariantRow, ...]:
+) -> Variants:
     """What `write_variants` writes, with a report for each variant and one sheet of answers.
 
     Parameters
@@ -79,8 +79,8 @@ def write_variant_reports(
 
     Returns
     -------
-    tuple of VariantRow
-        In the order of the table. The folder has `answers.html` and `answers.pdf` besides.
+    Variants
+        Rows in the order of the table, and answers. The folder has `answers.html` and `answers.pdf` besides.
 
     Raises
     ------
@@ -94,26 +94,24 @@ def write_variant_reports(
             document(
                 Report("", "", spoken), kind
             )  # what is not installed is told here, and not by every variant
-        variants = read_variants(topology, table)
-    rows = write_variants(
-        topology, table, folder, jobs, figures, progress, VariantReport(tuple(formats), spoken), spelling
-    )
+    more = VariantReport(tuple(formats), spoken)
+    variants = write_variants(topology, table, folder, jobs, figures, progress, more, spelling)
+    variants = replace(variants, answers=_answers(Path(folder), variants.rows))
     with speaking(spoken):
-        digits = topology.report.digits or DIGITS
-        answers = _answers(Path(folder), rows)
-        without = [row for row in rows if row.variant not in answers]
-        told = {row.variant: row for row in spoken_variants(topology, table, without)}
-        said = [told.get(row.variant, row) for row in rows]
-        sheet = answer_sheet(topology, variants, said, answers, digits)
-        write_report(sheet, folder, formats, name="answers")
-    return rows
+        write_report(answer_sheet(_spoken(variants)), folder, formats, name="answers")
+    return variants
 
 
-def _answers(folder: Path, rows: Sequence[VariantRow]) -> dict[str, Answers]:
+def _spoken(variants: Variants) -> Variants:
+    """The same with causes in the language that is spoken where there are no answers, which have them in it."""
+    without = tuple(row for row in variants.rows if row.variant not in variants.answers)
+    rows = {row.variant: row for row in spoken_variants(replace(variants, rows=without)).rows}
+    return replace(variants, rows=tuple(rows.get(row.variant, row) for row in variants.rows))
+
+
+def _answers(folder: Path, rows: Sequence[VariantRow]) -> dict[str, VariantAnswers]:
     """Answers by the names of the variants, of those that have any."""
-    found: dict[str, Answers] = {}
-    for row in rows:
-        file = folder / f"variant-{row.variant}" / ANSWERS
-        if file.is_file():
-            found[row.variant] = json.loads(file.read_text(encoding="utf-8"))
-    return found
+    files = {row.variant: folder / f"variant-{row.variant}" / ANSWERS for row in rows}
+    return {
+        name: read_answers(file.read_text(encoding="utf-8")) for name, file in files.items() if file.is_file()
+    }

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import json
 import multiprocessing
 import signal
@@ -26,11 +24,11 @@ from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, compute_variant
+from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, Variants, compute_variant
 from centrode.study.variant_tables import Table, Variant, read_variants
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
-from centrode.views import integrations, motion
+from centrode.views import motion
 
 # One variant computed into its folder: its files, and the marker that says that they are there.
 #
@@ -144,7 +142,7 @@ def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
     if figures:
         render.write_pictures(shown.pictures, folder, mechanism.display)
     if integration is not None:
-        sheet = integrations.sheet(IntegrationResults(mechanism, integration, study.motion))
+        sheet = sheet_of(IntegrationResults(mechanism, integration, study.motion))
         for name, table in sheet.tables.items():
             render.write_table(table, folder / f"{name}.csv", mechanism.display)
         if figures:
@@ -166,7 +164,7 @@ def write_variants(
     progress: Progress | None = None,
     more: WritesMore | None = None,
     spelling: TableSpelling | None = None,
-) -> tuple[VariantRow, ...]:
+) -> Variants:
     """Compute every variant of a table into a folder of its own, and sum them up in `summary.csv`.
 
     Parameters
@@ -184,8 +182,8 @@ def write_variants(
 
     Returns
     -------
-    tuple of VariantRow
-        In the order of the table.
+    Variants
+        Rows in the order of the table.
 
     Raises
     ------
@@ -198,24 +196,23 @@ def write_variants(
     spelling = spelling or PLAIN
     spelling.check()
     text = mechanism_text(topology)
+    given = read_variants(topology, table)
     tasks = [
-        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling)
-        for variant in read_variants(topology, table)
+        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling) for variant in given
     ]
     keep_inputs(folder / SUMMARY)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with hold_lock(folder / LOCK, str(folder)):
-            rows = _all(tasks, jobs, progress)
-            _write_summary(rows, folder, spelling)
-    return tuple(rows)
+            variants = Variants(topology, given, tuple(_all(tasks, jobs, progress)))
+            _write_summary(variants, folder, spelling)
+    return variants
 
 
-def _write_summary(rows: Sequence[VariantRow], folder: Path, spelling: TableSpelling) -> None:
+def _write_summary(variants: Variants, folder: Path, spelling: TableSpelling) -> None:
     """The summary as it is to be spelled, each of its files whole or not at all."""
     with draft_folder(folder) as draft:
-        (draft / SUMMARY).write_text(summary_text(rows), encoding="utf-8", newline="\n")
-        spelling.spell(draft)
+        render.write_tables(sheet_of(variants), draft, variants.mechanism.display, spelling)
         remove_file((folder / SUMMARY).with_suffix(".xlsx"))  # of an earlier run
 
 
@@ -261,16 +258,3 @@ def _prepare(read: Sequence[Input]) -> None:
     """Let the parent decide what an interruption means, and keep what it has read."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     carry_on(read)
-
-
-def summary_text(rows: Sequence[VariantRow]) -> str:
-    """The summary of all variants as CSV."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    unit = next((row.unit for row in rows if row.unit), "rad")
-    writer.writerow(["variant", "turns_fully", f"limit [{unit}]", "group", "cause", "status"])
-    words = {True: "yes", False: "no", None: ""}
-    for row in rows:
-        limit = "" if row.limit is None else repr(row.limit)
-        writer.writerow([row.variant, words[row.turns_fully], limit, row.group, row.cause, row.status])
-    return text.getvalue()

@@ -1,0 +1,95 @@
+"""The answers of a variant, from the results that its report is made of, and the sheet of all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode import render
+from centrode.errors import CentrodeError
+from centrode.kinematics.preparation import ready
+from centrode.locale import _, chosen_language, ngettext
+from centrode.model.settings import DIGITS
+from centrode.render.document.blocks import Report
+from centrode.render.document.chapters import document_chapter
+from centrode.render.document.numbers import Numbers
+from centrode.report.chapters.forces.results import reactions_at_instants
+from centrode.report.study import Moment, moments_of
+from centrode.study.rotation import rotation_of
+from centrode.study.variant_answers import InstantAnswers, VariantAnswers
+from centrode.topics.presentation import sheet_of
+from centrode.version import __version__
+
+if TYPE_CHECKING:
+    from centrode.report.study import ReportStudy
+    from centrode.study.variant_results import Variants
+
+OF_LINKS = ("angle", "angular_velocity", "angular_acceleration")
+ON_SPHERE = ("joint_angle", "joint_velocity", "joint_acceleration")
+OF_POINTS = ("velocity", "acceleration")
+
+
+def answer_sheet(variants: Variants) -> Report:
+    """Data, rotatability and the numbers at the instants of all variants, in the language that is spoken."""
+    topology = variants.mechanism
+    numbers, sheet = Numbers(topology.display, topology.report.digits or DIGITS), sheet_of(variants)
+    title = _("Answers: {topology}").format(topology=_(topology.title) or _("Mechanism"))
+    count = ngettext("{n} variant", "{n} variants", len(variants.rows)).format(n=len(variants.rows))
+    made = _("Computed by centrode {version}").format(version=__version__)
+    chapters = tuple(document_chapter(name, sheet, numbers) for name in sheet.chapters)
+    return Report(title, f"{count}. {made}", chosen_language(), chapters)
+
+
+def answers_of(study: ReportStudy) -> VariantAnswers:
+    """The answers of a mechanism, in the words of the language that is spoken."""
+    rotation, failure = rotation_of(ready(study.mechanism)), sheet_of(study.study).failure
+    return VariantAnswers(
+        rotation.turns_fully,
+        rotation.limit,
+        rotation.unit,
+        rotation.group,
+        rotation.cause,
+        rotation.causes,
+        study.check.mobility,
+        study.check.formula,
+        "" if failure is None else render.plain_text(failure.what, study.mechanism.display),
+        tuple(_at(study, moment) for moment in moments_of(study)),
+    )
+
+
+def _at(study: ReportStudy, moment: Moment) -> InstantAnswers:
+    """One instant: angles and rates of the links, speeds of the points, what the drives give."""
+    here = moment.data.isel(sample=moment.sample)
+    links: dict[str, tuple[float, ...]] = {}
+    points: dict[str, tuple[float, ...]] = {}
+    if moment.reached:
+        dimension, names = ("link", OF_LINKS) if study.is_planar else ("joint", ON_SPHERE)
+        for label in here[dimension].to_numpy().tolist():
+            links[label] = tuple(float(here[name].sel({dimension: label})) for name in names)
+        for point in study.mechanism.moving_points:
+            vectors = (here[name].sel(point=point).to_numpy() for name in OF_POINTS)
+            points[point] = tuple(float(np.linalg.norm(vector)) for vector in vectors)
+    return InstantAnswers(
+        moment.title,
+        moment.reached,
+        float(here["time"]),
+        tuple(here["drive_value"].to_numpy().tolist()),
+        links,
+        points,
+        _drives(study, moment) if moment.reached else {},
+    )
+
+
+def _drives(study: ReportStudy, moment: Moment) -> dict[str, float]:
+    """What each drive has to give, where masses or loads are there and reactions can be found."""
+    reactions = study.study.reactions
+    if reactions is None:
+        return {}
+    try:
+        here = reactions_at_instants(study).isel(sample=moment.sample)
+    except CentrodeError:
+        return {}
+    values = here["balancing"].to_numpy().tolist()
+    balancing = dict(zip(here["drive"].to_numpy().tolist(), values, strict=True))
+    return {name: value for name, value in balancing.items() if np.isfinite(value)}

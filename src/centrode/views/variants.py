@@ -1,0 +1,284 @@
+"""Variants of a topology: the table of a terminal and of a file, and the sheet of answers for the teacher."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.model.files import kind_at
+from centrode.model.units import KINDS
+from centrode.sheets.sheet import (
+    Block,
+    Chapter,
+    Column,
+    Deferred,
+    Failure,
+    Paragraph,
+    Section,
+    Sheet,
+    Table,
+)
+from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Text
+from centrode.views.instants import place_title
+from centrode.views.rotatability import cause_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from centrode.study.variant_answers import InstantAnswers
+    from centrode.study.variant_results import VariantRow, Variants
+
+STATUS_WORDS = {
+    "ok": Sentence("ok"),
+    "locks": Sentence("locks"),
+    "refused": Sentence("refused"),
+    "fault": Sentence("fault"),
+}
+WORDS = {True: Sentence("yes"), False: Sentence("no")}
+ABSENT = Number(nan, digits="")
+"""What is not known of a variant: a dash."""
+SHOWN = 5
+"""Causes shown together; all stand in the summary."""
+WIDE = 8
+"""Columns of numbers beside the variant that still fit across a page."""
+ROUNDING = 1e-12
+"""What is below this share of the greatest of its kind is zero."""
+
+
+def sheet(variants: Variants) -> Sheet:
+    """Whether each variant turns and why not; where there are answers, the numbers at the instants of all of them."""
+    counted = Counted("{n} variant", "{n} variants", len(variants.rows))
+    return Sheet(
+        printed=(_printed(variants), Paragraph(Joined((counted, _statuses(variants)), ": "))),
+        tables={"summary": _summary(variants)},
+        chapters=Deferred(
+            {
+                "variants": lambda: _data_chapter(variants),
+                "turning": lambda: _rotatability_chapter(variants),
+                **{
+                    f"instant-{instant.number + 1}": partial(_instant_chapter, variants, instant)
+                    for instant in _instants(variants)
+                },
+            }
+        ),
+        failure=_failure(variants),
+    )
+
+
+def _statuses(variants: Variants) -> Text:
+    """How many variants there are of each status."""
+    count = Counter(row.status for row in variants.rows)
+    return Joined(
+        [
+            Joined((word, Number(count[status], digits="d")), " ")
+            for status, word in STATUS_WORDS.items()
+            if count[status]
+        ]
+    )
+
+
+def _failure(variants: Variants) -> Failure | None:
+    """Why some were not computed."""
+    missing = [row for row in variants.rows if not row.is_computed]
+    if not missing:
+        return None
+    what = Counted("{n} variant was not computed", "{n} variants were not computed", len(missing))
+    causes = [Joined((Name(row.variant), Name(row.cause)), ": ") for row in missing[:SHOWN]]
+    return Failure(Joined((what, *causes), "\n"))
+
+
+def _names(rows: Sequence[VariantRow]) -> Column:
+    return Column("variant", tuple(Name(row.variant) for row in rows), head=Sentence("variant"))
+
+
+def _printed(variants: Variants) -> Table:
+    """The table of a terminal; limits in SI, as the summary has them."""
+    rows = variants.rows
+    limits = tuple(
+        NOTHING if row.limit is None else Number(row.limit, row.unit, ".9g", unit_fixed=True) for row in rows
+    )
+    turning = tuple(NOTHING if row.turns_fully is None else WORDS[row.turns_fully] for row in rows)
+    return Table(
+        (
+            _names(rows),
+            Column("turns_fully", turning, head=Sentence("turns fully")),
+            Column("limit", limits, head=Sentence("limit")),
+            Column("group", tuple(Name(row.group) for row in rows), head=Sentence("group")),
+            Column("status", tuple(STATUS_WORDS[row.status] for row in rows), head=Sentence("status")),
+        )
+    )
+
+
+def _summary(variants: Variants) -> Table:
+    """The table of a file, in SI and in English."""
+    rows = variants.rows
+    words = {True: Name("yes"), False: Name("no"), None: Name("")}
+    limits = np.array([nan if row.limit is None else row.limit for row in rows])
+    unit = next((row.unit for row in rows if row.unit), "rad")
+    return Table(
+        (
+            _names(rows),
+            Column("turns_fully", tuple(words[row.turns_fully] for row in rows)),
+            Column("limit", limits, unit, unit_fixed=True),
+            Column("group", tuple(Name(row.group) for row in rows)),
+            Column("cause", tuple(Name(row.cause) for row in rows)),
+            Column("status", tuple(Name(row.status) for row in rows)),
+        )
+    )
+
+
+# The sheet of answers: one row a variant.
+
+
+def _data_chapter(variants: Variants) -> Chapter:
+    """The numbers of the table; those that are the same throughout, as of a link and its drive, stand once."""
+    columns: dict[tuple[float, ...], Column] = {}
+    for path in dict.fromkeys(path for variant in variants.given for path in variant.values):
+        values = tuple(variant.values.get(path, nan) for variant in variants.given)
+        unit = KINDS[kind_at(variants.mechanism, path)].unit
+        columns.setdefault(values, Column(path, np.array(values), unit, Name(path)))
+    names = [variant.name for variant in variants.given]
+    return Chapter(
+        Sentence("Data of the variants"), (Section(NOTHING, tuple(_tables(names, list(columns.values())))),)
+    )
+
+
+def _tables(names: Sequence[str], columns: Sequence[Column]) -> Iterator[Table]:
+    """As many tables as keep to the width of a page."""
+    first = Column("variant", tuple(map(Name, names)), head=Sentence("variant"))
+    for start in range(0, len(columns), WIDE):
+        yield Table((first, *columns[start : start + WIDE]))
+
+
+def _rotatability_chapter(variants: Variants) -> Chapter:
+    """Whether each turns fully, where it locks and why; and which have no answers."""
+    rows = variants.rows
+    columns = (
+        _names(rows),
+        Column("turns_fully", tuple(_turning(row) for row in rows), head=Sentence("turns fully")),
+        Column("limit", tuple(_limit(row) for row in rows), head=Sentence("limit")),
+        Column("group", tuple(_group(variants, row) for row in rows), head=Sentence("group")),
+        Column("cause", tuple(_cause(variants, row) for row in rows), head=Sentence("cause")),
+        Column("status", tuple(STATUS_WORDS[row.status] for row in rows), head=Sentence("status")),
+    )
+    blocks: list[Block] = [Table(columns)]
+    missing = [Name(row.variant) for row in rows if row.variant not in variants.answers]
+    if missing:
+        blocks.append(
+            Paragraph(Sentence("No answers, for the causes above: {names}.", names=Joined(missing)))
+        )
+    return Chapter(Sentence("Rotatability"), (Section(NOTHING, tuple(blocks)),))
+
+
+def _turning(row: VariantRow) -> Text:
+    return ABSENT if row.turns_fully is None else WORDS[row.turns_fully]
+
+
+def _limit(row: VariantRow) -> Text:
+    return ABSENT if row.limit is None else Number(row.limit, row.unit, digits="")
+
+
+def _group(variants: Variants, row: VariantRow) -> Text:
+    """The group that locks, in the reader's language where the variant has answers."""
+    answers = variants.answers.get(row.variant)
+    return Name(row.group if answers is None else answers.group)
+
+
+def _cause(variants: Variants, row: VariantRow) -> Text:
+    """Why it locks; why it was refused, as that was written."""
+    answers = variants.answers.get(row.variant)
+    if answers is None:
+        return Name(row.cause)
+    return Joined([cause_text(cause) for cause in answers.causes], "; ") if answers.causes else Name("")
+
+
+@dataclass(frozen=True)
+class _InstantOfAll:
+    """An instant of the variants that have it, by their names."""
+
+    number: int
+    answers: Mapping[str, InstantAnswers]
+
+
+def _instants(variants: Variants) -> Iterator[_InstantOfAll]:
+    """Every instant at which some variant has numbers."""
+    names = [row.variant for row in variants.rows if row.variant in variants.answers]
+    for number in range(max((len(variants.answers[name].instants) for name in names), default=0)):
+        answers = {
+            name: variants.answers[name].instants[number]
+            for name in names
+            if number < len(variants.answers[name].instants)
+        }
+        if any(answer.links or answer.points or answer.drives for answer in answers.values()):
+            yield _InstantOfAll(number, answers)
+
+
+def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
+    """Links, points and drives at one instant."""
+    mechanism, answers = variants.mechanism, instant.answers
+    flat = mechanism.space == "plane"
+    links = {name: answer.links for name, answer in answers.items()}
+    points = {name: answer.points for name, answer in answers.items()}
+    speeds = (("v", "m/s"), ("a", "m/s^2")) if flat else (("v", "1/s"), ("a", "1/s^2"))
+    drives = [
+        table
+        for drive in mechanism.motion_parameter.drives
+        for table in _quantity(
+            {
+                name: {drive.name: answer.drives[drive.name]} if drive.name in answer.drives else {}
+                for name, answer in answers.items()
+            },
+            "M" if drive.force_unit == "N m" else "F",
+            drive.force_unit,
+        )
+    ]
+    sections = (
+        Section(
+            Sentence("Links") if flat else Sentence("Angles of the links, from their reference arcs"),
+            tuple(_orders(links, (("phi", "rad"), ("omega", "rad/s"), ("epsilon", "rad/s^2")))),
+        ),
+        Section(Sentence("Points"), tuple(_orders(points, speeds))),
+        Section(Sentence("What the drives must give"), tuple(drives)),
+    )
+    return Chapter(_title(variants, instant), tuple(section for section in sections if section.blocks))
+
+
+def _title(variants: Variants, instant: _InstantOfAll) -> Text:
+    """What all variants call an instant, else its number."""
+    titles = [
+        place_title(variants.mechanism, answer.values, answer.time) for answer in instant.answers.values()
+    ]
+    if all(title == titles[0] for title in titles):
+        return titles[0]
+    return Sentence("Instant {number}", number=Number(instant.number + 1, digits="d"))
+
+
+def _orders(
+    numbers: Mapping[str, Mapping[str, tuple[float, ...]]], quantities: Sequence[tuple[str, str]]
+) -> Iterator[Table]:
+    """Tables of a quantity and of its derivatives in time, each with its letter and its unit."""
+    for order, (letter, unit) in enumerate(quantities):
+        chosen = {
+            variant: {name: values[order] for name, values in of.items()} for variant, of in numbers.items()
+        }
+        yield from _quantity(chosen, letter, unit)
+
+
+def _quantity(numbers: Mapping[str, Mapping[str, float]], letter: str, unit: str) -> Iterator[Table]:
+    """Tables of a quantity of all links, points or drives, columns, for all variants, rows."""
+    names = list(dict.fromkeys(name for of in numbers.values() for name in of))
+    values = np.array([[of.get(name, nan) for of in numbers.values()] for name in names], dtype=float)
+    greatest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
+    # beside the others of its kind, not of its own column alone: a link that stands has rounding in its speed
+    values[np.abs(values) < ROUNDING * greatest] = 0.0
+    columns = [
+        Column(name, column, unit, Joined((Expression(letter), Name(name)), " "))
+        for name, column in zip(names, values, strict=True)
+    ]
+    yield from _tables(list(numbers), columns)
