@@ -45,7 +45,6 @@ from .kinematics.several_inputs.limits import Limits as Limits
 from .kinematics.several_inputs.region import reachable_region as reachable_region
 from .kinematics.several_inputs.region import region_results as region_results
 from .analysis.operation import principle_of_operation as principle_of_operation
-from .analysis.operation import PrincipleOfOperation as PrincipleOfOperation
 from .analysis.rotatability.rotatability import rotatability as rotatability
 from .analysis.rotatability.rotatability import Rotatability as Rotatability
 from .analysis.redesign.repair import repair as repair
