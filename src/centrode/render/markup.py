@@ -126,7 +126,8 @@ class MarkupPage(PlainSpelling):
                 return self._facts(facts)
             case Table():
                 heads, cells = table_cells(block, self)
-                return self.table(heads, cells)
+                caption = self.text(block.caption)
+                return (self.paragraph(caption) if caption else "") + self.table(heads, cells)
             case Items(texts, numbered):
                 return self.items([self.text(item) for item in texts], numbered)
             case Listing(heading, texts):
