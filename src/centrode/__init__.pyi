@@ -169,7 +169,6 @@ from .equations.integration import integrate as integrate
 from .equations.integration import integration_results as integration_results
 from .equations.integration import closed_motion as closed_motion
 from .study.variant_results import variants as variants
-from .study.variant_results import Variants as Variants
 from .study.variant_results import spoken_variants as spoken_variants
 
 # Many mechanisms

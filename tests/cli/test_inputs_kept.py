@@ -44,13 +44,14 @@ FILES: dict[str, tuple[str, tuple[str, ...]]] = {
     "rotatability": ("press.json", ()),
     "limits": ("press.csv", ()),
     "draw": ("press.svg", ("--samples", "3")),
+    "describe": ("press.md", ()),
     "export": ("press.xml", ("--mjcf",)),
 }
 """Commands that write one file, and its name."""
 STUDIES = {"sweep", "variants"}
 """Commands that read a study or a table beside a mechanism; tested below."""
 READ_NO_FILE = {"examples", "schema"}
-WRITE_NO_FILE = {"check", "describe"}
+WRITE_NO_FILE = {"check"}
 
 
 def described(command: str) -> str:

@@ -12,8 +12,8 @@ import pytest
 import centrode as ct
 from centrode import render
 from centrode.cli import output
+from centrode.dynamics import motion_results
 from centrode.kinematics.solve import Solved, solve
-from centrode.study import run
 
 Centrode = Callable[..., Any]
 LANGUAGES = ("ru", "uk")
@@ -54,7 +54,7 @@ def solved_once(solved: dict[tuple[str, bytes], Solved], monkeypatch: pytest.Mon
             solved[key] = solve(ready, span)
         return solved[key]
 
-    monkeypatch.setattr(run, "solve", look_up)
+    monkeypatch.setattr(motion_results, "solve", look_up)
 
 
 def latin_words(text: str, mechanism: ct.Mechanism) -> set[str]:
