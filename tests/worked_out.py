@@ -14,6 +14,7 @@ from centrode.equations.spelling import SymbolFormula
 from centrode.equations.symbols import Letter
 from centrode.kinematics.path import JETS
 from centrode.numerics.jets import Jet
+from samples import examples_at_hand
 
 Values = dict[Letter, Any]
 
@@ -74,4 +75,4 @@ def condition(found: Equations, values: Values) -> float:
 
 
 def planar_examples() -> list[str]:
-    return [name for name in ct.example_names() if ct.example(name).space == "plane"]
+    return [name for name in examples_at_hand(ct.example_names()) if ct.example(name).space == "plane"]

@@ -20,9 +20,9 @@ from centrode.kinematics.solve import solve
 from drawn import EPS, OPERATIONS, answers, errors, errors_of
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions
-from samples import few
+from samples import examples_at_hand, few
 
-PLANE = [name for name in ct.example_names() if ct.example(name).space == "plane"]
+PLANE = [name for name in examples_at_hand(ct.example_names()) if ct.example(name).space == "plane"]
 
 
 def an_instant(name: str) -> float:

@@ -109,7 +109,12 @@ def test_scalars_of_cams_are_told(name: str) -> None:
         for topic in TOPICS
         if topic.subject == "cam" and (topic.concerns is None or topic.concerns(cam))
     ]
-    scalars = [scalar for topic in topics for scalar in topic.view(topic.compute(cam)).scalars]
+    scalars = []
+    for topic in topics:
+        # what only files hold takes longest, and has no scalars
+        files = topic.command.complete if topic.command is not None else ""
+        result = topic.compute(cam, **({files: False} if files else {}))
+        scalars += topic.view(result).scalars
     assert [one for one in scalars if not one.startswith("chosen.") and f"`{one}`" not in EVERYTHING] == []
 
 

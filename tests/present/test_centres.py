@@ -18,8 +18,9 @@ from centrode.present.tags import Tag, write_tags
 from centrode.render.figures import figure_of
 from centrode.sheets.scenes import Scene
 from centrode.topics.presentation import sheet_of
+from samples import examples_at_hand
 
-PLANAR = [name for name in ct.example_names() if "space" not in ct.example_text(name)]
+PLANAR = [name for name in examples_at_hand(ct.example_names()) if "space" not in ct.example_text(name)]
 A5 = (8.27, 5.83)
 
 
