@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.locale import speaking
 from centrode.model.mechanism import Display
 from centrode.render.document.blocks import (
     ChapterBlocks,
@@ -20,7 +19,6 @@ from centrode.render.document.blocks import (
     TableBlock,
 )
 from centrode.render.document.numbers import Numbers
-from centrode.render.document.rows import small, told
 from centrode.render.document.scale import drawn_to_scale, scale_of
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.document.vectors import symbol
@@ -80,21 +78,6 @@ def test_nothing_in_a_name_is_code() -> None:
     for name in ("#panic(1)", "a$b", "B'", "точка 1", '"', "\\", "`x`", "@ref", "//", "_", "a/b"):
         check_formula(symbol("v", name))
         check_formula(DocumentSpelling(NUMBERS).mathematics(VectorNotation(f"v_{name} = v_A (⊥ {name})")))
-
-
-def test_sentences_take_the_report_s_digits_and_marks() -> None:
-    text = (
-        "least 19.8661835 deg at OA = 437.483983 deg, (1.23456789, -0.5) m, 6.2e-11 rad, links.AC.angle, v3"
-    )
-    assert told(text, NUMBERS) == (
-        "least 19.866° at OA = 437.48°, (1.2346; −0.5) m, 6.2·10⁻¹¹ rad, links.AC.angle, v3"
-    )
-    with speaking("uk"):
-        assert told("1.5 m", NUMBERS) == "1,5 m" and small(1.26e-9) == "1,3·10⁻⁹" and small(0.0) == "0"
-    assert told("sin(phi3 - phi12) = 0", NUMBERS) == "$sin (phi_(3) - phi_(12)) = 0$"
-    assert told("turns 10 deg/s", NUMBERS) == "turns 10 °/s"
-    assert told("a $ b", NUMBERS) == r"a \$ b"
-    assert told("123456.789 N", NUMBERS) == "123457 N"
 
 
 def test_what_stops_a_locking_mechanism_and_its_repair() -> None:
@@ -204,16 +187,3 @@ def test_names_of_all_kinds_are_shown_as_they_are() -> None:
         report(mechanism, ReportOptions(chapters=("data", "derivation", "graphic")), language="en")
     )
     assert document.startswith(b"%PDF")
-
-
-@pytest.mark.parametrize(
-    ("said", "told_as"),
-    [
-        ("sin(phi3 - phi4) = 0", "$sin (phi_(3) - phi_(4)) = 0$"),
-        ("sin(phi1 - psi_KA + 0.220829) = 0", '$sin (phi_(1) - psi_(italic("KA")) + "0,220829") = 0$'),
-        ("cos(-phi2 - 2 phi10) = 0", "$cos (-phi_(2) - 2 phi_(10)) = 0$"),
-    ],
-)
-def test_conditions_are_mathematics(said: str, told_as: str) -> None:
-    with speaking("ru"):
-        assert told(said, Numbers(Display())) == told_as

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from centrode.locale import speaking
 from centrode.model.settings import Display
-from centrode.render.document.numbers import MINUS, Numbers, respell, spelled_unit
+from centrode.render.document.numbers import MINUS, Numbers, spelled_unit
 
 FINITE = st.floats(-1e9, 1e9, allow_subnormal=False)
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -87,27 +87,6 @@ def test_the_decimal_mark_is_the_language_s() -> None:
         assert numbers().measured(0.5, "m") == "0,5\u202fm"
         assert numbers().math(0.5) == '"0,5"'
         assert numbers().column([0.5]) == ("0,50000",)
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("0.5 m", "0,5 m"),
-        ("-1.5e-07 mm/s^2", f"{MINUS}1,5·10⁻⁷ mm/s²"),
-        ("link O1A: 2.5", "link O1A: 2,5"),
-        ("P20 at (0.25, -3) m", f"P20 at (0,25, {MINUS}3) m"),
-        ("24 - 3 = 21", "24 - 3 = 21"),
-        ("-0 m", "0 m"),
-        ("2.5 N m", "2,5 N·m"),
-        ("3.1e-05 kg m^2 of it", "3,1·10⁻⁵ kg·m² of it"),
-        ("kg m^2", "kg·m²"),
-        ("link N m", "link N m"),
-        ("4 N more", "4 N more"),
-    ],
-)
-def test_numbers_inside_of_texts(text: str, told: str) -> None:
-    with speaking("ru"):
-        assert respell(text) == told
 
 
 def test_names_of_units() -> None:

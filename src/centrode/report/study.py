@@ -154,36 +154,14 @@ class ReportStudy:
         return isinstance(self.description, Cam | PlateCam)
 
     @property
-    def is_plate_cam(self) -> bool:
-        """Whether a cam is reported on that its follower's lift gives."""
-        return isinstance(self.description, PlateCam)
-
-    @property
     def is_planar(self) -> bool:
         """Whether a planar linkage is reported on."""
         return isinstance(self.description, Mechanism) and self.description.space == "plane"
 
     @property
-    def is_spherical(self) -> bool:
-        """Whether a spherical linkage is reported on."""
-        return isinstance(self.description, Mechanism) and self.description.space == "sphere"
-
-    @property
     def mechanism(self) -> Mechanism:
         """The linkage; chapters of cams do not ask."""
         assert isinstance(self.description, Mechanism)
-        return self.description
-
-    @property
-    def cam(self) -> Cam:
-        """The cam by a curvature law; other chapters do not ask."""
-        assert isinstance(self.description, Cam)
-        return self.description
-
-    @property
-    def plate(self) -> PlateCam:
-        """The cam by its follower's lift; other chapters do not ask."""
-        assert isinstance(self.description, PlateCam)
         return self.description
 
     @property

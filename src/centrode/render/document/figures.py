@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import textwrap
 from typing import Any
 
@@ -13,7 +14,6 @@ from centrode.present.figure_files import METADATA
 from centrode.present.spelled_figures import respell, spell_decimals
 from centrode.present.style import house_style
 from centrode.render.document.blocks import Picture
-from centrode.render.document.rows import degrees
 
 FLAT = 0.68
 """Height of curves by their width of which two, with their captions, find room on a page."""
@@ -21,6 +21,7 @@ PANELS = 3
 """Panels above each other that can still be read at that height."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12
 """Inches: a letter of a label, what titles and ticks take of a figure's height, and what is between panels."""
+DEGREES = re.compile(r"(?<=\d) deg\b(/?)|(?<=, )deg\b")
 
 
 def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
@@ -43,6 +44,11 @@ def spell_as_in_tables(figure: Figure) -> None:
     """Numbers with the decimal mark of the language, degrees by their sign."""
     spell_decimals(figure)
     respell(figure, degrees)
+
+
+def degrees(text: str) -> str:
+    """A text with "30 deg" and "30 deg/s" as "30°" and "30 °/s"."""
+    return DEGREES.sub(lambda found: f" °{found[1]}" if found[1] else "°", text)
 
 
 def _flatten(figure: Figure) -> None:

@@ -8,14 +8,7 @@ from collections.abc import Mapping, Sequence
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.model.settings import Display
 from centrode.render.document.numbers import Numbers
-from centrode.render.document.typst import LONG, TypstSpelling, in_degrees, quote, strip_brackets
-
-
-def with_unit(numbers: Numbers, value: float, unit: str) -> str:
-    """A quantity in SI with its unit, as mathematics."""
-    label = numbers.shown(unit)[1]
-    size = numbers.math(value, unit)
-    return f"{size} thin {quote(label)}" if label else size
+from centrode.render.document.typst import LONG, TypstSpelling, in_degrees, strip_brackets
 
 
 def in_si(numbers: Numbers) -> Numbers:

@@ -16,8 +16,6 @@ MINUS, NOTHING, ENDLESS, NARROW = "\u2212", "\u2014", "\u221e", "\u202f"
 MOST_DECIMALS = 7
 """Zeros behind the decimal mark that can still be read; beyond them numbers get a power of ten."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_NUMBER = re.compile(r"(?<![\w.,^'])(-?)(\d+(?:\.\d+)?)(?:e([+-]?\d+))?(?![\w'])")
-_PRODUCT = re.compile(r"(?:(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹] )|^)(k?N|kg) (?=(?:mm|m²|m|s)(?![\w']))")
 _UNIT_SIGNS = (("deg", "°"), ("um", "µm"))
 
 
@@ -27,16 +25,6 @@ def spelled_number(text: str) -> str:
     minus = MINUS if digits.startswith("-") and digits.strip("-0.") else ""
     digits = digits.removeprefix("-").replace(".", decimal_mark())
     return f"{minus}{digits}·10{str(int(power)).translate(_RAISED)}" if sign else f"{minus}{digits}"
-
-
-def respell(text: str) -> str:
-    """A text of numbers and units from elsewhere ("-0.5 mm/s^2"), spelled as in the rest of a report."""
-
-    def one(found: re.Match[str]) -> str:
-        power = f"e{found[3]}" if found[3] else ""
-        return spelled_number(found[1] + found[2] + power)
-
-    return _PRODUCT.sub(r"\1·", typeset_unit(_NUMBER.sub(one, text)))
 
 
 def spelled_unit(unit: str) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode import render
+from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.errors import CentrodeError
 from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, ngettext
@@ -14,7 +15,6 @@ from centrode.model.settings import DIGITS
 from centrode.render.document.blocks import Report
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
-from centrode.report.chapters.forces.results import reactions_at_instants
 from centrode.report.study import Moment, moments_of
 from centrode.study.rotation import rotation_of
 from centrode.study.variant_answers import InstantAnswers, VariantAnswers
@@ -83,13 +83,14 @@ def _at(study: ReportStudy, moment: Moment) -> InstantAnswers:
 
 def _drives(study: ReportStudy, moment: Moment) -> dict[str, float]:
     """What each drive has to give, where masses or loads are there and reactions can be found."""
-    reactions = study.study.reactions
-    if reactions is None:
+    if study.study.reactions is None:
         return {}
+    places = [place.at for place in moments_of(study)]
     try:
-        here = reactions_at_instants(study).isel(sample=moment.sample)
+        found = study.once("reactions at instants", lambda: reactions(study.mechanism, at=places))
     except CentrodeError:
         return {}
+    here = found.isel(sample=moment.sample)
     values = here["balancing"].to_numpy().tolist()
     balancing = dict(zip(here["drive"].to_numpy().tolist(), values, strict=True))
     return {name: value for name, value in balancing.items() if np.isfinite(value)}

@@ -1,1 +1,0 @@
-"""Chapters on what moves a mechanism and what its joints bear."""
