@@ -62,7 +62,8 @@ def test_chapters_of_linkages_are_none_of_cams(wheel: ReportStudy) -> None:
 
 
 def test_a_wrong_path_is_found(wheel: ReportStudy) -> None:
-    results = ct.roller_path_results(wheel.cam)
+    assert isinstance(wheel.description, ct.Cam)
+    results = ct.roller_path_results(wheel.description)
     data = results.dataset.copy(deep=True)
     data["pressure_sine"] = data["pressure_sine"] * (1.0 + 1e-9)
     chapter = document_chapter("path", sheet_of(replace(results, dataset=data)), wheel.numbers)

@@ -105,6 +105,11 @@ def indexing() -> ReportStudy:
     return study_of(ct.load_cam("indexing-cam"))
 
 
+def plate_of(study: ReportStudy) -> ct.PlateCam:
+    assert isinstance(study.description, ct.PlateCam)
+    return study.description
+
+
 @pytest.mark.parametrize("curve", list(LAWS))
 def test_printed_laws_are_the_laws(curve: str) -> None:
     """Every formula as it is printed, evaluated at 40 digits, against the law's jets and against its own function."""
@@ -253,7 +258,7 @@ def test_cycloidal_case_of_the_literature() -> None:
 
 def test_a_wrong_motion_is_found(indexing: ReportStudy, monkeypatch: pytest.MonkeyPatch) -> None:
     def formulas_check() -> CheckBlock:
-        return blocks_of(CHAPTERS["lift"].make(study_of(indexing.plate)), CheckBlock)[0]
+        return blocks_of(CHAPTERS["lift"].make(study_of(plate_of(indexing))), CheckBlock)[0]
 
     assert "The formulas, with numbers put in" in formulas_check().text and formulas_check().holds
     monkeypatch.setattr(motion_results, "shares_of", lambda curve, u: shares_of(curve, u) * (1 + 1e-11))
@@ -261,7 +266,7 @@ def test_a_wrong_motion_is_found(indexing: ReportStudy, monkeypatch: pytest.Monk
 
 
 def test_a_wrong_profile_is_found(indexing: ReportStudy) -> None:
-    body = ct.follower_cam(indexing.plate)
+    body = ct.follower_cam(plate_of(indexing))
     rounded = motion_results.ROUNDED * body.base_radius
     assert instant_centre_difference(body) <= rounded and profile_difference(body) <= rounded
     other = replace(body, touch=replace(body.touch, roller=body.touch.roller * (1 + 1e-11)))
@@ -315,7 +320,7 @@ def test_a_follower_that_jumps_is_told() -> None:
 
 
 def test_virtual_work_finds_a_wrong_torque(indexing: ReportStudy, monkeypatch: pytest.MonkeyPatch) -> None:
-    forces = follower_forces(indexing.plate)
+    forces = follower_forces(plate_of(indexing))
 
     def holds() -> bool:
         apart, size = virtual_work_difference(forces)
