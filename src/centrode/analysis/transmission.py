@@ -39,7 +39,6 @@ from centrode.structure.groups import (
     Rail,
     Rod,
     Slot,
-    Stop,
 )
 
 # Transmission angles on the sphere: between the arcs from a dyad's inner joint to the centres of its two
@@ -269,7 +268,7 @@ def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:
         # the arm's end moves square to it: that line and the guide are drawn in the velocity diagram
         arm = place(data, group.target) - place(data, group.pivot)
         return _acute(1j * arm, _guide_directions(data, numbers, group.link, group.guide))
-    if not isinstance(group, Meet) or any(isinstance(locus, Stop) for locus in group.loci):
+    if not isinstance(group, Meet) or group.has_stop:
         return None
     directions = list(_directions(data, numbers, group))
     if len(directions) != 2:

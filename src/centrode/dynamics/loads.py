@@ -313,17 +313,7 @@ class LoadDiagram:
 
 StoredLaw: TypeAlias = Weight | TorsionSpring | StraightSpring
 """What has a potential energy."""
-LoadLaw: TypeAlias = (
-    Constant
-    | Weight
-    | LoadFormula
-    | TorsionSpring
-    | StraightSpring
-    | Damper
-    | Friction
-    | Square
-    | LoadDiagram
-)
+LoadLaw: TypeAlias = StoredLaw | Constant | LoadFormula | Damper | Friction | Square | LoadDiagram
 
 
 # Loads as efforts: amounts along coordinates, and how great they are in a state.

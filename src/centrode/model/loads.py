@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Any, Literal, TypeAlias, assert_never
+from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, assert_never, get_args
 
 from pydantic import ConfigDict, PlainValidator, ValidationError
 
@@ -49,38 +49,36 @@ _OF_HINGE, _OF_SLIDER = ("radius", "fit", "pin"), ("length", "height")
 # a force in a point has a vector, one along a guide a value or a table
 _IN_POINT, _ALONG_GUIDE = ("vector", "axes", "while_moving"), ("value", "table")
 
-# kind -> keys that it needs, and keys that it may have; a tuple of alternatives needs exactly one of them.
-_ALTERNATIVES: dict[str, tuple[str, ...]] = {
-    "force": ("point", "guide"),
-    "torque": ("link",),
-    "spring": ("points", "link"),
-    "damper": ("points", "link"),
-    "weight": ("link", "point"),
-    "friction": ("link", "guide", "point"),
-}
-_NEEDED: dict[str, tuple[str, ...]] = {
-    "force": (),
-    "torque": ("value",),
-    "spring": ("stiffness",),
-    "damper": ("damping",),
-    "weight": (),
-    "friction": (),
-}
-_ALLOWED: dict[str, tuple[str, ...]] = {
-    "force": ("vector", "value", "table", "axes", "while_moving"),
-    "torque": ("relative_to", "axis"),
-    "spring": ("free_length", "free_angle", "relative_to", "axis"),
-    "damper": ("relative_to", "axis"),
-    "weight": ("value",),
-    "friction": (*FRICTION_SIZES, "form", "relative_to", "axis", *_OF_HINGE, *_OF_SLIDER),
+
+class LoadKeys(NamedTuple):
+    """Keys of a kind of load besides its name: exactly one of what it acts on, what it needs, what it may have."""
+
+    acts_on: tuple[str, ...]
+    needed: tuple[str, ...]
+    allowed: tuple[str, ...]
+
+
+_KEYS_OF: Mapping[str, LoadKeys] = {
+    "force": LoadKeys(("point", "guide"), (), ("vector", "value", "table", "axes", "while_moving")),
+    "torque": LoadKeys(("link",), ("value",), ("relative_to", "axis")),
+    "spring": LoadKeys(
+        ("points", "link"), ("stiffness",), ("free_length", "free_angle", "relative_to", "axis")
+    ),
+    "damper": LoadKeys(("points", "link"), ("damping",), ("relative_to", "axis")),
+    "weight": LoadKeys(("link", "point"), (), ("value",)),
+    "friction": LoadKeys(
+        ("link", "guide", "point"),
+        (),
+        (*FRICTION_SIZES, "form", "relative_to", "axis", *_OF_HINGE, *_OF_SLIDER),
+    ),
 }
 
 
 def load_key_problems(kind: str, given: Mapping[str, Any]) -> list[Problem]:
     """What is wrong with the keys of a load of a known kind; keys that are given as their defaults are not counted."""
     said = {key for key in given if given[key] != LOAD_DEFAULTS[key]}
-    alternatives, needed = _ALTERNATIVES[kind], _NEEDED[kind]
-    known = {"kind", "name", *alternatives, *needed, *_ALLOWED[kind]}
+    alternatives, needed, allowed = _KEYS_OF[kind]
+    known = {"kind", "name", *alternatives, *needed, *allowed}
     problems = [missing_key(key) for key in needed if key not in given]
     problems += [_foreign(key, kind) for key in LOAD_DEFAULTS if key in said and key not in known]
     acts_on = set(given) & set(alternatives)
@@ -152,7 +150,8 @@ def _of_coefficient(present: set[str], said: set[str]) -> list[Problem]:
 
 
 def _foreign(key: str, kind: str) -> Problem:
-    known = (*_ALTERNATIVES[kind], *_NEEDED[kind], *_ALLOWED[kind])
+    alternatives, needed, allowed = _KEYS_OF[kind]
+    known = (*alternatives, *needed, *allowed)
     what = _("{key} does not belong to a {kind}").format(key=value_text(key), kind=kind)
     return Problem(what, _("it has: {keys}").format(keys=", ".join(known)))
 
@@ -162,7 +161,7 @@ LOAD_VARIABLES = ("t", "q", "x", "v")
 
 Amount = float | str
 Kinds = Literal["force", "torque", "spring", "damper", "weight", "friction"]
-KINDS: tuple[Kinds, ...] = ("force", "torque", "spring", "damper", "weight", "friction")
+KINDS: tuple[Kinds, ...] = get_args(Kinds)
 
 Form = Literal["virtual work", "plain sum"]
 VIRTUAL_WORK: Form = "virtual work"
@@ -261,7 +260,7 @@ class Load(DescriptionPart):
 
     Attributes
     ----------
-    kind : "force", "torque", "spring", "damper", "weight" or "friction"
+    kind : one of `KINDS`
     name : str or None
         What results call it; left out, its kind and what it acts on.
     """

@@ -20,6 +20,9 @@ from centrode.model.reading import body_word
 from centrode.structure.constraints import Constraint, Contact, GearRatio, NoSlip
 
 # What gears and rolling wheels add to the groups of a plan: angles that follow, loci, trains.
+#
+# A locus answers for itself too: `letter` says whether it is a circle (R) or a line (P) in the plane, `is_input`
+# whether a drive sets it.
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,7 @@ class Touch:
     contact: Contact
     carried: bool
     letter: str
+    is_input = False
 
     @property
     def sentence(self) -> str:
@@ -64,6 +68,7 @@ class Rolloff:
     rolling: NoSlip
     carried: bool
     letter = "P"
+    is_input = False
 
     @property
     def sentence(self) -> str:
@@ -305,6 +310,7 @@ class Rod:
     centre: str
     link: str
     letter = "R"
+    is_input = False
 
     @property
     def sentence(self) -> str:
@@ -320,6 +326,7 @@ class Rail:
     guide: str
     on: str
     letter = "P"
+    is_input = False
 
     @property
     def sentence(self) -> str:
@@ -334,6 +341,7 @@ class Slot:
     point: str
     guide: str
     letter = "P"
+    is_input = False
 
     @property
     def sentence(self) -> str:
@@ -350,6 +358,7 @@ class Stop:
     on: str
     drive: str
     letter = "P"
+    is_input = True
 
     @property
     def sentence(self) -> str:
@@ -365,6 +374,7 @@ class CylinderCircle:
     centre: str
     drive: str
     letter = "R"
+    is_input = True
 
     @property
     def sentence(self) -> str:
@@ -414,7 +424,7 @@ class Meet:
         if self.circles or self.crosses_once:
             return bool(self.circles)
         # a stop is a single place already: nothing has to be chosen
-        return not any(isinstance(locus, Stop) for locus in self.loci)
+        return not self.has_stop
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -426,7 +436,12 @@ class Meet:
     def is_input(self) -> bool:
         """Whether a drive acts inside the group."""
         driven = isinstance(self.turning, Turning) and self.turning.drive is not None
-        return driven or any(isinstance(locus, (Stop, CylinderCircle)) for locus in self.loci)
+        return driven or any(locus.is_input for locus in self.loci)
+
+    @property
+    def has_stop(self) -> bool:
+        """Whether a drive gives the place on a line, so that nothing is left to meet."""
+        return any(locus.is_input and locus.letter == "P" for locus in self.loci)
 
     @property
     def sentence(self) -> str:

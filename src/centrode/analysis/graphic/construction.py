@@ -44,7 +44,6 @@ from centrode.structure.groups import (
     RigidPoint,
     Rod,
     Rolled,
-    Stop,
     Train,
     TurnedLink,
     Turning,
@@ -200,7 +199,7 @@ def _meet(stage: ConstructionStage, group: Meet) -> tuple[list[str], Triangle | 
             stage.bases[locus.link] = locus.centre
             stage.turns[locus.link] = stage.read(ray.length(rate)) / ray.arm
     # a drive's stop gives the rate outright: there is nothing to draw
-    if any(isinstance(locus, Stop) for locus in group.loci):
+    if group.has_stop:
         return [f"{letter(stage)}_{reference} = {_drive_words(rays)}"], None
     return [ray.equation(letter(stage), reference) for ray in rays], triangle
 
