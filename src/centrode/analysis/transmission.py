@@ -178,6 +178,9 @@ def _acute_between_lines(angles: Array) -> Array:
 
 def _passes(number: Array, other: Array) -> bool:
     """Whether a sine (or a cosine) passes zero between nodes at which the other keeps its side."""
+    # Between neighbouring nodes an angle turns by less than a quarter as a rule, so one of the two keeps its sign.
+    # Where both change, the signs do not tell which of them was passed. Zero at a node counts; NaN compares false, so
+    # nothing is passed beside a gap.
     return bool(((number[:-1] * number[1:] <= 0.0) & (other[:-1] * other[1:] > 0.0)).any())
 
 

@@ -134,6 +134,8 @@ def product(a: Coefficients, b: Coefficients) -> list[Number]:
     result = []
     for k in range(len(a)):
         total: Number = 0.0
+        # The order is a convention: it decides the last bits and nothing else (graphs of motions and of equations of
+        # motion have as many operations either way). It is kept, as compiled and plain formulas have the same bits.
         for i in range(k, -1, -1):
             if not (_is_zero(a[i]) or _is_zero(b[k - i])):
                 # the new product stays unnamed, so that NumPy adds in its place

@@ -403,8 +403,10 @@ class Expressed:
             folds += sum(len(self.slopes.states_of(fold.name).parts) for fold in self.folds.found.values())
         angles = 10 * len(self.judging.links)
         walked = 2 * len(self.judging.walk.state) if self.traced.steps else 0
-        # about ten numbers for each link's angle (jump, ends, extremes of each winding), two for each state
-        # of a walk: before and after a step
+        # With one drive a link's angle has nine numbers: itself, at the start, its greatest jump, the highest and the
+        # lowest of three windings; a further drive adds four. A state of a walk has two, before and after a step; a
+        # radicand two at most. The last two are the judges over all samples. Only the number of lanes follows from
+        # this, and that is `KERNEL_LANES` up to some 120 numbers.
         return len(self.varied.names) + folds + angles + walked + 2 * len(self.traced.radicands) + 2
 
 

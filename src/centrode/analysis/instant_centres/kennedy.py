@@ -354,6 +354,10 @@ class SphereSpots:
 
 
 def _geared_error(gear: PrimaryGearing, known: Sequence[ProjectivePoint]) -> float:
+    # The weights of both pivots are at most 1 + |ratio|. A unit vector that is off by e gives a place a that is off by
+    # (1 + |a|^2) e: 2 e at the rim of the mechanism, 4 e at 1.7 of its sizes from its middle. Greatest error of 60 000
+    # random cases over this without its 4: 1.9 within one size, 3.6 within 1.7, 9.3 within three, where pivots are not
+    # expected.
     return sum(centre.error for centre in known) * (1.0 + abs(gear.ratio)) * 4.0
 
 

@@ -374,6 +374,7 @@ def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechan
     """The description with its assembly said by sides, and initial angles as they are with the new dimensions."""
     groups = [group for group in prepared.structure.groups if group.signed]
     space = batch.kinematics.numbers.space
+    # with other dimensions the initial angles of before may be nearer to the other assembly: sides are said outright
     sides: dict[str, Any] = dict(mechanism.assembly.sides)
     for index, group in enumerate(prepared.structure.groups):
         # a side stated under either name of the group stays
@@ -384,9 +385,13 @@ def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechan
     assembly = mechanism.assembly.model_copy(update={"sides": FrozenMap(sides)})
     redesigned = mechanism.model_copy(update={"assembly": assembly})
     at = _positions(batch)
+    # The angle of a guided link, or of a link that carries a guide, fixes the constant angle between them, and that
+    # of a driven link where its drive starts: another number there would be another mechanism. All others are
+    # estimates, and are put to where the links are.
     guided = {guide.link for guide in mechanism.guides} | {guide.on for guide in mechanism.guides}
     driven = {drive.link for drive in mechanism.drives}
     for link in _links_with_angles(mechanism, groups):
+        # on the sphere an angle is measured from another link, and the rotor does not give it
         if link not in guided and link not in driven and mechanism.space == "plane":
             cosine, sine = (float(np.reshape(x, -1)[0]) for x in at.poses[link].rotor)
             redesigned = with_value(redesigned, f"links.{link}.angle", float(np.arctan2(sine, cosine)))

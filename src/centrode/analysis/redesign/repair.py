@@ -163,6 +163,11 @@ CORRECTIONS, ACTIVE = 4, 0.02
 """Small steps back to where all conditions hold, and how near to the target a condition counts for them."""
 ITERATIONS = 60
 CONTRACTIONS = 40
+# Tuned on the thirty variants of the course assignment. Of five of them, repaired to 10 degrees, the sizes are the
+# same to 1e-6 with half and double of CANDIDATES (38 % fewer, 81 % more evaluations in all) and with half of STARTS
+# (12 % fewer). Sectors are for turns with several low places: each has a condition of its own. Shells are for small
+# changes, which are wanted: an even spread of the box has few of them. The coarse nodes are every fourth fine one, so
+# a candidate that fails on them fails on all.
 
 SAID = 100
 """Progress is said every so many candidates."""

@@ -24,6 +24,10 @@ _optimize = functools.partial(importlib.import_module, "scipy.optimize")
 MOST_ROUNDS = 120
 POLISHED, POLISHES, MOST_TOPS = 6, 4, 12
 DIRECTIONS = np.exp(2j * np.pi * np.arange(8) / 8)
+# They decide the work; when it ends the gap between the bounds decides. Six random problems of two pairs over 180
+# instants took 5 to 7 linear programmes. Polished every third round instead of every sixth they took 4 to 7, every
+# twelfth up to 13, never up to 14. Half and double of POLISHES and MOST_TOPS, four and sixteen directions in place of
+# eight change that by one programme. MOST_ROUNDS is a bound that none of them came near.
 CLOSED = 1e-8
 """Gap between the bounds, over the answer's scale, at which it is found."""
 SOLVER = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}

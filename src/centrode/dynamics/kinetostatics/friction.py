@@ -232,10 +232,19 @@ EPSILON = 2.0**-52
 ROUNDING = 32.0
 """Roundings in one residual."""
 TRIES, TRIES_ON_BRANCH = 40, 8
+"""Steps of Newton's method from no friction on, where it may wander, and from a place foretold on the branch, where
+it converges at once or not at all."""
 STRIDE, SHORTEST = 0.25, 2.0**-9
 """Greatest step of s: this part of the s at which sizes could feed on themselves at the earliest, but no less."""
 LEAST_STEP = 2.0**-30
+"""Step of s at which the branch has ended: so exactly is the share of the coefficients known that still moves."""
 MOST_STEPS = 2000
+"""Steps in all: the shortest pass the whole of s in 512, the rest is for halvings."""
+# Measured on 3000 random laws of three sizes that feed on each other, half of them self-locking. Half and double of
+# TRIES, SHORTEST, ROUNDING and STRIDE change no outcome and no size; the work changes by -7 and +14 %, nothing,
+# nothing, +7 and -2 %. Neither do a LEAST_STEP of 2^-15 (44 % less) and of 2^-40 (29 % more). Four times STRIDE
+# changes two outcomes and a size: steps then leave the branch. Twice TRIES_ON_BRANCH costs 81 % more and changes one
+# outcome, as Newton's method is given time to reach another branch.
 
 
 class FrictionRule(IntEnum):

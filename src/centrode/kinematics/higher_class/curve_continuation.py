@@ -42,6 +42,8 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 End: TypeAlias = Literal["on", "limit", "lost"]
 
 HALVINGS, CLOSE = 60, 1e-13
+"""Steps of Newton's method between halvings, more than halving alone takes (53), and the change of the share of a piece
+at which a place ends: there it is only where Newton's method on the group's own equations starts."""
 
 
 @dataclass(frozen=True)
@@ -367,6 +369,13 @@ AT_A_STOP = 1e-6
 """A group that cannot be followed any further this close to a limit of one before it ends with that."""
 MOST = 400
 """Places a unit of the path, and in all at least, after which a group is given up."""
+# They are tuned for few places, not for exactness: every place is solved from its own equations. Of 22 random groups
+# (27 places each, in both senses) half and double of TARGET cost 5 % more and 2 % fewer places, half of TRUST 1 %
+# more, twice TRUST, half and double of CAUTIOUS and half of SHRINKING nothing. Positions differed by 3e-14 at most,
+# statuses and events not at all. Of the others: FIRST only has to be short, as steps grow twofold; STRAIGHT is 26
+# degrees, so the next plane is met at a steep angle; GREATEST keeps several pieces in a turn where a polynomial
+# foretells well by chance; LEAST is far above the rounding of a place; MOST, some 2900 strides for a turn, bounds
+# curves that wind for ever.
 
 
 @dataclass
