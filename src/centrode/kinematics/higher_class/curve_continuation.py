@@ -374,8 +374,8 @@ MOST = 400
 # more, twice TRUST, half and double of CAUTIOUS and half of SHRINKING nothing. Positions differed by 3e-14 at most,
 # statuses and events not at all. Of the others: FIRST only has to be short, as steps grow twofold; STRAIGHT is 26
 # degrees, so the next plane is met at a steep angle; GREATEST keeps several pieces in a turn where a polynomial
-# foretells well by chance; LEAST is far above the rounding of a place; MOST, some 2900 strides for a turn, bounds
-# curves that wind for ever.
+# foretells well by chance, and half of it costs 26 % more places (19 pairs of groups, positions the same to 2e-14);
+# LEAST is far above the rounding of a place; MOST, some 2900 strides for a turn, bounds curves that wind for ever.
 
 
 @dataclass
