@@ -62,14 +62,15 @@ def test_names_come_out_character_by_character(hostile: str, tmp_path: Path) -> 
     assert hostile in mechanism.link_names
     found = rotatability_results(mechanism, complete=True)
     assert found.repair is not None and found.repair.found
-    printed = ct.summary(ct.rotatability(mechanism))
+    rotatability = ct.rotatability(mechanism)
+    printed = ct.summary(rotatability)
     assert (
         f"CB and {hostile} fall in line, stretched out (C and D are 2 m apart): sin(phi3 - phi4) = 0"
         in printed
     )
     assert f"driven at {hostile}: " in printed and f"loop frame-{hostile}-CB-C" in printed
     assert f"\nlinks.{hostile}.angle  " in ct.summary(found.repair)
-    data = recorded(ct.rotatability(mechanism), tmp_path)
+    data = recorded(rotatability, tmp_path)
     assert data["limits"][0]["cause"].startswith(f"CB and {hostile} fall in line, stretched out")
     assert data["limits"][0]["condition"] == "sin(phi3 - phi4) = 0"
     for language, line in (("en", "fall in line"), ("ru", ""), ("uk", "")):
