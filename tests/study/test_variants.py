@@ -201,13 +201,6 @@ def test_an_interruption_loses_nothing(tmp_path: Path) -> None:
     assert contents(tmp_path) == contents(whole)
 
 
-def test_several_processes_write_the_same(tmp_path: Path) -> None:
-    three = [*TWO, {"variant": "c", "l2": -1.0}]
-    rows = ct.write_variants(WORKED, three, tmp_path / "one")
-    assert ct.write_variants(WORKED, three, tmp_path / "two", jobs=2) == rows
-    assert contents(tmp_path / "one") == contents(tmp_path / "two")
-
-
 def test_a_fault_is_told_and_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as broken:
 
