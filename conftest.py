@@ -12,18 +12,21 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Iterator
 from contextlib import nullcontext, redirect_stderr, redirect_stdout
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, settings
-from sybil import Example, Sybil
+from sybil import Document, Example, Region, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import centrode as ct
-from blank_canvas import blank_pictures
+from blank_canvas import blank_pictures, remember_mathematics
+from centrode.cams.parameter_choice.search import choose_cam
 from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
@@ -36,6 +39,7 @@ settings.register_profile(
     "explore", parent=settings.get_profile("house"), derandomize=False, max_examples=2000
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "house"))
+remember_mathematics()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -44,9 +48,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 OWN_PROCESS = ("README.md",)
-"""Pages whose commands are started as a reader starts them, pictures and all; those of the others run here."""
+"""Pages whose first command is started as a reader starts it, pictures and all; all others run here."""
 FEW_FRAMES = {"FRAMES": 6, "FRAMES_OF_A_STEP": 6, "FRAMES_OF_A_TURN": 6}
 """What `--animate` writes here where it would write 36 to 60; `centrode animate` is typed with its own numbers."""
+FEW_DESIGNS = (3,)
+"""How many points the front of a choice has here where it would have 15."""
 FILE_NAME = re.compile(r"# ([\w-]+\.toml)\n")
 
 
@@ -56,12 +62,13 @@ def run_console(example: Example) -> None:
     A command may end in `# exit N`; `...` stands for anything, runs of blanks are alike. A command with
     nothing below it may print what it likes.
     """
-    own_process = Path(example.path).name in OWN_PROCESS
+    first = Path(example.path).name in OWN_PROCESS and not example.namespace.get("_started")
     for part in re.split(r"^\$ ", example.parsed, flags=re.MULTILINE)[1:]:
         line, _end, printed = part.partition("\n")
         command, _sign, expected = line.partition("# exit ")
         assert command.startswith("centrode "), f"only centrode is run here, not {command}"
-        code, told = run_as_process(command) if own_process else run_here(command)
+        code, told = run_as_process(command) if first else run_here(command)
+        first, example.namespace["_started"] = False, True
         assert code == int(expected or 0), f"{command}\n{told}"
         agrees = doctest.OutputChecker().check_output(printed.strip() + "\n", told.strip() + "\n", LOOSELY)
         assert agrees or not printed.strip(), f"{command}\n{told}"
@@ -80,9 +87,9 @@ def run_as_process(command: str) -> tuple[int, str]:
 def run_here(command: str) -> tuple[int, str]:
     """What `run_as_process` returns, without the start of a process: about a second for each of a hundred commands.
 
-    Pictures are written blank, animations short: tests/cli and tests/present render them. The language and the
-    environment are afterwards what they were. Words are split as a shell splits them; what a shell would do more
-    than that is refused.
+    Pictures are written blank, animations and fronts are short, one process does the work of several: tests/cli and
+    tests/present render pictures and start processes. The language and the environment are afterwards what they
+    were. Words are split as a shell splits them; what a shell would do more than that is refused.
     """
     words = shlex.split(command, comments=True)
     unquoted = re.sub(r"'[^']*'|\"[^\"]*\"", "", command)
@@ -90,13 +97,14 @@ def run_here(command: str) -> tuple[int, str]:
     streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", newline="\n") for _stream in range(2)]
     with (
         mock.patch.multiple(animate, **FEW_FRAMES) if "--animate" in words else nullcontext(),
+        mock.patch.object(choose_cam, "__defaults__", FEW_DESIGNS),
         blank_pictures(),
         mock.patch.dict(os.environ, {"LANGUAGE": "en"}),
         redirect_stdout(streams[0]),
         redirect_stderr(streams[1]),
     ):
         try:
-            code = main(words[1:])
+            code = main(["1" if option == "--jobs" else word for option, word in pairwise(words)])
         finally:
             choose_language_of_process("en")
     for stream in streams:
@@ -131,6 +139,22 @@ def read_toml(example: Example) -> None:
     ct.check(mechanism)
 
 
+class PythonParser(PythonCodeBlockParser):
+    """Blocks of Python: their pictures are blank and their animations short, as those of commands are."""
+
+    def __call__(self, document: Document) -> Iterator[Region]:
+        for region in super().__call__(document):
+            evaluate = region.evaluator
+
+            def run(example: Example, evaluate: Any = evaluate) -> str | None:
+                with mock.patch.multiple(animate, **FEW_FRAMES), blank_pictures():
+                    said: str | None = evaluate(example)
+                return said
+
+            region.evaluator = run
+            yield region
+
+
 def enter_folder(namespace: dict[str, Any]) -> None:
     namespace["_home"], namespace["_folder"] = Path.cwd(), tempfile.mkdtemp()
     os.chdir(namespace["_folder"])
@@ -143,7 +167,7 @@ def leave_folder(namespace: dict[str, Any]) -> None:
 
 pytest_collect_file = Sybil(
     parsers=[
-        PythonCodeBlockParser(),
+        PythonParser(),
         CodeBlockParser("console", run_console),
         CodeBlockParser("toml", read_toml),
     ],

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 from typing import IO
 
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
 
 from centrode.present import figure_files
 from centrode.render.document import figures
@@ -41,6 +43,22 @@ def _write(target: str | IO[bytes], picture: bytes) -> None:
         Path(target).write_bytes(picture)
     else:
         target.write(picture)
+
+
+def remember_mathematics() -> None:
+    """Let matplotlib set each text of mathematics once: each canvas has a parser of its own, which knows no other's."""
+    parse = MathTextParser._parse_cached.__wrapped__  # type: ignore[attr-defined]
+    parsers: dict[str, MathTextParser] = {}
+
+    @lru_cache(4096)
+    def remembered(output: str, *text_and_font: object) -> object:
+        return parse(parsers[output], *text_and_font)
+
+    def parse_once(self: MathTextParser, *text_and_font: object) -> object:
+        parsers.setdefault(self._output_type, self)
+        return remembered(self._output_type, *text_and_font)
+
+    MathTextParser._parse_cached = parse_once  # type: ignore[method-assign]
 
 
 @contextmanager

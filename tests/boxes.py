@@ -12,8 +12,10 @@ INCH = 25.4
 Box: TypeAlias = tuple[str, Any]
 
 
-def boxes(figure: Figure) -> list[Box]:
-    """Every visible text with its lower left and upper right corner."""
+def boxes(figure: Figure | list[Box]) -> list[Box]:
+    """Every visible text with its lower left and upper right corner; those of a figure that was measured already."""
+    if isinstance(figure, list):
+        return figure
     canvas: Any = figure.canvas
     renderer = canvas.get_renderer()
     found = []
@@ -29,7 +31,7 @@ def shown(text: Text) -> bool:
     return text.axes is None or text in text.axes.texts or text.axes.axison
 
 
-def overlapping(figure: Figure) -> list[tuple[str, str]]:
+def overlapping(figure: Figure | list[Box]) -> list[tuple[str, str]]:
     """Pairs of texts that cover each other."""
     all_boxes = boxes(figure)
     return [
@@ -40,7 +42,7 @@ def overlapping(figure: Figure) -> list[tuple[str, str]]:
     ]
 
 
-def outside(figure: Figure) -> list[str]:
+def outside(figure: Figure, measured: list[Box] | None = None) -> list[str]:
     """Texts that the edge of the figure cuts."""
     size = np.array(figure.get_size_inches()) * INCH
-    return [text for text, box in boxes(figure) if (box[0] < 0).any() or (box[1] > size).any()]
+    return [text for text, box in measured or boxes(figure) if (box[0] < 0).any() or (box[1] > size).any()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import xarray
@@ -18,10 +18,15 @@ from centrode.views.motion import motion_pictures
 
 
 def motion_figures(
-    mechanism: ct.Mechanism, dataset: xarray.Dataset, instants: Sequence[float] = ()
+    mechanism: ct.Mechanism,
+    dataset: xarray.Dataset,
+    instants: Sequence[float] = (),
+    only: Collection[str] = (),
 ) -> dict[str, Figure]:
-    """The figures of a motion by name."""
-    return render.figures_of(motion_pictures(mechanism, dataset, instants), mechanism.display)
+    """The figures of a motion by name; all of them, or those of some names."""
+    pictures = motion_pictures(mechanism, dataset, instants)
+    chosen = {name: picture for name, picture in pictures.items() if not only or name in only}
+    return render.figures_of(chosen, mechanism.display)
 
 
 def columns_of(

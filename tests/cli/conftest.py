@@ -11,6 +11,7 @@ import pytest
 from blank_canvas import blank_pictures
 from centrode.cli.main import main
 from centrode.locale import choose_language
+from computed_once import computed_once
 
 FOUR_BAR = """\
 title = "Press"
@@ -86,6 +87,13 @@ def pictures(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
         return
     with blank_pictures():
+        yield
+
+
+@pytest.fixture(autouse=True)
+def shared() -> Iterator[None]:
+    """What reports and variants compute of a mechanism is computed once for all tests."""
+    with computed_once():
         yield
 
 

@@ -108,7 +108,6 @@ def test_without_figures(centrode: Centrode, cam: Path) -> None:
     assert sorted(path.name for path in (cam / "plain").iterdir()) == sorted(TABLES)
 
 
-@pytest.mark.drawn
 def test_a_follower_that_stalls_ends_with_3_and_is_written(centrode: Centrode, cam: Path) -> None:
     (cam / "cam.toml").write_text(CAM.replace("90 deg", "180 deg"))
     done = centrode("cam", "cam.toml", "--out", "result", "--samples", "37")

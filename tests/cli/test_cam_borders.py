@@ -24,7 +24,7 @@ def written(folder: Path, text: str) -> None:
 @pytest.mark.parametrize(
     "more",
     [
-        pytest.param("", marks=pytest.mark.drawn),
+        "",
         '[return]\nkind = "designed"\n',
         '[return]\nkind = "mirrored"\n',
         pytest.param(CONTACT, marks=pytest.mark.drawn),

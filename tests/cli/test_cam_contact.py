@@ -116,7 +116,10 @@ def test_the_chosen_description_computes(centrode: Centrode, pressed: Path) -> N
 
 
 @pytest.mark.drawn
-def test_the_figures_of_contact_and_choice(centrode: Centrode, pressed: Path) -> None:
+def test_the_figures_of_contact_and_choice(
+    centrode: Centrode, pressed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ct.choose_cam, "__defaults__", (8,))  # points of the front
     text = GIVEN.replace('minimise = "stress"', 'minimise = "stress"\ntrade_off = "size"')
     (pressed / "pressed.toml").write_text(text)
     done = centrode("cam", "pressed.toml", "--out", "made", "--samples", "7", "--dark")

@@ -121,7 +121,6 @@ def test_other_followers(
     assert all(one in done.out for one in said), done.out
 
 
-@pytest.mark.drawn
 def test_everything_is_written(centrode: Centrode, write: Callable[..., str], folder: Path) -> None:
     ezdxf = pytest.importorskip("ezdxf")
     done = centrode("cam", write(more=BOUNDS + TOOL), "--out", "out", "--samples", "37")

@@ -69,7 +69,6 @@ def test_centres_are_written(centrode: Centrode, folder: Path) -> None:
         np.testing.assert_array_equal(written["centre"], centres["centre"])
 
 
-@pytest.mark.drawn
 def test_the_usual_places(centrode: Centrode, folder: Path, four_bar: str) -> None:
     (folder / "press.toml").write_text(four_bar)
     assert "OA 1 rad (57.2958 deg)" in centrode("centres", "press.toml").out  # the initial position
@@ -130,7 +129,6 @@ def test_centrodes_are_written(centrode: Centrode, folder: Path) -> None:
     assert {row["status"] for row in table} == {"ok"}
 
 
-@pytest.mark.drawn
 def test_curvature_at_a_place_that_is_not_reached_ends_with_3(centrode: Centrode, folder: Path) -> None:
     arguments = ("--link", "CB", "--samples", "5", "--at", "1 rad", "--at", "2 rad", "--out", "r")
     done = centrode("centrodes", "slider-between-cranks-locked", *arguments)

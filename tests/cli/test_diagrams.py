@@ -24,7 +24,6 @@ def rows(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-@pytest.mark.drawn
 def test_the_worked_check(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "diagrams", "slider-between-cranks", "--at", "pi/2 rad", "--angle-step", "1 deg", "--out", "d"

@@ -14,7 +14,18 @@ Centrode = Callable[..., Any]
 
 def test_drawings_are_written(centrode: Centrode, tmp_path: Path) -> None:
     svg, dxf = tmp_path / "a.svg", tmp_path / "a.dxf"
-    words = ("draw", "six-bar-press", "--at", "120 deg", "--path", "all", "--centrodes", "AB")
+    words = (
+        "draw",
+        "six-bar-press",
+        "--at",
+        "120 deg",
+        "--path",
+        "all",
+        "--centrodes",
+        "AB",
+        "--samples",
+        "37",
+    )
     assert centrode(*words, "--out", svg).code == 0
     groups = [group.attrib["id"] for group in ET.parse(svg).getroot()]
     assert {"frame", "links", "hinges", "drive", "names", "paths", "centrodes", "title"} == set(groups)

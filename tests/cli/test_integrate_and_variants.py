@@ -277,13 +277,24 @@ def test_variants_refuse_wrong_formats(
     assert not (folder / "r").exists()
 
 
-def test_variants_in_processes_of_the_real_command(folder: Path, table: Path) -> None:
-    command = [sys.executable, "-m", "centrode", "variants", "t.csv", "--topology", "slider-between-cranks"]
+def test_variants_in_processes_of_the_real_command(centrode: Centrode, folder: Path, table: Path) -> None:
+    """Several processes say and write the same as one, byte by byte, of variants that are refused too."""
+    table.write_text(TABLE + "4;-1;1,9;3,5\n", encoding="utf-8")
+    words = ["variants", "t.csv", "--topology", "slider-between-cranks"]
     done = subprocess.run(
-        [*command, "--jobs", "2", "--out", "r"], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "3 variants: ok 2, locks 1" in done.stdout
+        [sys.executable, "-m", "centrode", *words, "--jobs", "2", "--out", "r"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    one = centrode(*words, "--out", "one")
+    assert done.returncode == one.code == 3
+    assert done.stderr == one.err
+    assert "4 variants: ok 2, locks 1, refused 1" in done.stdout
+    assert done.stdout.replace(f"r{os.sep}summary", f"one{os.sep}summary") == one.out
+    written = [
+        {file.relative_to(out): file.read_bytes() for file in Path(out).rglob("*") if file.is_file()}
+        for out in ("r", "one")
+    ]
+    assert written[0] == written[1]
 
 
 # words

@@ -14,6 +14,7 @@ from centrode import render
 from centrode.cli import output
 from centrode.dynamics import motion_results
 from centrode.kinematics.solve import Solved, solve
+from samples import examples_at_hand
 
 Centrode = Callable[..., Any]
 LANGUAGES = ("ru", "uk")
@@ -65,7 +66,7 @@ def latin_words(text: str, mechanism: ct.Mechanism) -> set[str]:
 
 @pytest.mark.usefixtures("solved_once")
 @pytest.mark.parametrize("language", LANGUAGES)
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", examples_at_hand(EXAMPLES))
 def test_runs_and_checks_speak_one_language(centrode: Centrode, name: str, language: str) -> None:
     mechanism = ct.example(name)
     for arguments in (["check", name], ["run", name, "--out", "r", "--no-figures", "--samples", "9"]):

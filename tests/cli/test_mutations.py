@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from centrode.cli.main import main
+from samples import few
 
 SECONDS = 60.0
 """A guard against hanging, of processor time: a triad over a hundred turns takes a fifth of it."""
@@ -111,7 +112,10 @@ def spoilt_examples(draw: st.DrawFn) -> str:
 
 
 @given(text=spoilt_examples())
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+@settings(
+    max_examples=few(40, 100),
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
 def test_spoilt_files_end_in_an_orderly_way(folder: Path, text: str) -> None:
     (folder / "spoilt.toml").write_text(text, encoding="utf-8", newline="")
     out, said, complained = folder / "result", io.StringIO(), io.StringIO()

@@ -125,7 +125,6 @@ def test_hinges_of_several_links_and_wheels_have_columns_of_their_own() -> None:
     assert slider[-1].kind is JointKind.GUIDE
 
 
-@pytest.mark.drawn
 def test_instants(centrode: Centrode, folder: Path) -> None:
     done = centrode("reactions", "six-bar-press", "--at", "120 deg", "--at", "2 rad", "--out", "at")
     assert (done.code, done.err) == (0, "")

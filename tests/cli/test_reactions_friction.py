@@ -93,7 +93,6 @@ samples = 5
 """
 
 
-@pytest.mark.drawn
 def test_losses_are_told_and_written(centrode: Centrode, folder: Path) -> None:
     (folder / "pump.toml").write_text(PUMP)
     done = centrode("reactions", "pump.toml", "--samples", 73, "--out", "result")

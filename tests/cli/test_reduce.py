@@ -75,7 +75,6 @@ def test_nothing_is_written_unless_asked(centrode: Centrode, folder: Path) -> No
     assert len(table) == 1 + 2 + 4 + 5
 
 
-@pytest.mark.drawn
 def test_several_drives(centrode: Centrode, folder: Path) -> None:
     (folder / "arm.toml").write_text(ARM)
     done = centrode("reduce", "arm.toml", "--samples", 5, "--out", "result")

@@ -181,7 +181,6 @@ def test_a_range_runs_backwards_and_below_zero(centrode: Centrode, folder: Path)
     assert drive == pytest.approx([math.pi / 18, -math.pi / 18], abs=1e-15)
 
 
-@pytest.mark.drawn
 def test_one_sample(centrode: Centrode, folder: Path) -> None:
     assert centrode("run", "kite", "--out", "r", "--samples", "1").code == 0
     assert len(rows_of(folder / "r")) == 1

@@ -56,7 +56,8 @@ class Copy:
 
     def __init__(self, root: Path) -> None:
         package = Path(ct.__file__).parent
-        shutil.copytree(package, root / "src" / "centrode", ignore=shutil.ignore_patterns("__pycache__"))
+        # with what Python has compiled: a changed module is compiled anew by its time, the others are not
+        shutil.copytree(package, root / "src" / "centrode")
         self.root = root
         self.environment = os.environ | {
             "PYTHONPATH": str(root / "src"),

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 import xarray
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from centrode.errors import Status
 from centrode.model.files import parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import QUANTITIES
+from shown_motion import motion_figures
 
 Array = NDArray[np.float64]
 Made = tuple[Mechanism, xarray.Dataset]
+Gallery = tuple[Mechanism, xarray.Dataset, Mapping[str, Figure]]
 
 PRESS = """
 title = "Six-bar press"
@@ -323,6 +327,18 @@ MAKERS: Mapping[str, Callable[..., Made]] = {
     "jansen": jansen,
     "five_bar": five_bar,
 }
+
+
+@functools.cache
+def gallery_of(name: str, locked: bool) -> Gallery:
+    mechanism, dataset = MAKERS[name](**({"locked": True} if locked else {}))
+    return mechanism, dataset, motion_figures(mechanism, dataset)
+
+
+@pytest.fixture
+def gallery() -> Callable[..., Gallery]:
+    """gallery("press"): a mechanism, its motion and its figures, made once for all tests that only look at them."""
+    return lambda name, locked=False: gallery_of(name, locked)
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -39,8 +40,8 @@ def test_the_front_and_its_parameters(found: ct.CamChoice) -> None:
     assert texts == ["best designs", "bound", "start, misses a bound", "chosen"]
 
 
-def test_without_a_front_there_is_no_figure(cam: ct.Cam) -> None:
-    assert ct.figures(ct.choose_cam(cam, front=False)) == {}
+def test_without_a_front_there_is_no_figure(found: ct.CamChoice) -> None:
+    assert ct.figures(dataclasses.replace(found, front=None)) == {}
 
 
 def test_the_chosen_design_lies_on_the_front(found: ct.CamChoice) -> None:

@@ -18,9 +18,16 @@ from centrode.present.tags import Tag, write_tags
 from centrode.render.figures import figure_of
 from centrode.sheets.scenes import Scene
 from centrode.topics.presentation import sheet_of
-from samples import examples_at_hand
+from samples import examples_at_hand, few
 
 PLANAR = [name for name in examples_at_hand(ct.example_names()) if "space" not in ct.example_text(name)]
+CROWDED = [
+    "andrews-squeezer", "antiparallelogram", "cam-driven-linkage", "cardan-gear", "elliptic-trammel", "excavator-arm",
+    "five-bar-two-drives", "fourth-class-group", "jansen-leg", "klann-leg", "planetary-gear-train", "rack-and-pinion",
+    "rolling-wheel-rod", "scissor-lift", "six-bar-press", "slider-between-cranks", "stephenson-six-bar",
+    "third-class-triad", "three-crank-parallelogram", "whitworth-quick-return",
+]  # fmt: skip
+"""Those with most names, and one of each kind of joint and of drive."""
 A5 = (8.27, 5.83)
 
 
@@ -55,7 +62,7 @@ def texts_of(figure: Figure) -> list[tuple[str, Any]]:
     return [(text.get_text(), text.get_window_extent(canvas.get_renderer())) for text in tags]
 
 
-@pytest.mark.parametrize("name", PLANAR)
+@pytest.mark.parametrize("name", few(CROWDED, PLANAR))
 def test_names_of_no_example_cover_each_other(name: str) -> None:
     results, _made, figure = position(name)
     boxes = texts_of(figure)

@@ -20,6 +20,7 @@ from centrode.present.drafting.board import BoardWords, Cover, Drawing, Ring, St
 from centrode.present.drafting.svg import MARGIN
 from centrode.present.drawing import NAME_POINTS
 from centrode.present.linkage_scene import scene_of
+from samples import examples_at_hand
 
 SVG = "{http://www.w3.org/2000/svg}"
 RINGS = 1e-9
@@ -37,9 +38,10 @@ EVERY_SIGN = (
     "planetary-hypocycloid", "rack-and-pinion", "rolling-wheel-rod", "scissor-lift-cylinder", "scotch-yoke",
     "six-bar-press", "slider-between-cranks-locked", "three-crank-parallelogram",
 )  # fmt: skip
+"""Of these a cylinder stands on the excavator too, so the slow one is drawn where all are asked for."""
 
 
-@pytest.mark.parametrize("name", EVERY_SIGN)
+@pytest.mark.parametrize("name", examples_at_hand(EVERY_SIGN))
 def test_every_planar_mechanism_is_drawn_clean(name: str, tmp_path: Path) -> None:
     mechanism = ct.example(name)
     if mechanism.space == "sphere":
@@ -198,7 +200,9 @@ def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:
         assert (tmp_path / f"a.{kind}").read_bytes() == (tmp_path / f"b.{kind}").read_bytes()
 
 
-def test_processes_that_hash_texts_differently_write_the_same_bytes(tmp_path: Path) -> None:
+def test_processes_that_hash_texts_differently_write_the_same_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     program = """
 import centrode as ct
 from centrode.cams.followers.manufacture import follower_outlines
@@ -208,14 +212,17 @@ ct.write_drawing_dxf(ct.mechanism_drawing(press, ct.motion(press, at=[0.0])), "d
 cam = ct.follower_cam(ct.example("valve-cam"))
 write_outlines_dxf(follower_outlines(cam), "profile.dxf")
 """
-    written = []
-    for seed in ("0", "4"):  # they put texts into sets in different orders
-        folder = tmp_path / seed
-        folder.mkdir()
-        environment = os.environ | {"PYTHONHASHSEED": seed}
-        subprocess.run([sys.executable, "-c", program], cwd=folder, env=environment, check=True)
-        written.append([(folder / name).read_bytes() for name in ("drawing.dxf", "profile.dxf")])
-    assert written[0] == written[1]
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    there.mkdir()
+    # they put texts into sets in different orders
+    seed = "4" if os.environ.get("PYTHONHASHSEED") != "4" else "0"
+    environment = os.environ | {"PYTHONHASHSEED": seed}
+    subprocess.run([sys.executable, "-c", program], cwd=there, env=environment, check=True)
+    monkeypatch.chdir(here)
+    exec(program, {})
+    for name in ("drawing.dxf", "profile.dxf"):
+        assert (here / name).read_bytes() == (there / name).read_bytes()
 
 
 def test_hostile_text_is_text(tmp_path: Path) -> None:

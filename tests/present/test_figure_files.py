@@ -25,10 +25,9 @@ def test_files_repeat_their_bytes(make, tmp_path):
     for folder in ("one", "two"):
         (tmp_path / folder).mkdir()
         mechanism, dataset = make("press", samples=31)
-        figures = motion_figures(mechanism, dataset)
-        chosen = {name: figures[name] for name in ("mechanism", "velocities")}
-        written.append(present.save_figures(chosen, tmp_path / folder))
-        present.save_figures(chosen, tmp_path / folder)
+        figures = motion_figures(mechanism, dataset, only=["mechanism", "velocities"])
+        written.append(present.save_figures(figures, tmp_path / folder))
+        present.save_figures(figures, tmp_path / folder)
     assert [path.name for path in written[0]] == [
         "mechanism.png",
         "mechanism.svg",
@@ -44,7 +43,7 @@ def test_the_users_settings_are_left_alone_and_do_not_matter(make):
     mechanism, dataset = make("worked", samples=11)
     with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0}):
         before = matplotlib.rcParams.copy()
-        figures = motion_figures(mechanism, dataset)
+        figures = motion_figures(mechanism, dataset, only=["angles", "mechanism"])
         assert matplotlib.rcParams.copy() == before
     assert lines(figures["angles"], "OA")[0].get_linewidth() == 1.5
 
@@ -52,7 +51,7 @@ def test_the_users_settings_are_left_alone_and_do_not_matter(make):
 def test_figures_speak_the_chosen_language(make, monkeypatch):
     monkeypatch.setattr(locale._catalogue, "gettext", lambda message: f"«{message}»", raising=False)
     mechanism, dataset = make("worked", samples=11)
-    figures = motion_figures(mechanism, dataset)
+    figures = motion_figures(mechanism, dataset, only=["angles"])
     assert figures["angles"].get_suptitle().startswith("«Angles of the links»")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from samples import examples_at_hand
 
 mujoco = pytest.importorskip("mujoco", reason="models are tried in MuJoCo")
 
@@ -60,7 +61,7 @@ def test_the_driven_motion_is_ours(name: str) -> None:
     assert np.abs(np.array(places) - ours).max() <= AMPLIFIED * left + 1e-12 * size
 
 
-@pytest.mark.parametrize("name", (*FULL_TURN, *ELSEWHERE))
+@pytest.mark.parametrize("name", examples_at_hand((*FULL_TURN, *ELSEWHERE)))
 def test_loops_close_at_the_assembled_pose(name: str) -> None:
     mechanism, text = model_of(name)
     model = mujoco.MjModel.from_xml_string(text)

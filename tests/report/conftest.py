@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from blank_canvas import blank_pictures
+from computed_once import computed_once
 
 
 @pytest.fixture(autouse=True)
@@ -14,4 +15,11 @@ def pictures(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
         return
     with blank_pictures():
+        yield
+
+
+@pytest.fixture(autouse=True)
+def shared() -> Iterator[None]:
+    """What reports and variants compute of a mechanism is computed once for all tests."""
+    with computed_once():
         yield

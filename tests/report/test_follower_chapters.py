@@ -19,6 +19,7 @@ from centrode.cams.followers.motion import FollowerMotion
 from centrode.cams.followers.profile_results import instant_centre_difference, profile_difference
 from centrode.laws import CURVES as LAWS
 from centrode.laws import LawSegment, SegmentedLaw
+from centrode.render.document import cam_player
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
@@ -193,6 +194,13 @@ def test_letters_of_printed_formulas(follower: str, turn: str) -> None:
             )
 
 
+@pytest.fixture
+def short_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The player of a cam has few pictures: that they are right is looked at with all of them, below."""
+    monkeypatch.setattr(cam_player, "TURN", 12)
+
+
+@pytest.mark.usefixtures("short_turn")
 @pytest.mark.parametrize("follower", list(FOLLOWERS))
 def test_every_follower_has_all_chapters(follower: str) -> None:
     turn = "clockwise" if "with" in follower else "counter-clockwise"
@@ -207,8 +215,8 @@ def test_every_follower_has_all_chapters(follower: str) -> None:
         assert failed == [], name
 
 
-@pytest.mark.drawn
-@pytest.mark.parametrize("name", ["valve-cam", "indexing-cam"])
+@pytest.mark.usefixtures("short_turn")
+@pytest.mark.parametrize("name", [pytest.param("valve-cam", marks=pytest.mark.drawn), "indexing-cam"])
 def test_chapters_of_the_examples(name: str) -> None:
     report = ct.report(ct.load_cam(name))
     assert [chapter.name for chapter in report.chapters] == list(NAMES)
@@ -274,6 +282,7 @@ def test_a_wrong_profile_is_found(indexing: ReportStudy) -> None:
     assert np.abs(monkey - body.contact(np.array([1.0])).place).max() > rounded * 1e-3
 
 
+@pytest.mark.usefixtures("short_turn")
 def test_an_undercut_profile_is_told() -> None:
     cam = ct.load_cam("valve-cam")
     steep = cam.model_copy(update={
@@ -404,6 +413,7 @@ def test_chapters_of_linkages_are_none_of_follower_cams(valve: ReportStudy) -> N
     assert [key for key in sorted(others) if CHAPTERS[key].make(valve) is not None] == []
 
 
+@pytest.mark.usefixtures("short_turn")
 def test_same_input_same_bytes(tmp_path: object) -> None:
     del tmp_path
     first, second = (

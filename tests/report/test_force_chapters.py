@@ -194,7 +194,6 @@ def test_reactions_that_cannot_be_had_fail_only_where_they_are_asked_for() -> No
     assert "plain sum" in asked.missing
 
 
-@pytest.mark.drawn
 def test_decimals_and_minus_signs_of_the_language() -> None:
     english = re.compile(r"\d\.\d")
     ascii_minus = re.compile(r"(?<![\w–])-\d")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
+from centrode.cams.followers.geometry import FollowerCam
 from centrode.present.animations.cams import FollowerLayer
 from centrode.present.animations.layers import Layer, View, follower_captions, instant_captions, scene_of_film
 from centrode.present.animations.linkages import LinksLayer
@@ -52,8 +54,13 @@ def cam_of(name: str, turn: str = "counter-clockwise") -> ct.PlateCam:
     return found
 
 
+@functools.cache
+def body_of(name: str, turn: str) -> FollowerCam:
+    return ct.follower_cam(cam_of(name, turn))
+
+
 def layer_of(name: str, turn: str = "counter-clockwise") -> FollowerLayer:
-    return FollowerLayer(ct.follower_cam(cam_of(name, turn)), math.tau * np.arange(FRAMES) / FRAMES, 1e3)
+    return FollowerLayer(body_of(name, turn), math.tau * np.arange(FRAMES) / FRAMES, 1e3)
 
 
 def drawn(layer: Layer, frame: int) -> Axes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from itertools import pairwise
 from pathlib import Path
@@ -30,14 +31,19 @@ from centrode.present.animations.vectors import (
     share_scale,
 )
 from centrode.present.style import house_style
-from centrode.study.animation_frames import Film, course_from, course_of, film_from, film_of
+from centrode.study.animation_frames import Course, Film, course_from, course_of, film_from, film_of
 
 EPS = float(np.finfo(float).eps)
 EVERYTHING = Shown(tuple(sorted(set(MAKERS) - {"forces", "loads"})))
 
 
+@functools.cache
+def course(name: str) -> Course:
+    return course_of(ct.example(name))
+
+
 def film(name: str, frames: int = 8) -> Film:
-    return film_of(course_of(ct.example(name)), frames)
+    return film_of(course(name), frames)
 
 
 def drawn(layer: Layer, frame: int) -> Axes:
