@@ -60,7 +60,6 @@ from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
 from .analysis.transmission import transmission_results as transmission_results
-from .study.run import study as study
 from .dynamics.motion_results import MotionResults as MotionResults
 from .kinematics.check import MechanismCheck as MechanismCheck
 
@@ -187,7 +186,6 @@ from .topics.presentation import Result as Result
 from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
-from .render.netcdf import write_motion_netcdf as write_motion_netcdf
 from .study.among import motion_among as motion_among
 from .study.among import moving_points as moving_points
 from .present import mechanism_drawing as mechanism_drawing

@@ -22,7 +22,13 @@ from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import PlanePose, Vector, reversed_rotor, rotate_vector, subtract
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, vocabulary_variable
+from centrode.kinematics.motion import (
+    attributes_of,
+    coordinates_of,
+    judgements_of,
+    labels_of,
+    vocabulary_variable,
+)
 from centrode.kinematics.path import JETS, SampleGrid, grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import start_of
@@ -108,7 +114,8 @@ def curvature(
     kept = {name: coordinates[name] for name in ("time", "drive_value", "drive", "axis")}
     variables["status"] = judgements_of(solved, ())["status"]
     coordinate = {"point": labels_of(tuple(own)), "coefficient": labels_of(("a", "b"))}
-    return xr.Dataset(variables, coords=kept | coordinate, attrs={"link": link, "against": against})
+    facts = attributes_of(solved, "centrodes") | {"link": link, "against": against}
+    return xr.Dataset(variables, coords=kept | coordinate, attrs=facts)
 
 
 def _source_mechanism(

@@ -470,7 +470,7 @@ def _body(cam: PlateCam) -> FollowerCam:
             what = _("no bound decides the base radius: a cam as small as one likes keeps them all")
             raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
         base = least.base_radius
-    return layout.cam(motion, base)
+    return replace(layout.cam(motion, base), cam=cam)
 
 
 def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:

@@ -643,8 +643,8 @@ def _facts(cam: PlateCam, forces: FollowerForces) -> dict[str, Any]:
     }
     if forces.modulus is not None and forces.width is not None:
         extremes["greatest_stress"] = forces.greatest_stress
-    facts: dict[str, Any] = {"title": cam.title, "cam": cam_text(cam), "version": __version__}
-    facts |= {"speed": forces.speed, "led": int(forces.led)}
+    facts: dict[str, Any] = {"topic": "follower-forces", "title": cam.title, "cam": cam_text(cam)}
+    facts |= {"version": __version__, "speed": forces.speed, "led": int(forces.led)}
     for name, one in extremes.items():
         facts |= {name: one.value, f"{name}_at": one.angle}
     if cam.bounds.stress is not None:

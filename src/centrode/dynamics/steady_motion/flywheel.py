@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from centrode.dynamics.steady_motion.coursework_method import needed_by_source
 from centrode.dynamics.steady_motion.speed import MeanSpeed, Tangents, with_inertia
@@ -111,6 +111,7 @@ class Flywheel:
 
     Attributes
     ----------
+    mechanism : the machine
     mean : "middle" or "time"
         What the mean speed is: half of greatest plus least, or turns over time.
     mean_speed, fluctuation : float [rad/s], [1]
@@ -144,6 +145,7 @@ class Flywheel:
         `inertia` is what these sizes really have.
     """
 
+    mechanism: Mechanism = field(repr=False, compare=False)
     mean: MeanSpeed
     mean_speed: float
     fluctuation: float | None
@@ -219,6 +221,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
     # by the energy equation for this inertia alone, not by the tangents that gave it
     checked = with_inertia(found.speed.balance, machine.mean_speed, found.speed.inertia, found.kind)
     common = Flywheel(
+        mechanism=found.prepared.mechanism,
         mean=found.kind,
         mean_speed=machine.mean_speed,
         fluctuation=machine.fluctuation,

@@ -218,7 +218,7 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
             )
     coordinates = coordinates_of(solved)
     coordinates["drive_2"] = labels_of(tuple(coefficients.units))
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "run"))
 
 
 def most_samples(solved: Solved) -> int:
