@@ -16,7 +16,10 @@ from centrode.cams.cam import cam_routes
 from centrode.cams.followers.geometry import FollowerCam
 from centrode.cams.followers.motion_results import follower_motion_results, motion_law_results
 from centrode.cams.results import shoe_profile
+from centrode.dynamics.bearings.results import reaction_results
 from centrode.dynamics.motion_results import study
+from centrode.dynamics.reduction_results import reduction_results
+from centrode.dynamics.simulation.results import simulation_results
 from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset, write_dataset
 from centrode.sheets.sheet import Column
 from centrode.topics.presentation import RESTORED, VALUES, is_result, restored_result
@@ -34,9 +37,7 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
     "angles": lambda: ct.transmission_angles(PRESS, 37),
     "reduce": lambda: ct.reduce(PRESS, 37),
     "flywheel": lambda: ct.steady_motion(PRESS, 37),
-    "simulate": lambda: (
-        ct.simulation_results(ct.example("six-bar-press-run-up"), 9, duration="1 s").simulation
-    ),
+    "simulate": lambda: simulation_results(ct.example("six-bar-press-run-up"), 9, duration="1 s").simulation,
     "reactions": lambda: ct.reactions(PRESS, 37),
     "shaking": lambda: ct.shaking(PRESS, 37),
     "centres": lambda: ct.instant_centres(ct.motion(PRESS, at=[2.0, 3.0])),
@@ -140,15 +141,15 @@ def test_coefficients_and_curvature_are_parts_of_results() -> None:
 
 
 def test_the_whole_result_and_its_dataset_say_the_same() -> None:
-    results = ct.reaction_results(PRESS, 37)
+    results = reaction_results(PRESS, 37)
     assert ct.summary(results) == ct.summary(results.reactions)
-    reduced = ct.reduction_results(PRESS, 37)
+    reduced = reduction_results(PRESS, 37)
     assert ct.summary(reduced) == ct.summary(reduced.reduction)
 
 
 def test_reactions_at_single_places_have_no_bearing_loads() -> None:
     single = ct.reactions(PRESS, at=[2.0])
-    assert ct.summary(single) == ct.summary(ct.reaction_results(PRESS, at=[2.0]))
+    assert ct.summary(single) == ct.summary(reaction_results(PRESS, at=[2.0]))
 
 
 def test_a_simulation_says_by_which_settings_it_ran() -> None:

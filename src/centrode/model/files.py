@@ -6,17 +6,21 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import tomli_w
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.cam import Cam, vary_cam
 from centrode.model.description import Description
+from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
 from centrode.model.toml import is_cam, parse_tables, toml_tables
+
+AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
 
 # A mechanism as the tables of its file, with only what differs from the defaults.
 
@@ -108,7 +112,7 @@ Spot = tuple[Any, Any]
 
 
 def value_at(mechanism: Mechanism, path: str) -> float:
-    """Number [SI] at a path; raises InputError where there is none.
+    """Number [SI] of a mechanism at a path; raises InputError where there is none.
 
     `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate of a
     link whose points have coordinates. On the sphere, coordinates are `longitude` and `latitude`.
@@ -128,14 +132,16 @@ def value_at(mechanism: Mechanism, path: str) -> float:
     return float(value)
 
 
-def with_value(mechanism: Mechanism, path: str, value: float | str) -> Mechanism:
-    """The mechanism with another number, or text with a unit, at a path.
+def with_value(description: AnyDescription, path: str, value: float | str) -> AnyDescription:
+    """The mechanism, or the cam, with another number, or text with a unit, at a path.
 
     What was `placed` stays where it is, unless it is what the path names (then it counts as given from
     now on); `replace_placed` places anew. Raises InputError where there is no such path, or where the
     value does not fit.
     """
-    return with_values(mechanism, {path: value})
+    if isinstance(description, Mechanism):
+        return with_values(description, {path: value})
+    return vary_cam(description, {path: value})
 
 
 def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mechanism:

@@ -534,7 +534,7 @@ PLAN = Topic(
 
 DIAGRAMS = Topic(
     name="diagrams",
-    compute=Lazily("centrode.analysis.graphic.results", "graphic_results"),
+    compute=Lazily("centrode.analysis.graphic.results", "graphic_analysis"),
     result=Lazily("centrode.analysis.graphic.results", "GraphicResults"),
     view=Lazily("centrode.views.graphic", "sheet"),
     concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
@@ -696,7 +696,7 @@ GIVEN_MASSES = Topic(
 
 BASE_RADIUS = Topic(
     name="base-radius",
-    compute=Lazily("centrode.cams.followers.base_radius_results", "base_radius_results"),
+    compute=Lazily("centrode.cams.followers.base_radius_results", "choose_base_radius"),
     result=Lazily("centrode.cams.followers.base_radius_results", "BaseRadiusResults"),
     view=Lazily("centrode.views.base_radius", "sheet"),
     concerns=Lazily("centrode.cams.followers.base_circle", "has_size"),

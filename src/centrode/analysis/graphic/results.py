@@ -32,7 +32,7 @@ class GraphicResults:
     checks: tuple[GraphicCheck | CentrodeError | None, ...]
 
 
-def graphic_results(
+def graphic_analysis(
     mechanism: Mechanism,
     *,
     instants: Sequence[float] = (),

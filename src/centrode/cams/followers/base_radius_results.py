@@ -86,7 +86,7 @@ class SizedCam:
     bend: float = math.nan
 
 
-def base_radius_results(
+def choose_base_radius(
     cam: AnyCam, samples: int | None = None, *, instants: Sequence[float] | None = None
 ) -> BaseRadiusResults:
     """What decides the base radius of a cam with a follower.
