@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PLACED = (Status.OK, Status.CUT_OFF, Status.SINGULAR)
 """Statuses of samples that have a position."""
 REQUIRE_CENTRES = Lazily("centrode.analysis.instant_centres.results", "require_centres")
-KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
+KINDS = {".dxf": library.write_drawing_dxf, ".svg": library.write_drawing_svg}
 
 
 @click.command(help=mark("Draw a mechanism at full size in conventional signs."))
@@ -93,7 +93,7 @@ def draw(
             course,
         )
     with output.output_file(out, force=force) as draft:
-        getattr(ct, KINDS[kind])(drawing, draft)
+        KINDS[kind](drawing, draft)
     click.echo(_("wrote {file}").format(file=out))
     if Status(int(motion["status"][sample])) not in PLACED:
         raise MotionError(
