@@ -71,6 +71,13 @@ def cam(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None
     ------
     InputError
         As `path_of`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> path = ct.cam(ct.example("cam-from-curvature"), 37)
+    >>> print(ct.summary(path).splitlines()[5])
+    radius ρ                      50 mm at 0 deg to 61.0092 mm at 79.1402 deg
     """
     phi = angles_of(cam, samples, at)
     if isinstance(cam, PlateCam):

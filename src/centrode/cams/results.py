@@ -57,6 +57,13 @@ def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False
     InputError, MotionError
         As the description: no roller, one too large for a hollow of the groove, bounds that cannot be kept, a
         path that does not close.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> profile = ct.cam_profile(ct.example("valve-cam"), 37)
+    >>> round(float(profile.profile_radius.min()), 6)
+    0.024
     """
     if isinstance(cam, PlateCam):
         if groove:
@@ -212,6 +219,13 @@ def walking_wheel(cam: AnyCam) -> WheelMover:
         No `[mover]`, a pressure angle at phi = 0 that makes the shoe singular, too few legs, and what a profile needs.
     MotionError
         A shoe with a cusp; no return arc within the bounds.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> wheel = ct.walking_wheel(ct.example("walking-wheel-four-legs"))
+    >>> wheel.legs
+    4
     """
     return wheel_of(require_curvature_cam(cam), cam_body(cam))
 
@@ -390,6 +404,13 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     ------
     InputError
         No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> contact = ct.cam_contact(ct.example("walking-wheel-four-legs"), 37)
+    >>> print(ct.summary(contact).splitlines()[2])
+    greatest contact stress  626.262 MPa at ±45 deg, more than the admissible 600 MPa
     """
     cam = require_curvature_cam(cam)
     contact = contact_of(cam)

@@ -443,6 +443,12 @@ class Cam(DescriptionPart):
     ------
     InputError
         Anything that is not a description, with its place and the repair.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.example("cam-from-curvature").curvature.k0
+    10.0
     """
 
     title: Text = ""

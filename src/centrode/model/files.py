@@ -39,7 +39,16 @@ _SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
 
 
 def read_mechanism(path: str | Path) -> Mechanism:
-    """The mechanism described in a TOML file; raises InputError that says where it is wrong."""
+    """The mechanism described in a TOML file; raises InputError that says where it is wrong.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> from pathlib import Path
+    >>> _ = Path("bars.toml").write_text(ct.mechanism_text(ct.example("crank-rocker")))
+    >>> ct.read_mechanism("bars.toml").title
+    'Crank-rocker four-bar linkage'
+    """
     path = Path(path)
     return parse_mechanism(read_file(path), path.name, path.parent)
 
@@ -58,6 +67,13 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     Raises
     ------
     InputError
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> mechanism = ct.example("crank-rocker")
+    >>> ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
+    True
     """
     return mechanism_from(toml_tables(text, where), where, folder)
 
@@ -71,7 +87,14 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
 
 
 def mechanism_text(mechanism: Mechanism) -> str:
-    """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back."""
+    """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.mechanism_text(ct.example("crank-rocker"))[:40])
+    title = "Crank-rocker four-bar linkage"
+    """
     return in_short_lines("\n".join(_sections(document(mechanism))))
 
 
@@ -116,6 +139,12 @@ def value_at(mechanism: Mechanism, path: str) -> float:
 
     `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate of a
     link whose points have coordinates. On the sphere, coordinates are `longitude` and `latitude`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.value_at(ct.example("crank-rocker"), "links.AB.length")
+    3.5
     """
     words = _words(mechanism, path)
     if words[0] == "guides" and words[2:] == ["direction"]:
@@ -138,6 +167,13 @@ def with_value(description: AnyDescription, path: str, value: float | str) -> An
     What was `placed` stays where it is, unless it is what the path names (then it counts as given from
     now on); `replace_placed` places anew. Raises InputError where there is no such path, or where the
     value does not fit.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> longer = ct.with_value(ct.example("crank-rocker"), "links.AB.length", "3.6 m")
+    >>> longer.links["AB"].length
+    3.6
     """
     if isinstance(description, Mechanism):
         return with_values(description, {path: value})

@@ -146,6 +146,17 @@ def summary(result: Any) -> str:
     """The facts of a result as lines of text, with the tables that a terminal prints.
 
     They are in the language that is spoken and the units of the result's description.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.summary(ct.limits(ct.example("crank-rocker"))))
+    drive          OA
+    held           none
+    about          0 rad (0 deg)
+    from           unlimited
+    to             unlimited
+    change points  none
     """
     return render.sheet_text(sheet_of(result), display_of(result))
 
@@ -163,12 +174,26 @@ def page(result: Any, kind: str) -> str:
 
 
 def tables(result: Any) -> Mapping[str, Table]:
-    """The tables of a result by name; columns are arrays in SI."""
+    """The tables of a result by name; columns are arrays in SI.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> list(ct.tables(ct.transmission_angles(ct.example("crank-rocker"), 37)))
+    ['transmission']
+    """
     return sheet_of(result).tables
 
 
 def figures(result: Any) -> dict[str, Figure]:
-    """The figures of a result by name; needs matplotlib."""
+    """The figures of a result by name; needs matplotlib.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> list(ct.figures(ct.transmission_angles(ct.example("crank-rocker"), 37)))
+    ['transmission']
+    """
     return render.figures_of(sheet_of(result).pictures, display_of(result))
 
 
@@ -176,6 +201,14 @@ def write(result: Any, folder: str | Path) -> None:
     """Write tables, datasets, figures and the summary of a result into a folder, which appears whole or not at all.
 
     A result without single numbers has no summary. Raises InputError where the folder cannot be written.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> from pathlib import Path
+    >>> ct.write(ct.integrate(ct.example("crank-rocker"), steps=20), "integration")
+    >>> (Path("integration") / "integration.csv").exists()
+    True
     """
     sheet, display = sheet_of(result), display_of(result)
     with draft_folder(Path(folder)) as draft:
@@ -189,6 +222,13 @@ def open(path: str | Path) -> xarray.Dataset:
     """A dataset of a result from the netCDF file that a command or `ct.write` wrote.
 
     Raises InputError for a file that cannot be read, and for one that is no result of centrode.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.write(ct.transmission_angles(ct.example("crank-rocker"), 37), "angles")
+    >>> ct.open("angles/transmission.nc").attrs["topic"]
+    'angles'
     """
     dataset = render.read_dataset(Path(path))
     if not is_result(dataset):

@@ -85,6 +85,13 @@ def curvature(
     Exact: from jets of the third order. Absent (NaN) in a translation is what belongs to the pole, at the
     pole the curvature, on the inflection circle the centre of curvature; Ball's point where every point of
     the inflection circle is one.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> bends = ct.curvature(ct.example("elliptic-trammel"), "AB", [0.6])
+    >>> round(float(bends.inflection_diameter[0]), 6)
+    1.0
     """
     mechanism, places = _source_mechanism(source, at)
     if mechanism.space == "sphere":

@@ -450,6 +450,12 @@ def follower_cam(cam: AnyCam) -> FollowerCam:
         is told.
     MotionError
         No base radius keeps the bounds.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.follower_cam(ct.example("valve-cam")).base_radius
+    0.024
     """
     plate = with_follower(cam)
     body = _body(plate)

@@ -97,6 +97,13 @@ def choose_base_radius(
     ------
     InputError
         As `follower_cam`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> chosen = ct.choose_base_radius(ct.example("indexing-cam"))
+    >>> round(chosen.least.base_radius, 4), chosen.least.by
+    (0.0337, 'pressure angle')
     """
     del samples, instants
     plate = with_follower(cam)

@@ -597,6 +597,13 @@ def cam_forces(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None
     ------
     InputError
         As `follower_cam`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> forces = ct.cam_forces(ct.example("valve-cam"), 37)
+    >>> print(ct.summary(forces).splitlines()[3])
+    contact of cam and follower  kept: at least 180 N along the follower at 0 deg
     """
     plate = with_follower(cam)
     return dataset_of_forces(plate, follower_forces(plate), angles_of(plate, samples, at))

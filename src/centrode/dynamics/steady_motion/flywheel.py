@@ -199,6 +199,12 @@ def flywheel(mechanism: Mechanism, mean: MeanSpeed = "middle") -> Flywheel:
     Notes
     -----
     Works are exact to `error`; the exact speed has the fluctuation and the mean to rounding, some 1e-14.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> round(ct.flywheel(ct.example("six-bar-press")).added, 2)
+    1456.73
     """
     need_fluctuation(mechanism)
     return flywheel_of(solution_of(mechanism, mean))

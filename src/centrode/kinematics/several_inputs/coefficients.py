@@ -188,6 +188,13 @@ def kinematic_coefficients(
     ------
     InputError, NotComputedYet
         As `motion` does.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> arm = ct.example("five-bar-two-drives")
+    >>> ct.kinematic_coefficients(arm, 9).velocity_coefficient.dims
+    ('sample', 'drive', 'point', 'axis')
     """
     prepared = ready(mechanism)
     if at is None:
