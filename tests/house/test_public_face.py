@@ -47,19 +47,24 @@ def at_place(place: str) -> object:
     raise AssertionError(place)
 
 
+def run_examples(name: str, documented: object) -> int:
+    """Run the examples of a docstring, which have to print what they say; how many there are."""
+    test = doctest.DocTestParser().get_doctest(inspect.getdoc(documented) or "", {}, name, None, 0)
+    said: list[str] = []
+    failed, _tried = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(
+        test, out=said.append
+    )
+    assert not failed, "".join(said)
+    return len(test.examples)
+
+
 def test_it_reads_like_a_table_of_contents() -> None:
     assert 60 <= len(dir(ct)) <= 75
 
 
 @pytest.mark.parametrize("name", sorted(dir(ct)))
 def test_every_name_has_an_example_that_runs(name: str, folder: None) -> None:
-    public = getattr(ct, name)
-    text = inspect.getdoc(public) or ""
-    test = doctest.DocTestParser().get_doctest(text, {}, name, None, 0)
-    assert test.examples
-    told: list[str] = []
-    failed, _tried = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=told.append)
-    assert not failed, "".join(told)
+    assert run_examples(name, getattr(ct, name)) > 0
 
 
 def test_no_name_that_left_is_public() -> None:
@@ -73,6 +78,8 @@ def test_every_name_that_left_has_a_place() -> None:
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_what_left_is_where_the_changelog_says(place: str) -> None:
+def test_what_left_is_where_the_changelog_says(place: str, folder: None) -> None:
     found = at_place(place)
     assert inspect.ismodule(found) or found.__doc__ or not callable(found)
+    if callable(found):
+        run_examples(place, found)

@@ -53,7 +53,8 @@ class Result:
     --------
     >>> import centrode as ct
     >>> print(ct.Result(ct.transmission_angles(ct.example("crank-rocker"), 73)))
-    least transmission angle AB-DB  0.585686 rad at 0 rad
+    group  least transmission angle, deg  greatest transmission angle, deg  greatest pressure angle, deg
+    AB-DB                        54.3147                           90.0000                       35.6853
     """
 
     dataset: xarray.Dataset
