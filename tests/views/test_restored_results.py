@@ -169,6 +169,14 @@ def test_what_is_no_result_is_refused() -> None:
             ct.summary(strange)
     with pytest.raises(ct.InputError, match=r"lacks a part.*least_transmission_angle"):
         ct.summary(ct.transmission_angles(PRESS, 5).drop_vars("least_transmission_angle"))
+    for part in (
+        motion[["position", "status"]],
+        motion.isel(point=[1]),
+        motion.transpose(),
+        motion.isel(sample=3),
+    ):
+        with pytest.raises(ct.InputError, match="lacks a part"):
+            ct.summary(part)
     with pytest.raises(ct.InputError, match="can be shown"):
         ct.summary(3)
 

@@ -113,17 +113,33 @@ def results_of_motion(mechanism: Mechanism, course: xr.Dataset) -> MotionResults
     """A dataset of `motion`, or of `kinematic_coefficients`, with all that `study` computes beside it.
 
     Single places have no loads of bearings, as these are taken over a motion.
+
+    Raises KeyError for a dataset that lacks a variable of the motion, or a part of one.
     """
+    if course["status"].dims != ("sample",):
+        raise KeyError("sample")
     prepared = ready(mechanism)
     places = mechanism.motion_parameter.instants(course)
     solved = solve(prepared, grid_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64)))
     over_range = _is_evenly_spaced(places)
     count = len(places) if over_range else None
-    if "position" not in course:
-        return replace(
-            _results(solved, dataset_of(solved), count, over_range=over_range), coefficients=course
-        )
+    whole = dataset_of(solved)
+    if "drive_2" in course.dims:
+        _check_whole(course, coefficients_of(solved))
+        return replace(_results(solved, whole, count, over_range=over_range), coefficients=course)
+    _check_whole(course, whole)
     return _results(solved, course, count, over_range=over_range)
+
+
+def _check_whole(course: xr.Dataset, whole: xr.Dataset) -> None:
+    """Raise KeyError where a dataset lacks a variable of another, or has it with other dimensions or fewer names."""
+    for name, variable in whole.variables.items():
+        if name not in course.variables or course.variables[name].dims != variable.dims:
+            raise KeyError(name)
+    for dimension, size in whole.sizes.items():
+        # fewer samples are a shorter motion, with fewer events
+        if dimension not in ("sample", "event") and course.sizes[dimension] != size:
+            raise KeyError(dimension)
 
 
 def _is_evenly_spaced(places: npt.NDArray[np.float64]) -> bool:
