@@ -15,8 +15,13 @@ from matplotlib.text import Text
 
 import centrode as ct
 from blank_canvas import blank_pictures
+from centrode.analysis.instant_centres.results import CentreResults, centre_results
+from centrode.dynamics.bearings.results import ReactionResults, reaction_results
+from centrode.dynamics.reduction_results import ReductionResults, reduction_results
+from centrode.equations.integration import integration_results
 from centrode.locale import speaking
 from centrode.present.animations.layers import turned_caption
+from centrode.present.figure_files import save_figures
 from centrode.present.spelled_figures import spell_decimals, with_decimal_mark
 
 UNITS = {"deg", "rad", "kg", "mm", "MPa", "max", "min"}
@@ -32,7 +37,7 @@ def results_of(name: str, computed: Computed) -> Any:
 def saved(figures: Mapping[str, Figure], folder: Path) -> Mapping[str, Figure]:
     """Figures spelled as files have them; the files themselves are blank, for `texts` draws each figure."""
     with blank_pictures():
-        ct.save_figures(figures, folder)
+        save_figures(figures, folder)
     return figures
 
 
@@ -46,20 +51,20 @@ def texts(figure: Figure) -> Iterator[str]:
             yield re.sub(r"\$[^$]*\$", "", text.get_text())
 
 
-def reactions(mechanism: ct.Mechanism) -> ct.ReactionResults:
-    return ct.reaction_results(mechanism, 37)
+def reactions(mechanism: ct.Mechanism) -> ReactionResults:
+    return reaction_results(mechanism, 37)
 
 
-def reduction(mechanism: ct.Mechanism) -> ct.ReductionResults:
-    return ct.reduction_results(mechanism, 37)
+def reduction(mechanism: ct.Mechanism) -> ReductionResults:
+    return reduction_results(mechanism, 37)
 
 
 def integration(mechanism: ct.Mechanism) -> Any:
-    return ct.integration_results(mechanism, steps=40)
+    return integration_results(mechanism, steps=40)
 
 
-def centres(mechanism: ct.Mechanism) -> ct.CentreResults:
-    return ct.centre_results(mechanism, instants=[0.2])
+def centres(mechanism: ct.Mechanism) -> CentreResults:
+    return centre_results(mechanism, instants=[0.2])
 
 
 @pytest.mark.parametrize("language", ["ru", "uk"])

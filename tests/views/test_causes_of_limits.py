@@ -12,6 +12,7 @@ from centrode.analysis.redesign.results import rotatability_results
 from centrode.analysis.rotatability.causes import AngleCondition, AngleSymbol, Cause, CauseKind, Tracer
 from centrode.analysis.rotatability.circuits import LoopType, Uncounted
 from centrode.locale import _, choose_language
+from centrode.model.examples import example_text
 from centrode.model.settings import Display
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -57,7 +58,7 @@ def test_conditions_have_their_signs_and_constants() -> None:
 @pytest.mark.parametrize(("other", "hostile"), list(zip(HOSTILE[::2], HOSTILE[1::2], strict=True)))
 def test_names_come_out_character_by_character(other: str, hostile: str, tmp_path: Path) -> None:
     """Of the two links that fall in line: on the terminal, in the record and in the document, with the repair."""
-    text = ct.example_text(LOCKED).replace("[links.BD]", f'[links."{hostile}"]\npoints = ["B", "D"]')
+    text = example_text(LOCKED).replace("[links.BD]", f'[links."{hostile}"]\npoints = ["B", "D"]')
     text = text.replace("[links.CB]", f'[links."{other}"]\npoints = ["C", "B"]')
     mechanism = ct.parse_mechanism(text)
     assert {other, hostile} <= set(mechanism.link_names)

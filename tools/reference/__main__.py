@@ -7,12 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tools import gallery
-from tools.reference import commands, grammar
+from tools.reference import commands, face, grammar
 from tools.validation import page as validation
 
 FOLDER = Path(__file__).parents[2] / "docs"
 PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands.page,
+    "reference/python.md": face.page,
     "reference/grammar.md": grammar.mechanisms,
     "reference/cam-grammar.md": grammar.cams,
     "validation.md": validation.page,
