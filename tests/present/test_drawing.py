@@ -8,9 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
 import centrode
-from centrode import present
 from centrode.model.files import parse_mechanism
 from centrode.present.curves import part_of_pi
+from centrode.present.drawing import draw_mechanism
+from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import corners
 from centrode.present.tags import label_places
 from centrode.present.wheels import cylinders, straight_track
@@ -19,9 +20,9 @@ from centrode.views.abscissa import passings
 
 def drawn(made, sample: int = 0):
     mechanism, dataset = made
-    scene = present.scene_of(mechanism, dataset)
+    scene = scene_of(mechanism, dataset)
     axes = Figure().subplots()
-    present.draw_mechanism(axes, scene, sample)
+    draw_mechanism(axes, scene, sample)
     return scene, axes
 
 
@@ -61,10 +62,10 @@ def test_a_slider_lies_along_its_guide(make):
 
 def test_a_slot_holds_its_pin(make):
     mechanism, dataset = make("slotted")
-    scene = present.scene_of(mechanism, dataset)
+    scene = scene_of(mechanism, dataset)
     for sample in (0, 30, 140):
         axes = Figure().subplots()
-        present.draw_mechanism(axes, scene, sample)
+        draw_mechanism(axes, scene, sample)
         (slot,) = [p for p in axes.patches if isinstance(p, Polygon) and len(p.get_xy()) > 20]
         assert slot.get_path().contains_point(scene.at(sample)["A"])
 
@@ -158,7 +159,7 @@ def test_a_rolling_wheel_is_a_circle_at_its_centre_with_its_track():
 
 def test_a_straight_track_runs_under_the_wheel_from_end_to_end():
     mechanism, dataset = run_of("rolling-wheel-rod")
-    scene = present.scene_of(mechanism, dataset)
+    scene = scene_of(mechanism, dataset)
     start, end = straight_track(scene, mechanism.rolling[0], 0)
     contact = scene.factor * dataset["contact"].sel(rolling="wheel").to_numpy()
     assert start[0] < contact[:, 0].min() and end[0] > contact[:, 0].max()
@@ -167,7 +168,7 @@ def test_a_straight_track_runs_under_the_wheel_from_end_to_end():
 
 def test_a_cylinder_keeps_its_barrel_and_ends_at_its_points():
     mechanism, dataset = run_of("excavator-arm")
-    scene = present.scene_of(mechanism, dataset)
+    scene = scene_of(mechanism, dataset)
     lengths = []
     for sample in (0, 4, 9):
         for drive, foot, mouth, end in cylinders(scene, sample):

@@ -10,8 +10,9 @@ import matplotlib
 import pytest
 from matplotlib.figure import Figure
 
-from centrode import locale, present, render
+from centrode import locale, render
 from centrode.errors import InputError
+from centrode.present.figure_files import save_figures
 from shown_motion import motion_figures
 
 
@@ -27,8 +28,8 @@ def test_files_repeat_their_bytes(make, tmp_path):
         mechanism, dataset = make("press", samples=31)
         figures = motion_figures(mechanism, dataset)
         chosen = {name: figures[name] for name in ("mechanism", "velocities")}
-        written.append(present.save_figures(chosen, tmp_path / folder))
-        present.save_figures(chosen, tmp_path / folder)
+        written.append(save_figures(chosen, tmp_path / folder))
+        save_figures(chosen, tmp_path / folder)
     assert [path.name for path in written[0]] == [
         "mechanism.png",
         "mechanism.svg",
@@ -78,8 +79,9 @@ def test_missing_matplotlib_is_told_with_its_repair(monkeypatch):
 def test_pyplot_is_never_loaded():
     """Loading it would choose a backend, which may want a display."""
     code = (
-        "import sys; from matplotlib.figure import Figure; from centrode import present, render;"
-        "render.figures_of, present.save_figures({'empty': Figure()}, sys.argv[1]);"
+        "import sys; from matplotlib.figure import Figure; from centrode import render;"
+        "from centrode.present.figure_files import save_figures;"
+        "render.figures_of, save_figures({'empty': Figure()}, sys.argv[1]);"
         "assert 'matplotlib.pyplot' not in sys.modules"
     )
     with tempfile.TemporaryDirectory() as folder:

@@ -7,8 +7,8 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from centrode import present
 from centrode.present import curves
+from centrode.present.figure_files import save_figures
 from centrode.present.style import PALETTE, pens
 from centrode.views.motion_plots import deal_to_panels
 from shown_motion import motion_figures
@@ -143,7 +143,7 @@ def test_names_of_any_alphabet_are_drawn(make, tmp_path):
     assert {"O", "A", "C", "Б’"} <= texts
     assert "кулиса" in legend_texts(figures["angles"])
     assert "Кулисный механизм" in figures["paths"].get_suptitle()
-    present.save_figures(figures, tmp_path)  # a missing glyph is a warning, and warnings are errors
+    save_figures(figures, tmp_path)  # a missing glyph is a warning, and warnings are errors
 
 
 def test_one_colour_everywhere(make):
@@ -243,13 +243,13 @@ def test_any_size(make, tmp_path, scale):
     figures = motion_figures(scaled, small)
     low, high = figures["mechanism"].axes[0].get_xlim()
     assert 1 < (high - low) / scale < 10
-    present.save_figures({"mechanism": figures["mechanism"]}, tmp_path)
+    save_figures({"mechanism": figures["mechanism"]}, tmp_path)
 
 
 @pytest.mark.parametrize("name", ["press", "worked", "slotted", "jansen", "five_bar"])
 def test_one_sample(make, tmp_path, name):
     figures = motion_figures(*make(name, samples=1))
-    present.save_figures({kept: figures[kept] for kept in ("mechanism", "angles")}, tmp_path)
+    save_figures({kept: figures[kept] for kept in ("mechanism", "angles")}, tmp_path)
     line = next(line for line in figures["angles"].axes[0].get_lines() if line.get_label() == "OA")
     assert line.get_marker() == "o"
 
@@ -264,4 +264,4 @@ def test_nothing_known(make, tmp_path):
     assert "(open)" in figures["mechanism"].axes[0].get_title()
     for name in ("paths", "angles", "velocities"):
         assert "no sample has a value here" in [text.get_text() for text in figures[name].axes[0].texts]
-    present.save_figures({name: figures[name] for name in ("mechanism", "paths", "angles")}, tmp_path)
+    save_figures({name: figures[name] for name in ("mechanism", "paths", "angles")}, tmp_path)

@@ -5,7 +5,7 @@ Their names stand in `__init__.pyi`; each is loaded when first used: a run witho
 
 import lazy_loader
 
-from centrode.present.optional_packages import telling_what_is_missing
+from centrode.optional_packages import telling_what_is_missing
 
 _attached, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __getattr__ = telling_what_is_missing(_attached)

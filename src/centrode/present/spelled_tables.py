@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from centrode.present.optional_packages import telling_what_is_missing
+from centrode.optional_packages import telling_what_is_missing
 
 # CSV as spreadsheets and MathCAD read it where the decimal sign is a comma: fields apart by semicolons.
 

@@ -1,4 +1,4 @@
-"""Libraries that presentations need and that may not be installed: what is missing is told with its repair."""
+"""Optional libraries: where one is not installed, the failure names it and says how to install it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Found = TypeVar("Found")
 
 
 def telling_what_is_missing(load: Callable[Asked, Found]) -> Callable[Asked, Found]:
-    """What loads a presentation, so that it raises InputError where a library is not installed."""
+    """The same function, which raises InputError where a library is not installed."""
 
     @functools.wraps(load)
     def loaded(*args: Asked.args, **kwargs: Asked.kwargs) -> Found:
