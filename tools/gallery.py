@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
-from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.sphere_scene import Globe
 from centrode.render.linkages import draw, initial_sample, read_scene
 
 DOCS = Path(__file__).parents[1] / "docs"

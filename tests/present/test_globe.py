@@ -10,7 +10,8 @@ from matplotlib.patches import Circle
 
 from centrode.errors import Status
 from centrode.model.files import parse_mechanism
-from centrode.present.sphere.globe import HIDDEN, WHOLE, draw_globe, globe_of, great_arc
+from centrode.present.sphere.globe import HIDDEN, draw_globe
+from centrode.present.sphere.sphere_scene import WHOLE, globe_of, great_arc
 from centrode.quantities import QUANTITIES
 from shown_motion import columns_of, motion_figures
 

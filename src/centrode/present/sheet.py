@@ -52,3 +52,30 @@ class MotionPlaces:
         """Places at a sample, of the points that have one."""
         places = {name: track[sample] for name, track in self.tracks.items()}
         return {name: place for name, place in places.items() if np.isfinite(place).all()}
+
+
+@dataclass(frozen=True)
+class View:
+    """The part of the plane that pictures show, in drawing units; the same over a whole animation.
+
+    Attributes
+    ----------
+    low, high : (2)
+        Corners of what is shown.
+    per_inch : float
+        Drawing units to an inch of paper.
+    """
+
+    low: Array
+    high: Array
+    per_inch: float
+
+    @property
+    def inches(self) -> float:
+        """Length on paper of the longer side of what is shown."""
+        return float(np.max(self.high - self.low)) / self.per_inch
+
+    @property
+    def sign(self) -> float:
+        """Radius of a hinge's circle; the other signs are measured by it."""
+        return SIGN_INCHES * self.per_inch

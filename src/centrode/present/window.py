@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 
-from centrode.analysis.instant_centres.bodies import sliders_of
+from centrode.model.labels import sliders_of
 from centrode.present.drawing import MARGIN
 from centrode.present.scene import Array, LinkageScene, turn_vectors
 

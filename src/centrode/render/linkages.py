@@ -26,7 +26,8 @@ from centrode.present.displayed_units import formula, label_with_unit, shown_as
 from centrode.present.drawing import MARGIN, draw_mechanism
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene
-from centrode.present.sphere.globe import HIDDEN, Globe, draw_globe, globe_of
+from centrode.present.sphere.globe import HIDDEN, draw_globe
+from centrode.present.sphere.sphere_scene import Globe, globe_of
 from centrode.present.style import MUTED, Decimals, pens
 from centrode.quantities import status_word, typeset_unit
 from centrode.render.plots import drawn_abscissa

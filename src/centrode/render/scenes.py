@@ -19,16 +19,8 @@ from centrode.present.drawing import draw_mechanism
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import Array
 from centrode.present.scene import LinkageScene as Sheet
-from centrode.present.sphere.globe import (
-    STEPS,
-    Globe,
-    arcs_on_paper,
-    draw_globe,
-    draw_line,
-    globe_of,
-    laid,
-    whole,
-)
+from centrode.present.sphere.globe import arcs_on_paper, draw_globe, draw_line
+from centrode.present.sphere.sphere_scene import STEPS, Globe, globe_of, laid, whole
 from centrode.present.style import INK, MUTED, pens
 from centrode.present.tags import Tag, lines, write_tags
 from centrode.present.window import carried_by, segments_of, widen, within

@@ -15,8 +15,8 @@ from PIL import Image
 import centrode as ct
 from centrode.present.animations.animate import animate_walking
 from centrode.present.animations.cams import TurningCamLayer, WalkingLayer
-from centrode.present.animations.layers import View
 from centrode.present.animations.stage import Stage
+from centrode.present.sheet import View
 
 EPS = float(np.finfo(float).eps)
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]

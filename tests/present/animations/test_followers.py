@@ -14,8 +14,9 @@ from PIL import Image
 
 import centrode as ct
 from centrode.present.animations.cams import FollowerLayer
-from centrode.present.animations.layers import Layer, View, follower_captions, instant_captions, scene_of_film
+from centrode.present.animations.layers import Layer, follower_captions, instant_captions, scene_of_film
 from centrode.present.animations.linkages import LinksLayer
+from centrode.present.sheet import View
 from centrode.study.animation_frames import course_of, film_of
 
 EPS = float(np.finfo(float).eps)

@@ -18,7 +18,7 @@ from PIL import Image
 import centrode as ct
 from centrode.present.animations.animate import MAKERS, Shown, layers_of, stage_of
 from centrode.present.animations.centrodes import CentresLayer, CentrodesLayer
-from centrode.present.animations.layers import Layer, View, scene_of_film
+from centrode.present.animations.layers import Layer, scene_of_film
 from centrode.present.animations.linkages import LinksLayer, PathsLayer
 from centrode.present.animations.stage import write_entries
 from centrode.present.animations.vectors import (
@@ -29,6 +29,7 @@ from centrode.present.animations.vectors import (
     round_down,
     share_scale,
 )
+from centrode.present.sheet import View
 from centrode.present.style import house_style
 from centrode.study.animation_frames import Film, course_from, course_of, film_from, film_of
 

@@ -36,7 +36,7 @@ from centrode.present.animations.video_files import (
     write_stage,
 )
 from centrode.present.scene import LinkageScene
-from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.sphere_scene import Globe
 from centrode.study.animation_frames import Course, Film, course_from, course_of, film_from, film_of
 from centrode.study.texts import place_words
 

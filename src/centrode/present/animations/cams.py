@@ -22,15 +22,15 @@ from centrode.locale import _
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
 from centrode.present import signs
-from centrode.present.animations.layers import Array, Layer, View, follower_captions, turned_caption
+from centrode.present.animations.layers import Array, Layer, follower_captions, turned_caption
 from centrode.present.animations.stage import Stage
 from centrode.present.animations.video_files import Animation, Pace, Said, size_of, write_stage
-from centrode.present.cams.driving_cam import PLACES, DrivingCam
-from centrode.present.cams.driving_cam_drawing import draw_profile, draw_touching
+from centrode.present.cams.follower_drawing import CAM, CHAIN, ROLLER, FollowerDrawing
 from centrode.present.cams.walking_wheel import draw_wheel, reach, wheel_keys
 from centrode.present.displayed_units import shown_as
 from centrode.present.scene import turn_vectors
-from centrode.present.style import GROUND, INK, MUTED, PALETTE
+from centrode.present.sheet import View
+from centrode.present.style import GROUND, INK, MUTED
 from centrode.study.animation_frames import Loop, frame_ways
 
 if TYPE_CHECKING:
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
 
 POINTS = 720
-CAM, ROLLER = PALETTE[0], PALETTE[1]
-CHAIN = (0, (5, 1.2, 1.2, 1.2))
 STEM = 3.0
 """Length of the follower's stem above its highest place, in radii of the roller."""
 
@@ -178,13 +176,7 @@ class TurningCamLayer(Layer):
         ]
 
 
-# A cam that turns below its follower, as a layer: stem or arm, with roller, edge or flat face.
-
-GAP, WALLS, ABOVE = 0.12, 0.4, 0.15
-"""Between the highest place of a translating follower and its guide, length of the guide, and stem above it; as parts
-of the greatest radius of the cam."""
-WEDGE = (0.7, 2.4)
-"""Half width and height of a knife edge, over the size of a hinge."""
+# A cam that turns below its follower, as a layer.
 
 
 def follower_stage(
@@ -197,101 +189,8 @@ def follower_stage(
     return Stage([layer], frames, size, title, lambda frame: captions[frame], dark=dark)
 
 
-class FollowerLayer(Layer):
-    """A plate cam that turns about its axis, and the follower that it moves, in the axes of the frame.
-
-    Parameters
-    ----------
-    body : FollowerCam
-    angles : (frame) [rad]
-        That the cam has turned in its sense.
-    factor : float
-        Drawing units in a metre.
-    """
-
-    def __init__(self, body: FollowerCam, angles: Array, factor: float) -> None:
-        self.cam = DrivingCam.alone(body, angles, factor)
-        phi = np.linspace(0.0, body.edges[-1], PLACES)
-        found = body.contact(phi)
-        self.path = found.centre
-        self.far = factor * float(np.linalg.norm(found.place, axis=1).max())
-        roller = body.touch.roller
-        self.rolls = 0.0 < roller < math.inf
-        self.edged = roller == 0.0
-        self.frames = range(len(angles))
-        lifts = body.motion.lift(phi)[0]
-        self.top = factor * (body.guide.start + float(np.max(lifts)) + (roller if self.rolls else 0.0))
-        self.stem = self.top - factor * body.guide.start + (GAP + WALLS + ABOVE) * self.far
-
-    def reach(self) -> Array:
-        """The circle that the cam sweeps with the path about it, and the follower over the whole turn."""
-        swept = (
-            max(self.far, self.cam.factor * float(np.hypot(*self.path.T).max())) if self.rolls else self.far
-        )
-        corners = [swept * np.array([[-1.0, -1.0], [1.0, 1.0]]), self.cam.reach()]
-        corners += [np.array(line) for frame in self.frames for line in self.cam.lines(frame)]
-        if self.cam.pivot is None:
-            corners += [self._stem(frame) for frame in self.frames]
-        return np.concatenate(corners)
-
-    def stand(self, view: View) -> None:
-        """Signs are as large as on any drawing."""
-        self.size = view.sign
-
-    def ground(self, axes: Axes) -> None:
-        """The hinges on the frame, or the guide, and how the cam turns."""
-        signs.fixed_hinge(axes, self.cam.hub, self.size)
-        signs.turning_arrow(axes, signs.turning_arc(self.cam.hub, 0.0, self.cam.forward, self.size), GROUND)
-        if self.cam.pivot is not None:
-            signs.fixed_hinge(axes, self.cam.factor * self.cam.pivot, self.size)
-            return
-        low = self.top + GAP * self.far
-        for side in (-1.0, 1.0):
-            x = self.cam.foot(0)[0] + 1.2 * side * self.size
-            ends = np.array([x, low]), np.array([x, low + WALLS * self.far])
-            signs.ground(axes, *ends, np.array([side, 0.0]), self.size)
-
-    def draw(self, axes: Axes, frame: int) -> None:
-        """The cam with the path of the roller's centre, the follower over it, and the hinges over both."""
-        draw_profile(axes, self.cam, frame, CAM, CAM)
-        if self.rolls:
-            path = self.cam.carried(self.path, frame)
-            axes.plot(*path.T, color=MUTED, linewidth=0.9, linestyle=CHAIN, zorder=2.0)
-        if self.cam.pivot is None:
-            axes.plot(*self._stem(frame).T, color=ROLLER, linewidth=2.4, solid_capstyle="butt", zorder=2.2)
-        draw_touching(axes, self.cam, frame, ROLLER)
-        foot = self.cam.foot(frame)
-        if self.rolls:
-            axes.plot(*foot[:, None], marker="+", color=ROLLER, markersize=6, zorder=7)
-        elif self.edged:
-            axes.add_patch(Polygon(self._wedge(foot), facecolor=ROLLER, edgecolor=ROLLER, zorder=2.4))
-        signs.hinge(axes, self.cam.hub, self.size, GROUND)
-        if self.cam.pivot is not None:
-            signs.hinge(axes, self.cam.factor * self.cam.pivot, self.size, GROUND)
-
-    def entries(self) -> Sequence[tuple[Artist, str]]:
-        """What the colours mean."""
-        found: list[tuple[Artist, str]] = [(Line2D([], [], color=CAM, linewidth=1.8), _("cam"))]
-        if self.rolls:
-            path = Line2D([], [], color=MUTED, linewidth=0.9, linestyle=CHAIN)
-            found.append((path, _("path of the roller's centre")))
-        return [*found, (Line2D([], [], color=ROLLER, linewidth=2.4), _("follower"))]
-
-    def _stem(self, frame: int) -> Array:
-        """The axis of a translating follower, from where it touches to above its guide."""
-        foot = self.cam.foot(frame)
-        return np.stack([foot, foot + np.array([0.0, self.stem])])
-
-    def _wedge(self, edge: Array) -> Array:
-        """A knife's corners; it stands on its edge, across the arm or along the stem."""
-        along = np.array([0.0, 1.0])
-        if self.cam.pivot is not None:
-            arm = self.cam.factor * self.cam.pivot - edge
-            along = np.array([-arm[1], arm[0]]) / float(np.hypot(*arm))
-            along = along if along @ (edge - self.cam.hub) > 0.0 else -along
-        across = np.array([-along[1], along[0]])
-        half, high = WEDGE[0] * self.size, WEDGE[1] * self.size
-        return np.array([edge, edge + high * along + half * across, edge + high * along - half * across])
+class FollowerLayer(FollowerDrawing, Layer):
+    """A plate cam that turns about its axis, and the follower that it moves."""
 
 
 # The animation of a cam: a walking wheel's step, or a turn below the roller or the follower.

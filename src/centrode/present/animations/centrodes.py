@@ -10,16 +10,16 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from centrode.analysis.instant_centres.bodies import sliders_of
 from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.analysis.instant_centres.centrodes import centrodes
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.labels import body_name
+from centrode.model.labels import body_name, sliders_of
 from centrode.model.reading import FRAME
 from centrode.present.animations.layers import FAR, WHOLE, Array, MotionLayer
 from centrode.present.scene import LinkageScene
-from centrode.present.sphere.globe import Globe, draw_line, laid
+from centrode.present.sphere.globe import draw_line
+from centrode.present.sphere.sphere_scene import Globe, laid
 from centrode.present.style import pens
 from centrode.present.wheels import subscript
 from centrode.present.window import carried_by, within

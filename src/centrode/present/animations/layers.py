@@ -18,8 +18,8 @@ from centrode.locale import decimal_mark
 from centrode.present.displayed_units import shown_as
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene
-from centrode.present.sheet import SIGN_INCHES
-from centrode.present.sphere.globe import Globe, globe_of
+from centrode.present.sheet import View
+from centrode.present.sphere.sphere_scene import Globe, globe_of
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
 
 if TYPE_CHECKING:
@@ -31,33 +31,6 @@ Array = NDArray[np.float64]
 NOTHING: Array = np.empty((0, 2))
 WHOLE: Array = np.array([[-1.0, -1.0], [1.0, 1.0]])
 """Corners of the whole sphere."""
-
-
-@dataclass(frozen=True)
-class View:
-    """What the pictures show, in drawing units; the same over the whole animation.
-
-    Attributes
-    ----------
-    low, high : (2)
-        Corners of what the layers need.
-    per_inch : float
-        Drawing units to an inch of paper.
-    """
-
-    low: Array
-    high: Array
-    per_inch: float
-
-    @property
-    def inches(self) -> float:
-        """Length on paper of the longer side of what the layers need."""
-        return float(np.max(self.high - self.low)) / self.per_inch
-
-    @property
-    def sign(self) -> float:
-        """Radius of a hinge's circle; the other signs are measured by it."""
-        return SIGN_INCHES * self.per_inch
 
 
 @dataclass(frozen=True)

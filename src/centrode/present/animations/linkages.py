@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from centrode.present import signs
-from centrode.present.animations.layers import Array, MotionLayer, View
+from centrode.present.animations.layers import Array, MotionLayer
 from centrode.present.cams.driving_cam_drawing import draw_axes_of_cams, draw_turned_cams
 from centrode.present.displayed_units import plain
 from centrode.present.drawing import NAME_POINTS, draw_drive, draw_frame, draw_hinges, draw_links, used_points
 from centrode.present.scene import LinkageScene
+from centrode.present.sheet import View
 from centrode.present.sphere.globe import (
-    Globe,
     arcs_on_paper,
     draw_arcs,
     draw_circles,
@@ -24,6 +24,7 @@ from centrode.present.sphere.globe import (
     draw_turns,
     frame_globe,
 )
+from centrode.present.sphere.sphere_scene import Globe
 from centrode.present.style import GROUND, INK, MUTED, pens
 from centrode.present.tags import lines, steady_offsets
 

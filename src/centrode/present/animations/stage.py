@@ -17,8 +17,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 from PIL import Image
 
-from centrode.present.animations.layers import NOTHING, Layer, ScaleArrow, View
+from centrode.present.animations.layers import NOTHING, Layer, ScaleArrow
 from centrode.present.displayed_units import plain
+from centrode.present.sheet import View
 from centrode.present.style import INK, darkened, house_style, recolour
 
 # The colours of a GIF: 256 for all of its frames, so that none flickers.

@@ -16,7 +16,7 @@ from centrode.present.animations.layers import NOTHING, Array, Layer, MotionLaye
 from centrode.present.animations.stage import ARROW_HEAD, arrow_outlines
 from centrode.present.displayed_units import shown_as
 from centrode.present.scene import LinkageScene
-from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.sphere_scene import Globe
 from centrode.present.style import INK, pens
 from centrode.quantities import typeset_unit
 from centrode.study.animation_frames import joint_forces, load_forces

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from centrode.cams.followers.base_circle import follower_cam, has_bounds
 from centrode.cams.followers.geometry import FollowerCam, Oscillating
+from centrode.errors import CentrodeError
+from centrode.model.checks import pivot_of
+from centrode.numerics.arrays import ARRAYS
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Drive, Mechanism
 
 Array = NDArray[np.float64]
 PLACES = 361
@@ -157,3 +168,103 @@ class DrivingCam:
         far = self.body.face.greatest + FACE * self.body.base_radius
         first, last = self.drawn(np.array([foot, foot + far * along]))
         return first, last
+
+
+# The cams that drive a linkage, in its own picture: where their axes are and how far they have turned.
+
+APART = 1e-9
+"""Of drive's values and the cam's lift, over the greatest of them: more, and the cam does not move the drive."""
+
+
+def driving_cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> tuple[DrivingCam, ...]:
+    """The cams of a linkage's drives that can be drawn: those whose follower moves against the frame.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    dataset : Dataset
+        Its motion, without batch dimensions.
+    factor : float
+        Units of the display in a metre.
+
+    Raises
+    ------
+    InputError, MotionError
+        A cam that cannot lead its follower, or whose profile it undercuts.
+    """
+    return tuple(_cams(mechanism, dataset, factor))
+
+
+def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Iterator[DrivingCam]:
+    for drive in mechanism.drives:
+        if drive.cam is None or drive.turning is None:
+            continue
+        if drive.cam.body.base_radius is None and not has_bounds(drive.cam):
+            continue
+        time = np.asarray(dataset["time"], dtype=float)
+        values = np.asarray(dataset["drive_value"].sel(drive=drive.id), dtype=float)
+        apart = values - np.asarray(drive.motion_law.jet(ARRAYS, time), dtype=float)
+        zero = float(np.nanmedian(apart)) if np.isfinite(apart).any() else math.nan
+        # Where a simulation moves the linkage, the cam does not.
+        if not np.nanmax(np.abs(apart - zero), initial=0.0) <= APART * max(
+            1.0, float(np.nanmax(abs(values)))
+        ):
+            continue
+        try:
+            body = follower_cam(drive.cam)
+        except CentrodeError as error:
+            where = ", ".join(part for part in (f"[[drives]] {drive.id}, cam", error.where) if part)
+            raise type(error)(where, error.what, error.repair) from None
+        placed = (
+            _translating(mechanism, drive, body, zero)
+            if drive.guide
+            else _turning(mechanism, drive, body, zero)
+        )
+        if placed is not None:
+            centre, axes, pivot = placed
+            angles = drive.cam_angle + drive.turning * time
+            yield DrivingCam(body, centre, axes, angles, pivot, factor)
+
+
+Placed = tuple[Array, Array, Array | None]
+
+
+def _translating(mechanism: Mechanism, drive: Drive, body: FollowerCam, zero: float) -> Placed | None:
+    """Below the guided point at lift zero, along the guide."""
+    guide = mechanism.guide(drive.guide or "")
+    if guide.on != "frame" or isinstance(body.guide, Oscillating):
+        return None
+    unit = np.asarray(guide.unit, dtype=float)
+    lowest = np.asarray(mechanism.through(guide), dtype=float) + zero * unit
+    up = -unit if drive.lowers else unit
+    axes = np.array([[up[1], -up[0]], up])
+    return lowest - np.array([body.guide.offset, body.guide.start]) @ axes, axes, None
+
+
+def _turning(mechanism: Mechanism, drive: Drive, body: FollowerCam, zero: float) -> Placed | None:
+    """Beside the pivot of the driven link, its arm as it stands at lift zero."""
+    pivot = pivot_of(mechanism, drive.link or "")
+    if pivot is None or drive.relative_to != "frame" or not isinstance(body.guide, Oscillating):
+        return None
+    arm = zero + _heading(mechanism, drive, pivot)
+    # In the follower's own axes the arm points to pi - start and lifts clockwise.
+    if drive.lowers:
+        axes = _rotation(arm - (math.pi - body.guide.start))
+    else:
+        axes = np.diag([1.0, -1.0]) @ _rotation(arm + (math.pi - body.guide.start))
+    place = np.asarray(mechanism.frame.coordinates[pivot], dtype=float)
+    return place - np.array([body.guide.distance, 0.0]) @ axes, axes, place
+
+
+def _heading(mechanism: Mechanism, drive: Drive, pivot: str) -> float:
+    """Angle of the arm in the link's own axes."""
+    if drive.cam_point is None:
+        return 0.0
+    points = mechanism.links[drive.link or ""].coordinates
+    x, y = np.subtract(points[drive.cam_point], points[pivot])
+    return math.atan2(y, x)
+
+
+def _rotation(angle: float) -> Array:
+    """Rows are the axes turned by an angle."""
+    return np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.present.signs import ground, slider
 from centrode.present.style import GROUND, INK, MUTED, PALETTE
@@ -91,7 +90,7 @@ def _ground(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> No
 
 def _cam(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     phi = np.linspace(wheel.closed.start, wheel.closed.stop, POINTS)
-    frame = frames(wheel.closed, phi)
+    frame = wheel.roller_frames(phi)
     profile = factor * pose.of_cam(frame.place - wheel.roller * frame.normal)
     path = factor * pose.of_cam(frame.place)
     axes.add_patch(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.render import figures
 from centrode.render.document import blocks
-from centrode.render.document.cam_player import moving_cam
+from centrode.render.document.cam_player import moving_follower, moving_wheel
 from centrode.render.document.figures import picture
 from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers, spelled_number
@@ -22,7 +22,7 @@ from centrode.render.instant_pages import DRAWING as INSTANT
 from centrode.render.position_pages import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer
+from centrode.sheets.outlines import CamPlayer, WheelPlayer
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
@@ -99,7 +99,9 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Check():
             return _check(block, spelling)
         case CamPlayer():
-            return moving_cam(block)
+            return moving_follower(block.body, _(block.title.text))
+        case WheelPlayer():
+            return moving_wheel(block.wheel, _(block.title.text))
         case Items(texts, numbered):
             return blocks.ItemsBlock(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):

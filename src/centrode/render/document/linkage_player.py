@@ -16,7 +16,8 @@ from centrode.present import signs
 from centrode.present.drawing import MARGIN, draw_mechanism, nearest
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene, corners, span
-from centrode.present.sphere.globe import Globe, draw_globe, globe_of
+from centrode.present.sphere.globe import draw_globe
+from centrode.present.sphere.sphere_scene import Globe, globe_of
 from centrode.present.style import GROUND, INK, house_style, pens
 from centrode.present.wheels import BARREL, OVER, slides
 from centrode.render.document.blocks import Moving, Outline, RingBlock, shown
