@@ -12,11 +12,12 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.analysis.graphic.checks import STEPS
 from centrode.analysis.graphic.diagrams import diagrams, drawing_of, driven_rates
-from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet, round_scale
+from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet
 from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.path import grid_at
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import solve
+from centrode.numerics.round_scales import round_scale
 from drawn import EPS, OPERATIONS, answers, errors, errors_of
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions

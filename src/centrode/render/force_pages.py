@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.analysis.graphic.stage import round_scale as round_length
-from centrode.dynamics.force_polygons.polygons import PARTS, round_scale
 from centrode.locale import _
+from centrode.numerics.round_scales import FORCE_SCALES, round_scale
 from centrode.present.diagram_drawing import arrow, flat
 from centrode.present.displayed_units import shown_as
 from centrode.present.linkage_scene import scene_of
@@ -20,7 +19,7 @@ from centrode.render.force_groups import draw_group
 from centrode.render.force_signs import force_name
 from centrode.render.levers import lever_column
 from centrode.render.linkages import caption
-from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
+from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, write_column, write_title
 from centrode.render.spelling import DrawingSpelling
 from centrode.sheets.force_pages import GroupPage
 
@@ -44,7 +43,7 @@ def group_page(sheet: GroupPage) -> Figure:
     """A group with its forces, its polygon, and what was done; a millimetre is what the page says."""
     found, group = sheet.forces, sheet.forces.groups[sheet.group]
     spelling = DrawingSpelling(found.mechanism.display)
-    page = new_page(sheet_size(found.paper))
+    page = new_page(found.paper_size)
     wide, high = page.size
     drawn, room = DRAWN * wide, ROOM * wide
     height = high - TOP - FOOT - GUTTER
@@ -68,25 +67,25 @@ def group_page(sheet: GroupPage) -> Figure:
 
 def column_of(found: ForcePolygons) -> float:
     """Where the column of text begins on the page of a group [mm]."""
-    return LEFT + (DRAWN + ROOM) * sheet_size(found.paper)[0] + 2 * GUTTER
+    return LEFT + (DRAWN + ROOM) * found.paper_size[0] + 2 * GUTTER
 
 
 def group_scale(found: ForcePolygons, group: GroupForces) -> float:
     """What a millimetre of the drawn group stands for, in the display's unit of lengths."""
-    wide, high = sheet_size(found.paper)
+    wide, high = found.paper_size
     factor, _unit = shown_as("m", found.mechanism.display)
     room = np.array([DRAWN * wide, high - TOP - FOOT - GUTTER]) - AROUND
     extents = np.ptp(flat([factor * place for place in shown_places(found, group)]), axis=0)
     if not extents.any():  # sliders in one place
         extents = np.ptp(flat([factor * place for place in found.places.values()]), axis=0)
-    return round_length(float(np.max(extents / room)), 1.0)
+    return round_scale(float(np.max(extents / room)))
 
 
 def drawing_end(sheet: GroupPage | LeverPage) -> tuple[float, float]:
     """Where the drawing of a page ends at its column of text, and at its head [mm]."""
     found = sheet.forces
     column = column_of(found) if isinstance(sheet, GroupPage) else lever_column(found)
-    return column, sheet_size(found.paper)[1] - TOP
+    return column, found.paper_size[1] - TOP
 
 
 def group_scales(sheet: GroupPage) -> Iterator[tuple[str, float, str]]:
@@ -123,7 +122,8 @@ def draw_polygons(page: Page, found: ForcePolygons, group: GroupForces, corner: 
     shown = [polygon for polygon in group.link_polygons if polygon.vectors]
     across = math.ceil(math.sqrt(len(shown)))
     cell = size / np.array([across, max(1, math.ceil(len(shown) / across))])
-    scale = round_scale(max((polygon.scale * float(max(size / cell)) for polygon in shown), default=1.0))
+    least = max((polygon.scale * float(max(size / cell)) for polygon in shown), default=1.0)
+    scale = round_scale(least, series=FORCE_SCALES)
     for number, polygon in enumerate(shown):
         place = np.array([number % across, number // across])
         at = corner + place * cell
@@ -158,11 +158,11 @@ def draw_polygon(
 
     whole = {one.name for one in polygon.sums if not drawn_in_parts(polygon, one.name)}
     for vector in polygon.vectors:
-        if vector.name[:-1] in whole and vector.name[-1] in PARTS:
+        if vector.is_part and vector.whole in whole:
             continue
         colour = colour_of(vector, colours)
-        part = vector.name[-1] in PARTS
-        draw(vector.start, vector.end, vector.name, colour, DASHED if part else "-", 0.8 if part else 1.3)
+        dashes, width = (DASHED, 0.8) if vector.is_part else ("-", 1.3)
+        draw(vector.start, vector.end, vector.name, colour, dashes, width)
     for one in polygon.sums:
         draw(one.start, one.end, one.name, colour_of(one, colours), "-", 1.6)
     for chord in polygon.chords:
@@ -173,7 +173,7 @@ def draw_polygon(
 
 def drawn_in_parts(polygon: Polygon, name: str) -> bool:
     """Whether both parts of a reaction are long enough to be seen."""
-    return all(polygon.length(polygon.vector(name + mark)) > SHORT for mark in PARTS)
+    return all(polygon.length(part) > SHORT for part in polygon.parts_of(name))
 
 
 def colour_of(vector: PolygonVector, colours: Mapping[str, Pen]) -> str:

@@ -12,8 +12,8 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
+from centrode.numerics.round_scales import round_scale
 from centrode.present import signs
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, flat, symbol, write_head

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
+from centrode.numerics.round_scales import round_scale
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset
 from centrode.present.displayed_units import shown_as
@@ -17,7 +17,7 @@ from centrode.present.scene import corners
 from centrode.present.style import INK, pens
 from centrode.render.force_signs import force_arrows, moment_arc
 from centrode.render.linkages import caption
-from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
+from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, write_column, write_title
 from centrode.render.spelling import DrawingSpelling
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def lever_page(sheet: LeverPage) -> Figure:
     """The lever with its forces, and the moments about its pole."""
     found, lever = sheet.forces, sheet.forces.levers[sheet.lever]
     spelling = DrawingSpelling(found.mechanism.display)
-    page = new_page(sheet_size(found.paper))
+    page = new_page(found.paper_size)
     wide, high = page.size
     factor, unit = shown_as("m", found.mechanism.display)
     if lever.unit == "N":
@@ -61,17 +61,17 @@ def lever_page(sheet: LeverPage) -> Figure:
 
 def lever_column(found: ForcePolygons) -> float:
     """Where the column of text begins on the page of a lever [mm]."""
-    return LEFT + WIDE * sheet_size(found.paper)[0] + GUTTER
+    return LEFT + WIDE * found.paper_size[0] + GUTTER
 
 
 def lever_scale(found: ForcePolygons, lever: Lever) -> float:
     """What a millimetre of the lever stands for, in the display's unit of lengths by radian."""
-    wide, high = sheet_size(found.paper)
+    wide, high = found.paper_size
     factor = 1.0 if lever.unit == "N" else shown_as("m", found.mechanism.display)[0]
     ends = flat([0j, *lever.images.values(), *(one.image for one in lever.forces)])
     # names and arrows need room around the lever
     room = np.array([WIDE * wide, high - TOP - FOOT - GUTTER]) - 46.0
-    return round_scale(float(np.max(factor * np.ptp(ends, axis=0) / room)), 1.0)
+    return round_scale(float(np.max(factor * np.ptp(ends, axis=0) / room)))
 
 
 def draw_outlines(page: Page, view: PageView, found: ForcePolygons, lever: Lever, factor: float) -> None:

@@ -9,8 +9,8 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
+from centrode.numerics.round_scales import round_scale
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.diagram_drawing import typeset
 from centrode.present.displayed_units import plain, shown_as

@@ -6,7 +6,6 @@ import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from centrode.dynamics.force_polygons.polygons import sheet_of
 from centrode.locale import _
 from centrode.present.displayed_units import plain
 from centrode.present.page import Page
@@ -21,11 +20,6 @@ LINE = 3.7
 """From line to line [mm]."""
 LETTER = 1.33
 """Width of a letter [mm]."""
-
-
-def sheet_size(paper: str) -> tuple[float, float]:
-    """Width and height of the paper [mm]."""
-    return sheet_of(paper)
 
 
 def write_title(page: Page, column: float, title: str, mechanism: Mechanism) -> None:

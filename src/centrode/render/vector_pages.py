@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
+from centrode.numerics.round_scales import round_scale
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
 from centrode.present.displayed_units import plain, shown_as
