@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.model.settings import shown_as
 from centrode.present.cams.driving_cam import driving_cams
-from centrode.present.displayed_units import shown_as
 from centrode.present.scene import LinkageScene, box, span
 from centrode.present.wheels import pitch_circles, reaches
 

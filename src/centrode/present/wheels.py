@@ -12,7 +12,6 @@ from centrode.model.mechanism import FRAME
 from centrode.present.scene import Array, LinkageScene, Samples, span, turn_vectors
 
 if TYPE_CHECKING:
-    from centrode.analysis.instant_centres.bodies import Pair
     from centrode.model.mechanism import Drive, Gear, Rolling
 
 BARREL = 0.8  # length of a barrel as a part of the shortest length of its cylinder
@@ -140,11 +139,3 @@ def _shaft(scene: LinkageScene, gear: Gear, link: str, sample: int) -> Array | N
     held = scene.mechanism.points_of(gear.carrier)
     shared = [point for point in scene.mechanism.points_of(link) if point in held]
     return scene.tracks[shared[0]][sample] if shared else None
-
-
-# Symbols of instant centres as mathematical text.
-
-
-def subscript(pair: Pair, bodies: int) -> str:
-    """The symbol of a centre as mathematical text."""
-    return f"$P_{{{pair[0]}{',' if bodies > 10 else ''}{pair[1]}}}$"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from centrode.locale import speaking
-from centrode.present.displayed_units import shown_as
+from centrode.model.settings import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.render.netcdf import write_dataset
 from centrode.render.outlines import write_outlines

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
+from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import FORCE_SCALES, round_scale
 from centrode.present.diagram_drawing import arrow, flat
-from centrode.present.displayed_units import shown_as
 from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Array, Page, PageView, new_page
 from centrode.present.style import INK, MUTED, Pen, pens

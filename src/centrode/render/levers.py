@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
+from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset
-from centrode.present.displayed_units import shown_as
 from centrode.present.page import Page, PageView, new_page
 from centrode.present.scene import corners
 from centrode.present.style import INK, pens

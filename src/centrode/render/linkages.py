@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 
 from centrode.errors import Status
 from centrode.locale import _
+from centrode.model.settings import shown_as
 from centrode.present.curves import (
     CUT_DASHES,
     draw_parts,
@@ -22,7 +23,7 @@ from centrode.present.curves import (
     write_legend,
     write_title,
 )
-from centrode.present.displayed_units import formula, label_with_unit, shown_as
+from centrode.present.displayed_units import formula, label_with_unit
 from centrode.present.drawing import MARGIN, draw_mechanism
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
+from centrode.model.settings import shown_as
 from centrode.present.curves import write_legend, write_title
-from centrode.present.displayed_units import formula, label_with_unit, shown_as
+from centrode.present.displayed_units import formula, label_with_unit
 from centrode.present.signs import cross, fixed_hinge, ground, turning_arrow
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals
 from centrode.render.outlines import GREY, STROKES, group_by_layer

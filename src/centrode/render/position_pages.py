@@ -10,10 +10,11 @@ import xarray
 from matplotlib.figure import Figure
 
 from centrode.locale import _
+from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.diagram_drawing import typeset
-from centrode.present.displayed_units import plain, shown_as
+from centrode.present.displayed_units import plain
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Page, PageView, new_page

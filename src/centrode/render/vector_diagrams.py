@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.locale import _
+from centrode.model.settings import shown_as
 from centrode.present.diagram_drawing import (
     COLUMN,
     CORNER,
@@ -20,7 +21,6 @@ from centrode.present.diagram_drawing import (
     typeset,
     write_head,
 )
-from centrode.present.displayed_units import shown_as
 from centrode.present.page import Array, Page, PageView, new_page
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.quantities import typeset_unit

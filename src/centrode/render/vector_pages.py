@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
+from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
-from centrode.present.displayed_units import plain, shown_as
+from centrode.present.displayed_units import plain
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.linkage_scene import scene_of
 from centrode.present.page import Array, Page, PageView, new_page

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from centrode.model.settings import shown_as
 from centrode.present.cams.walking_wheel import draw_wheel, wheel_keys, window
 from centrode.present.curves import write_title
-from centrode.present.displayed_units import label_with_unit, shown_as
+from centrode.present.displayed_units import label_with_unit
 from centrode.render.spelling import DrawingSpelling
 from centrode.sheets.texts import Number
 

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.errors import Status
-from centrode.model.mechanism import Display, Mechanism
 from centrode.quantities import display_unit, status_word
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from centrode.model.mechanism import Display, Mechanism
 
 
 def value_text(at: float, unit: str, display: Display) -> str:

@@ -21,13 +21,13 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
+from centrode.model.settings import shown_as
 from centrode.present import signs
 from centrode.present.animations.layers import Array, Layer, follower_captions, turned_caption
 from centrode.present.animations.stage import Stage
 from centrode.present.animations.video_files import Animation, Pace, Said, size_of, write_stage
 from centrode.present.cams.follower_drawing import CAM, CHAIN, ROLLER, FollowerDrawing
 from centrode.present.cams.walking_wheel import draw_wheel, reach, wheel_keys
-from centrode.present.displayed_units import shown_as
 from centrode.present.scene import turn_vectors
 from centrode.present.sheet import View
 from centrode.present.style import GROUND, INK, MUTED

@@ -17,11 +17,11 @@ from centrode.locale import _
 from centrode.model.labels import body_name, sliders_of
 from centrode.model.reading import FRAME
 from centrode.present.animations.layers import FAR, WHOLE, Array, MotionLayer
+from centrode.present.displayed_units import centre_symbol
 from centrode.present.scene import LinkageScene
 from centrode.present.sphere.globe import draw_line
 from centrode.present.sphere.sphere_scene import Globe, laid
 from centrode.present.style import pens
-from centrode.present.wheels import subscript
 from centrode.present.window import carried_by, within
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ class CentresLayer(MotionLayer):
     def symbol(self, pair: Sequence[str]) -> str:
         """How the centre of a pair is called, by the bodies' numbers."""
         first, second = sorted((self.bodies.index(name) for name in pair), reverse=True)
-        return subscript((first, second), len(self.bodies))
+        return centre_symbol((first, second), len(self.bodies))
 
     def entries(self) -> Sequence[tuple[Artist, str]]:
         """The bodies by number."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from centrode.cams.followers.geometry import Oscillating
 from centrode.errors import Status
 from centrode.locale import decimal_mark
-from centrode.present.displayed_units import shown_as
+from centrode.model.settings import shown_as
 from centrode.present.linkage_scene import scene_of
 from centrode.present.scene import LinkageScene
 from centrode.present.sheet import View

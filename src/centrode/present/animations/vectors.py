@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
 from centrode.locale import _, decimal_mark, ngettext
+from centrode.model.settings import shown_as
 from centrode.present.animations.layers import NOTHING, Array, Layer, MotionLayer, ScaleArrow
 from centrode.present.animations.stage import ARROW_HEAD, arrow_outlines
-from centrode.present.displayed_units import shown_as
 from centrode.present.scene import LinkageScene
 from centrode.present.sphere.sphere_scene import Globe
 from centrode.present.style import INK, pens
