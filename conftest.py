@@ -24,10 +24,10 @@ from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import centrode as ct
 from blank_canvas import blank_pictures
+from centrode.animation import animate
 from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
-from centrode.present.animations import animate
 
 settings.register_profile(
     "house", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
@@ -80,7 +80,7 @@ def run_as_process(command: str) -> tuple[int, str]:
 def run_here(command: str) -> tuple[int, str]:
     """What `run_as_process` returns, without the start of a process: about a second for each of a hundred commands.
 
-    Pictures are written blank, animations short: tests/cli and tests/present render them. The language and the
+    Pictures are written blank, animations short: tests/cli and tests/render render them. The language and the
     environment are afterwards what they were. Words are split as a shell splits them; what a shell would do more
     than that is refused.
     """

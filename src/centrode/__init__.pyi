@@ -60,7 +60,7 @@ from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
 from .analysis.transmission import transmission_results as transmission_results
-from .study.run import study as study
+from .dynamics.motion_results import study as study
 from .dynamics.motion_results import MotionResults as MotionResults
 from .kinematics.check import MechanismCheck as MechanismCheck
 
@@ -137,12 +137,12 @@ from .cams.parameter_choice.search import choose_cam as choose_cam
 from .cams.parameter_choice.search import CamChoice as CamChoice
 
 # Animations
-from .present import animate as animate
-from .present import Shown as Shown
-from .present import Pace as Pace
-from .present import Animation as Animation
-from .present import animate_motion as animate_motion
-from .present import animate_centrodes as animate_centrodes
+from .animation.animate import animate as animate
+from .animation.animate import Shown as Shown
+from .animation.video_files import Pace as Pace
+from .animation.video_files import Animation as Animation
+from .animation.animate import animate_motion as animate_motion
+from .animation.animate import animate_centrodes as animate_centrodes
 
 # Equations in symbols
 from .equations.derivation import equations as equations
@@ -162,14 +162,14 @@ from .analysis.instant_centres.results import CentrodeResults as CentrodeResults
 from .analysis.instant_centres.bodies import body_names as body_names
 from .model.labels import body_name as body_name
 from .kinematics.motion import initial_place as initial_place
-from .study.texts import place_words as place_words
+from .model.labels import place_words as place_words
 
 # Integration, variants, words
 from .equations.integration import integrate as integrate
 from .equations.integration import integration_results as integration_results
 from .equations.integration import closed_motion as closed_motion
-from .study.variant_results import variants as variants
-from .study.variant_results import spoken_variants as spoken_variants
+from .assignments.results import variants as variants
+from .assignments.results import spoken_variants as spoken_variants
 
 # Many mechanisms
 from .sweeps.sweep import sweep as sweep
@@ -188,19 +188,19 @@ from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
 from .render.netcdf import write_motion_netcdf as write_motion_netcdf
-from .study.among import motion_among as motion_among
-from .study.among import moving_points as moving_points
-from .present import mechanism_drawing as mechanism_drawing
-from .present import drawing_svg as drawing_svg
-from .present import write_drawing_svg as write_drawing_svg
-from .present import write_drawing_dxf as write_drawing_dxf
-from .present import mjcf_text as mjcf_text
-from .present import workbook_of_csv as workbook_of_csv
-from .present import spell_with_comma as spell_with_comma
-from .present import TableSpelling as TableSpelling
-from .present import darkened as darkened
+from .kinematics.motion import motion_among as motion_among
+from .kinematics.motion import moving_points as moving_points
+from .render.drafting.sheet import mechanism_drawing as mechanism_drawing
+from .render.drafting.svg import drawing_svg as drawing_svg
+from .render.drafting.svg import write_drawing_svg as write_drawing_svg
+from .render.drafting.dxf import write_drawing_dxf as write_drawing_dxf
+from .export.mjcf import mjcf_text as mjcf_text
+from .render.workbooks import workbook_of_csv as workbook_of_csv
+from .render.table_spelling import spell_with_comma as spell_with_comma
+from .render.table_spelling import TableSpelling as TableSpelling
+from .render.drawing.style import darkened as darkened
 from .report.variants.folders import write_variants as write_variants
-from .present import save_figures as save_figures
+from .render.figures.files import save_figures as save_figures
 
 # Reports
 from .report import report as report

@@ -15,8 +15,7 @@ import centrode as ct
 from cam_shapes import exchanged
 from centrode.errors import InputError
 from centrode.model.settings import Display
-from centrode.present import dxf_files
-from centrode.render import write_table
+from centrode.render import dxf_files, write_table
 from centrode.render.outlines import write_outlines_dxf, write_outlines_svg
 
 ezdxf = pytest.importorskip("ezdxf")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.present.cams.driving_cam import driving_cams
+from centrode.scenes.driving_cams import driving_cams
 
 EPS = np.finfo(float).eps
 

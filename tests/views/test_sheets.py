@@ -19,7 +19,6 @@ import pytest
 import centrode as ct
 from centrode.locale import _, choose_language
 from centrode.model.settings import Display
-from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -28,6 +27,7 @@ from centrode.render.document.typst import quote
 from centrode.render.files import write_table
 from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.table_spelling import TableSpelling
 from centrode.render.terminal import table_text
 from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table

@@ -12,10 +12,10 @@ import numpy as np
 
 from centrode.locale import speaking
 from centrode.model.settings import shown_as
-from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.render.netcdf import write_dataset
 from centrode.render.outlines import write_outlines
 from centrode.render.spelling import PlainSpelling
+from centrode.render.table_spelling import PLAIN, TableSpelling
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display

@@ -13,8 +13,14 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.model.settings import Display
-from centrode.present.cams.follower_drawing import GAP, WALLS, FollowerDrawing
-from centrode.present.cams.walking_wheel import (
+from centrode.render.document.blocks import Moving, Outline, shown
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import Numbers
+from centrode.render.drawing.cams import GAP, WALLS, FollowerDrawing
+from centrode.render.drawing.linkage import MARGIN
+from centrode.render.drawing.signs import slider_outline
+from centrode.render.drawing.style import GROUND, INK, MUTED, house_style
+from centrode.render.drawing.walking_wheel import (
     CAM,
     CARRIER,
     FREE,
@@ -24,18 +30,12 @@ from centrode.present.cams.walking_wheel import (
     reach,
     window,
 )
-from centrode.present.drawing import MARGIN
-from centrode.present.sheet import View
-from centrode.present.signs import slider_outline
-from centrode.present.style import GROUND, INK, MUTED, house_style
-from centrode.render.document.blocks import Moving, Outline, shown
-from centrode.render.document.figures import picture
-from centrode.render.document.numbers import Numbers
+from centrode.scenes.places import View
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.walking_wheel import WheelMover, WheelPose
-    from centrode.present.cams.driving_cam import DrivingCam
+    from centrode.scenes.driving_cams import DrivingCam
 
 # Signs that shapes are made of: circles, hatched lines.
 

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.locale import _
-from centrode.render import figures
 from centrode.render.document import blocks
 from centrode.render.document.cam_player import moving_follower, moving_wheel
 from centrode.render.document.figures import picture
@@ -17,9 +16,10 @@ from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers, spelled_number
 from centrode.render.document.scale import INCH, drawn_to_scale, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
-from centrode.render.force_pages import drawing_end, group_scales
-from centrode.render.instant_pages import DRAWING as INSTANT
-from centrode.render.position_pages import DRAWING as POSITIONS
+from centrode.render.figures import pictures as figures_pictures
+from centrode.render.pages.force_polygons import drawing_end, group_scales
+from centrode.render.pages.instants import DRAWING as INSTANT
+from centrode.render.pages.positions import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MotionPlayer
 from centrode.sheets.outlines import CamPlayer, WheelPlayer
@@ -81,7 +81,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return _facts(facts, spelling.text(caption), spelling)
         case Illustration(picture_or_name, caption):
             shown = pictures[picture_or_name] if isinstance(picture_or_name, str) else picture_or_name
-            figure = figures.figure_of(shown, spelling.numbers.display)
+            figure = figures_pictures.figure_of(shown, spelling.numbers.display)
             if isinstance(shown, GroupPage | LeverPage):
                 # cut from its page: the column beside it stands in the text of the chapter
                 name = spelling.text(shown.title if caption is None else caption)

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 from centrode import render
+from centrode.assignments.results import FAULT, STEPS, VariantResults, VariantRow, Variants, compute_variant
+from centrode.assignments.tables import Table, Variant, read_variants
 from centrode.equations.integration import IntegrationResults
 from centrode.errors import InputError
 from centrode.files.drafts import clear_folder, draft_folder, refusals, remove_file, replace_file, write_whole
@@ -23,9 +25,7 @@ from centrode.files.locks import hold_lock
 from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
-from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, Variants, compute_variant
-from centrode.study.variant_tables import Table, Variant, read_variants
+from centrode.render.table_spelling import PLAIN, TableSpelling
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
 from centrode.views import motion
