@@ -12,7 +12,8 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from contextlib import nullcontext, redirect_stderr, redirect_stdout
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, nullcontext, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -24,7 +25,7 @@ from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import centrode as ct
 from blank_canvas import blank_pictures
-from centrode.animation import animate
+from centrode.animation import animate, cams
 from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
@@ -45,7 +46,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 OWN_PROCESS = ("README.md",)
 """Pages whose commands are started as a reader starts them, pictures and all; those of the others run here."""
-FEW_FRAMES = {"FRAMES": 6, "FRAMES_OF_A_STEP": 6, "FRAMES_OF_A_TURN": 6}
+FEW_FRAMES = {animate: ("FRAMES",), cams: ("FRAMES_OF_A_STEP", "FRAMES_OF_A_TURN")}
 """What `--animate` writes here where it would write 36 to 60; `centrode animate` is typed with its own numbers."""
 FILE_NAME = re.compile(r"# ([\w-]+\.toml)\n")
 
@@ -77,6 +78,15 @@ def run_as_process(command: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
+@contextmanager
+def few_frames() -> Iterator[None]:
+    """Context in which animations have six frames."""
+    with ExitStack() as stack:
+        for module, names in FEW_FRAMES.items():
+            stack.enter_context(mock.patch.multiple(module, **dict.fromkeys(names, 6)))
+        yield
+
+
 def run_here(command: str) -> tuple[int, str]:
     """What `run_as_process` returns, without the start of a process: about a second for each of a hundred commands.
 
@@ -89,7 +99,7 @@ def run_here(command: str) -> tuple[int, str]:
     assert not re.search(r"[|&;<>$`*?~\\]", unquoted), f"{command}: this page needs a shell, see OWN_PROCESS"
     streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", newline="\n") for _stream in range(2)]
     with (
-        mock.patch.multiple(animate, **FEW_FRAMES) if "--animate" in words else nullcontext(),
+        few_frames() if "--animate" in words else nullcontext(),
         blank_pictures(),
         mock.patch.dict(os.environ, {"LANGUAGE": "en"}),
         redirect_stdout(streams[0]),

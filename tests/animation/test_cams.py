@@ -13,8 +13,7 @@ from matplotlib.patches import Circle
 from PIL import Image
 
 import centrode as ct
-from centrode.animation.animate import animate_walking
-from centrode.animation.cams import TurningCamLayer, WalkingLayer
+from centrode.animation.cams import TurningCamLayer, WalkingLayer, animate_body
 from centrode.animation.stage import Stage
 from centrode.scenes.places import View
 
@@ -50,7 +49,7 @@ def test_a_walking_wheel_is_written(tmp_path: Path) -> None:
     said: list[tuple[int, int]] = []
     for dark in (False, True):
         path = tmp_path / f"{dark}.gif"
-        animate_walking(
+        animate_body(
             ct.walking_wheel(cam),
             path,
             cam.title,

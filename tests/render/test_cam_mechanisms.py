@@ -9,7 +9,7 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
-from centrode.animation.animate import animate_follower
+from centrode.animation.cams import animate_body
 from centrode.render.drawing.cams import draw_cams
 from centrode.render.drawing.tags import cam_lines
 from centrode.scenes.linkage import scene_of
@@ -109,9 +109,7 @@ def test_a_turn_is_written_frame_by_frame(name, tmp_path):
     told = []
     body = ct.follower_cam(ct.load_cam(name))
     for number in range(2):
-        animate_follower(
-            body, tmp_path / f"{number}.gif", name, frames=4, said=lambda *done: told.append(done)
-        )
+        animate_body(body, tmp_path / f"{number}.gif", name, frames=4, said=lambda *done: told.append(done))
     with Image.open(tmp_path / "0.gif") as animation:
         assert animation.n_frames == 4
     assert told[:4] == [(1, 4), (2, 4), (3, 4), (4, 4)]

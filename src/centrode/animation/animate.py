@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.animation import video_files
-from centrode.animation.cams import follower_stage, roller_stage, walking_stage
 from centrode.animation.centrodes import CentresLayer, CentrodesLayer
 from centrode.animation.frames import Course, Film, course_from, course_of, film_from, film_of
 from centrode.animation.layers import Layer, instant_captions, scene_of_film, statuses_of
@@ -44,14 +42,8 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.analysis.instant_centres.results import CentrodeResults
-    from centrode.cams.followers.geometry import FollowerCam
-    from centrode.cams.followers.profile_results import FollowerProfileResults
-    from centrode.cams.profiles import ProfileBody
-    from centrode.cams.results import CamProfileResults, WalkingWheelResults
-    from centrode.cams.walking_wheel import WheelMover
     from centrode.dynamics.motion_results import MotionResults
     from centrode.model.mechanism import Mechanism
-    from centrode.model.settings import Display
 
 # What an animation of a mechanism shows beside its links: names that are asked for, and the layers they stand
 # for.
@@ -253,17 +245,10 @@ def _about(course: Course) -> list[str]:
     return found
 
 
-# Animations of results that are there already: a motion, centrodes, a walking wheel, a cam with roller or
-# follower.
-#
-# What `frames`, `dark` and `said` are is told by `animate_motion` for all of them; what is shown of cams has
-# the units of
-# `display`, metres and radians if it is left out.
+# Animations of results that are there already: a motion, centrodes.
 
 FRAMES = 48
-FRAMES_OF_A_STEP = 36
 PER_SECOND = 100.0 / 7.0
-FRAMES_OF_A_TURN, PER_SECOND_OF_A_TURN = video_files.FRAMES, video_files.PER_SECOND
 
 
 def animate_motion(
@@ -286,7 +271,7 @@ def animate_motion(
     path : Path
         The file, GIF or MP4 by the ending of its name.
     frames : int
-        Of the motion one way; 48 if left out, 36 of a step of a walking wheel, 60 of a turn of a cam.
+        Of the motion one way; 48 if left out.
     dark : bool
         Light lines on a dark ground.
     said : callable
@@ -333,66 +318,3 @@ def animate_centrodes(
 def animate_rolling(results: CentrodeResults, path: Path, dark: bool = False) -> None:
     """Write an animation (GIF or MP4) of the centrodes of a result; raises InputError where nothing rolls."""
     animate_centrodes(results.mechanism, results.motion, results.centrodes, path, dark)
-
-
-def animate_walking(
-    wheel: WheelMover,
-    path: Path,
-    title: str = "",
-    display: Display | None = None,
-    *,
-    frames: int | None = None,
-    dark: bool = False,
-    said: Said = no_progress,
-) -> None:
-    """Write an animation (GIF or MP4) of one step of a walking wheel, that of `walking_wheel`, seen from its hub."""
-    stage = walking_stage(wheel, frames or FRAMES_OF_A_STEP, SIZE, title, display, dark=dark)
-    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), said)
-
-
-def animate_cam_body(
-    body: ProfileBody,
-    path: Path,
-    title: str = "",
-    display: Display | None = None,
-    *,
-    frames: int | None = None,
-    dark: bool = False,
-    said: Said = no_progress,
-) -> None:
-    """Write an animation (GIF or MP4) of a turn of a cam, that of `cam_body`, below its roller, or there and back."""
-    stage = roller_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
-    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)
-
-
-def animate_step(results: WalkingWheelResults, path: Path, dark: bool = False) -> None:
-    """Write an animation of one step of the walking wheel of a result; nothing where there is none."""
-    if results.wheel is not None:
-        animate_walking(results.wheel, path, _(results.cam.title), results.cam.display, dark=dark)
-
-
-def animate_profile(results: CamProfileResults, path: Path, dark: bool = False) -> None:
-    """Write an animation of a turn of the cam of a result below its roller; nothing where there is no profile."""
-    if results.body is not None:
-        animate_cam_body(results.body, path, _(results.cam.title), results.cam.display, dark=dark)
-
-
-def animate_follower(
-    body: FollowerCam,
-    path: Path,
-    title: str = "",
-    display: Display | None = None,
-    *,
-    frames: int | None = None,
-    dark: bool = False,
-    said: Said = no_progress,
-) -> None:
-    """Write an animation (GIF or MP4) of one turn of a cam, that of `follower_cam`, below its follower."""
-    stage = follower_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
-    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)
-
-
-def animate_turning_cam(results: FollowerProfileResults, path: Path, dark: bool = False) -> None:
-    """Write an animation (GIF or MP4) of one turn of a cam below its follower, of the results of its profile."""
-    cam = results.cam
-    animate_follower(results.body, path, _(cam.title), cam.display, dark=dark)

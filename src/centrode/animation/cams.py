@@ -16,11 +16,23 @@ from matplotlib.patches import Circle, Polygon
 from centrode.animation.frames import Loop, frame_ways
 from centrode.animation.layers import Array, Layer, follower_captions, turned_caption
 from centrode.animation.stage import Stage
-from centrode.animation.video_files import Animation, Pace, Said, size_of, write_stage
+from centrode.animation.video_files import (
+    FRAMES,
+    PER_SECOND,
+    SIZE,
+    Animation,
+    Pace,
+    Said,
+    Timing,
+    no_progress,
+    size_of,
+    write_stage,
+)
 from centrode.cams.followers.base_circle import follower_cam
-from centrode.cams.profiles import cam_body
-from centrode.cams.results import walking_wheel
+from centrode.cams.profiles import ProfileBody, cam_body
+from centrode.cams.results import WalkingWheelResults, walking_wheel
 from centrode.cams.roller_path import frames as frames_along
+from centrode.cams.walking_wheel import WheelMover
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam_files import AnyCam, require_curvature_cam
@@ -34,8 +46,8 @@ from centrode.scenes.places import View, turn_vectors
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
-    from centrode.cams.profiles import ProfileBody
-    from centrode.cams.walking_wheel import WheelMover
+    from centrode.cams.followers.profile_results import FollowerProfileResults
+    from centrode.cams.results import CamProfileResults
     from centrode.model.settings import Display
 
 POINTS = 720
@@ -225,3 +237,57 @@ def _period(cam: AnyCam, pace: Pace) -> float:
     if pace.speed is not None:
         raise InputError("speed", _("a cam has no speed of its own"), _("ask for a duration instead"))
     return 1.0
+
+
+# Animations of results that are there already.
+
+FRAMES_OF_A_STEP, STEPS_PER_SECOND = 36, 100.0 / 7.0
+FRAMES_OF_A_TURN = FRAMES
+
+
+def animate_body(
+    body: WheelMover | ProfileBody | FollowerCam,
+    path: Path,
+    title: str = "",
+    display: Display | None = None,
+    *,
+    frames: int | None = None,
+    dark: bool = False,
+    said: Said = no_progress,
+) -> None:
+    """Write an animation (GIF or MP4): a step of a walking wheel, a turn of a cam below its roller or its follower.
+
+    Parameters
+    ----------
+    body : WheelMover, ProfileBody or FollowerCam
+        Of `walking_wheel`, `cam_body` or `follower_cam`. A cam that is open turns there and back below its roller.
+    path : Path
+        The file, GIF or MP4 by the ending of its name.
+    title : str
+        Above the pictures.
+    display : Display
+        Units of what is written; metres and radians if left out.
+    frames : int
+        36 of a step, 60 of a turn if left out.
+    dark : bool
+        Light lines on a dark ground.
+    said : callable
+        Told after each frame how many are done, and of how many.
+    """
+    if isinstance(body, WheelMover):
+        stage = walking_stage(body, frames or FRAMES_OF_A_STEP, SIZE, title, display, dark=dark)
+        rate = STEPS_PER_SECOND
+    else:
+        make = roller_stage if isinstance(body, ProfileBody) else follower_stage
+        stage = make(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
+        rate = PER_SECOND
+    write_stage(stage, Path(path), Timing(stage.frames, rate), said)
+
+
+def animate_body_of(
+    results: WalkingWheelResults | CamProfileResults | FollowerProfileResults, path: Path, dark: bool = False
+) -> None:
+    """Write an animation of the wheel or the cam of a result; nothing where there is none."""
+    body = results.wheel if isinstance(results, WalkingWheelResults) else results.body
+    if body is not None:
+        animate_body(body, path, _(results.cam.title), results.cam.display, dark=dark)

@@ -708,7 +708,7 @@ FOLLOWER_PROFILE = Topic(
     command=Command(
         help="",
         needs=NEEDS_FOLLOWER,
-        animation=Lazily("centrode.animation.animate", "animate_turning_cam"),
+        animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="cam.gif",
     ),
     document=InDocuments(
@@ -778,7 +778,7 @@ CAM_PROFILE = Topic(
         help="",
         options=(FlagOption("groove", mark("Also the outer wall of a groove that the roller runs in.")),),
         needs=NEEDS_CURVATURE_LAW,
-        animation=Lazily("centrode.animation.animate", "animate_profile"),
+        animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="cam.gif",
     ),
     document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),), instants=False),
@@ -794,7 +794,7 @@ WALKING_WHEEL = Topic(
     command=Command(
         help="",
         needs=NEEDS_CURVATURE_LAW,
-        animation=Lazily("centrode.animation.animate", "animate_step"),
+        animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="walking-wheel.gif",
     ),
     document=InDocuments(
