@@ -11,14 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 
 from centrode.render.drawing import signs
+from centrode.render.drawing.linkage import frame_axes, write_names
 from centrode.render.drawing.style import GROUND, INK, Pen, pens
-from centrode.render.drawing.tags import label_places
-from centrode.render.drawing.texts import plain
 from centrode.scenes.places import corners
 from centrode.scenes.sphere import Array, Globe, great_arc
 
-MARGIN = 0.10  # room around the drawing, as a part of its extent
-NAME_POINTS = 10.0  # height of the names of points [pt]
 HIDDEN = (0, (4, 3))
 RIM, SHADE = "#C8C8C8", "#FAFAFA"
 
@@ -51,10 +48,7 @@ def draw_globe(
 
 def frame_globe(axes: Axes, globe: Globe) -> None:
     """The outline of the sphere, equal scales, and limits that hold the whole motion."""
-    room = MARGIN * globe.extent
-    axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(globe.low[0] - room, globe.high[0] + room)
-    axes.set_ylim(globe.low[1] - room, globe.high[1] + room)
+    frame_axes(axes, globe)
     axes.grid(False)
     axes.set_xticks([])
     axes.set_yticks([])
@@ -145,25 +139,13 @@ def turning_ring(pivot: Array, towards: Array, radius: float) -> Array:
 def draw_names(axes: Axes, globe: Globe, sample: int) -> None:
     """The points' names beside them, on the side away from the lines."""
     places = globe.at(sample)
-    point = globe.extent / (72.0 * globe.inches)
     segments = []
     for link in globe.mechanism.links.values():
         outline = [places[name] for name in corners(link) if name in places]
         for start, end in pairwise([*outline, *outline[:1]] if len(outline) > 2 else outline):
             segments += list(pairwise(globe.flat(great_arc(start, end))[::6]))
     flat = {name: globe.flat(place) for name, place in places.items()}
-    offset = globe.sign + 0.85 * NAME_POINTS * point
-    for name, centre in label_places(flat, segments, offset, NAME_POINTS * point).items():
-        axes.text(
-            centre[0],
-            centre[1],
-            plain(name),
-            fontsize=NAME_POINTS,
-            color=INK,
-            ha="center",
-            va="center",
-            zorder=8,
-        )
+    write_names(axes, globe, flat, segments)
 
 
 def arcs_on_paper(globe: Globe, sample: int) -> list[tuple[Array, Array]]:

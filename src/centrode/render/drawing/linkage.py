@@ -16,7 +16,7 @@ from centrode.render.drawing.style import GROUND, INK, Pen, pens
 from centrode.render.drawing.tags import drive_arcs, ground_line, label_places, lines, unit
 from centrode.render.drawing.texts import plain
 from centrode.scenes.linkage import cylinders, pitch_circles, round_track, straight_track, wheel_at
-from centrode.scenes.places import Array, LinkageScene, corners
+from centrode.scenes.places import Array, LinkageScene, MotionPlaces, corners
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Rolling
@@ -68,7 +68,7 @@ def draw_mechanism(
         draw_names(axes, scene, sample)
 
 
-def frame_axes(axes: Axes, scene: LinkageScene) -> None:
+def frame_axes(axes: Axes, scene: MotionPlaces) -> None:
     """Equal scales, and limits that hold the whole motion with its signs."""
     room = MARGIN * scene.extent
     axes.set_aspect("equal", adjustable="box")
@@ -229,10 +229,16 @@ def draw_drive(axes: Axes, scene: LinkageScene, sample: int) -> None:
 
 def draw_names(axes: Axes, scene: LinkageScene, sample: int) -> None:
     """The points' names beside them, on the side away from the lines."""
-    places = scene.at(sample)
+    write_names(axes, scene, scene.at(sample), lines(scene, sample))
+
+
+def write_names(
+    axes: Axes, scene: MotionPlaces, places: Mapping[str, Array], segments: Sequence[tuple[Array, Array]]
+) -> None:
+    """Names beside their places on paper, clear of the segments."""
     point = scene.extent / (72.0 * scene.inches)
     offset = scene.sign + 0.85 * NAME_POINTS * point
-    centres = label_places(places, lines(scene, sample), offset, NAME_POINTS * point)
+    centres = label_places(places, segments, offset, NAME_POINTS * point)
     for name, centre in centres.items():
         axes.text(
             centre[0],
