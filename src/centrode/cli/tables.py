@@ -60,8 +60,3 @@ def need_table(path: Path | None) -> None:
 def table_files(path: Path) -> list[Path]:
     """The file of a table, and the workbook beside it where the running command was asked for one."""
     return [path, path.with_suffix(".xlsx")] if asked_spelling().xlsx else [path]
-
-
-def spell_tables(folder: Path) -> None:
-    """Add workbooks and put decimal commas into the tables of a folder, as the running command was asked to."""
-    asked_spelling().spell(folder)
