@@ -42,13 +42,4 @@ def write_column(page: Page, column: float, title: str, heads: Sequence[str], li
         page.write(column, y - 0.5, text, size=8.0, va="top")
         y -= 1.35 * LINE
     y -= 0.6 * LINE
-    wrapped = [
-        part for line in lines for part in textwrap.wrap(line, letters, subsequent_indent="   ") or [""]
-    ]
-    room = int((y - 4.0) / LINE)
-    if len(wrapped) > room:
-        wrapped = [*wrapped[: room - 1], "…"]
-    for text in wrapped:
-        if text:
-            page.write(column, y, plain(text), size=6.3, va="top")
-        y -= LINE
+    page.write_lines(column, y, lines, letters=letters, step=LINE, size=6.3, indent=3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +38,8 @@ THICK = 0.4
 """Half the width of a link's line [mm]."""
 GAP = 0.5
 """Room around a name [mm]."""
+BELOW = 4.0
+"""Room below a column of lines [mm]."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,32 @@ class Page:
         written = self.overlay.text(x, y, text, fontsize=size, color=how.pop("color", INK), **how)
         self.boxes.append(self.box_of(written))
         return written
+
+    def write_lines(
+        self,
+        x: float,
+        y: float,
+        lines: Iterable[str],
+        *,
+        letters: int,
+        step: float,
+        size: float,
+        indent: int,
+        spelled: Callable[[str], str] = plain,
+    ) -> None:
+        """Lines below each other, wrapped to so many letters; what does not fit on the page is left out with dots."""
+        wrapped = [
+            part
+            for line in lines
+            for part in textwrap.wrap(line, letters, subsequent_indent=indent * " ") or [""]
+        ]
+        room = int((y - BELOW) / step)
+        if len(wrapped) > room:
+            wrapped = [*wrapped[: room - 1], "…"]
+        for text in wrapped:
+            if text:
+                self.write(x, y, spelled(text), size=size, va="top")
+            y -= step
 
     def box_of(self, text: Text) -> Array:
         """Lower left and upper right corner of a text [mm]."""
@@ -263,13 +291,4 @@ def write_head(
         page.write(COLUMN, y, text if "$" in text else typeset(text), size=8.0, va="top")
         y -= 1.4 * LINE
     y -= 0.5 * LINE
-    wrapped = [
-        part for line in lines for part in textwrap.wrap(line, COLUMNS, subsequent_indent="    ") or [""]
-    ]
-    room = int((y - 4.0) / LINE)
-    if len(wrapped) > room:
-        wrapped = [*wrapped[: room - 1], "…"]
-    for text in wrapped:
-        if text:
-            page.write(COLUMN, y, typeset(text), size=6.5, va="top")
-        y -= LINE
+    page.write_lines(COLUMN, y, lines, letters=COLUMNS, step=LINE, size=6.5, indent=4, spelled=typeset)
