@@ -142,8 +142,8 @@ def _drawn(
 ) -> blocks.Picture:
     """The drawing of a page without its head and its column, with its scale in the caption."""
     if isinstance(page, VectorDiagramPage):
-        factor, unit = spelling.numbers.shown(page.diagram.unit)
-        scale = factor * page.diagram.scale
+        factor, unit = spelling.numbers.shown(page.unit)
+        scale = factor * page.scale
     else:  # a drawing of a mechanism has axes of its own, in which its scale can be read
         unit, scale = spelling.numbers.shown("m")[1], scale_of(figure)
     caption = _("{title}; a millimetre stands for {scale} {unit}").format(

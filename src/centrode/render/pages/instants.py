@@ -42,7 +42,6 @@ from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import SIGN_INCHES, LinkageScene
 
 if TYPE_CHECKING:
-    from centrode.analysis.graphic.diagrams import Diagrams
     from centrode.model.settings import Display
     from centrode.sheets.pages import InstantPage
 
@@ -58,47 +57,45 @@ ARC = 3.2
 
 def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     """A page A5 across: the mechanism at its scale, which is true on paper, with what its velocities say."""
-    found, spelling = sheet.diagrams, PlainSpelling(display)
+    spelling = PlainSpelling(display)
     page = new_page()
     factor, unit = shown_as("m", display)
-    greatest = max(map(abs, rates_of(found).values()), default=0.0)
-    per_mm = max(round_scale(greatest, LONGEST), found.velocity.scale)
-    scene, view = placed(found, factor, per_mm)
+    greatest = max((abs(one.rate) for one in sheet.velocities), default=0.0)
+    per_mm = max(round_scale(greatest, LONGEST), sheet.finest)
+    scene, view = placed(sheet, factor, per_mm)
     axes = view.axes(page)
     draw_mechanism_in(axes, scene)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
-    colours = pens(found.mechanism.link_names)
-    draw_velocities(page, view, found, factor, per_mm)
-    draw_centres(page, view, found, factor, colours)
-    draw_senses(page, view, scene, found, colours)
+    colours = pens(sheet.mechanism.link_names)
+    draw_velocities(page, view, sheet, factor, per_mm)
+    draw_centres(page, view, sheet, factor, colours)
+    draw_senses(page, view, scene, sheet, colours)
     for name, place in scene.at(0).items():
         page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
     speed_factor, speed_unit = shown_as("m/s", display)
     head = [
-        caption(found.mechanism, found.exact, 0),
-        f"μ_l = {factor * found.scale:g} {unit} " + _("per mm"),
+        caption(sheet.mechanism, sheet.instant, 0),
+        f"μ_l = {factor * sheet.scale:g} {unit} " + _("per mm"),
         f"μ_v = {speed_factor * per_mm:g} {typeset_unit(speed_unit)} " + _("per mm"),
     ]
     listed = [spelling.text(one) for one in sheet.lines]
-    write_head(page, spelling.text(sheet.title), found.mechanism, head, listed)
+    write_head(page, spelling.text(sheet.title), sheet.mechanism, head, listed)
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
     return page.figure
 
 
-def placed(found: Diagrams, factor: float, per_mm: float) -> tuple[LinkageScene, PageView]:
+def placed(sheet: InstantPage, factor: float, per_mm: float) -> tuple[LinkageScene, PageView]:
     """The scene with its signs as large as on the page, and a view of all but the instant centres that do not fit.
 
     Slots are as long as their pins travel in the whole motion; the view is that of the instant.
     """
-    scale = factor * found.scale
-    now = scene_of(found.mechanism, found.exact)
-    together = [data.drop_dims("event", errors="ignore") for data in (found.exact, found.course)]
-    whole = scene_of(found.mechanism, xarray.concat(together, dim="sample", data_vars="minimal"))
-    tips = [
-        factor * (found.places[name] + found.scale / per_mm * rate) for name, rate in rates_of(found).items()
-    ]
+    scale = factor * sheet.scale
+    now = scene_of(sheet.mechanism, sheet.instant)
+    together = [data.drop_dims("event", errors="ignore") for data in (sheet.instant, sheet.course)]
+    whole = scene_of(sheet.mechanism, xarray.concat(together, dim="sample", data_vars="minimal"))
+    tips = [factor * (one.place + sheet.scale / per_mm * one.rate) for one in sheet.velocities]
     chosen = np.vstack([now.low, now.high, flat(tips)]) if tips else np.array([now.low, now.high])
-    centres = [flat([factor * place])[0] for place in found.centres.values() if place is not None]
+    centres = [flat([factor * centre.place])[0] for centre in sheet.centres]
     for centre in sorted(centres, key=lambda at: float(np.abs(at - (now.low + now.high) / 2).max())):
         more = np.vstack([chosen, centre])
         if ((more.max(axis=0) - more.min(axis=0)) / scale > SIZE - 12.0).any():
@@ -107,11 +104,6 @@ def placed(found: Diagrams, factor: float, per_mm: float) -> tuple[LinkageScene,
     inches = SIGN_INCHES * now.extent / (SIGN * scale)
     scene = replace(whole, low=now.low, high=now.high, inches=inches)
     return scene, PageView.about(CORNER, SIZE, chosen, scale)
-
-
-def rates_of(found: Diagrams) -> dict[str, complex]:
-    """Velocities of the moving points [m/s]."""
-    return {name: found.velocity.images[name] for name in found.mechanism.moving_points}
 
 
 def draw_mechanism_in(axes: Axes, scene: LinkageScene) -> None:
@@ -124,56 +116,54 @@ def draw_mechanism_in(axes: Axes, scene: LinkageScene) -> None:
     draw_drive(axes, scene, 0)
 
 
-def draw_velocities(page: Page, view: PageView, found: Diagrams, factor: float, per_mm: float) -> None:
+def draw_velocities(page: Page, view: PageView, sheet: InstantPage, factor: float, per_mm: float) -> None:
     """Velocities of the moving points as arrows, a millimetre standing for `per_mm` [m/s]."""
-    for name, rate in rates_of(found).items():
-        start = view.mm(flat([factor * found.places[name]])[0])
-        end = start + flat([rate / per_mm])[0]
+    for one in sheet.velocities:
+        start = view.mm(flat([factor * one.place])[0])
+        end = start + flat([one.rate / per_mm])[0]
         if np.hypot(*(end - start)) < 1.0:
             continue
         arrow(page, start, end, INK, width=1.1)
-        page.name(end, symbol("v", name), clear=0.8, size=7.5)
+        page.name(end, symbol("v", one.point), clear=0.8, size=7.5)
 
 
 def draw_centres(
-    page: Page, view: PageView, found: Diagrams, factor: float, colours: Mapping[str, Pen]
+    page: Page, view: PageView, sheet: InstantPage, factor: float, colours: Mapping[str, Pen]
 ) -> None:
     """Instant centres with the perpendiculars that meet there, of those that lie on the page."""
     names: list[tuple[Array, list[str]]] = []
-    for link, centre in found.centres.items():
-        if centre is None:
-            continue
-        at = view.mm(flat([factor * centre])[0])
+    for centre in sheet.centres:
+        at = view.mm(flat([factor * centre.place])[0])
         if (at < CORNER).any() or (at > CORNER + SIZE).any():
             continue
-        for point in found.mechanism.links[link].coordinates:
-            place = view.mm(flat([factor * found.places[point]])[0])
+        for point in centre.points:
+            place = view.mm(flat([factor * point])[0])
             page.overlay.plot(*np.array([place, at]).T, color=MUTED, linewidth=0.6, linestyle="--", zorder=3)
             page.avoid([(place, at)])
         near = next((known for place, known in names if np.hypot(*(place - at)) < 1.0), None)
         if near is not None:
-            near.append(link)
+            near.append(centre.link)
             continue
-        names.append((at, [link]))
-        signs.cross(page.overlay, at, 1.0, colours[link].colour)
+        names.append((at, [centre.link]))
+        signs.cross(page.overlay, at, 1.0, colours[centre.link].colour)
     for at, links in names:
         text = ", ".join(symbol("P", link) for link in links[:4]) + (", …" if len(links) > 4 else "")
         page.name(at, text, clear=1.4, size=7.5)
 
 
 def draw_senses(
-    page: Page, view: PageView, scene: LinkageScene, found: Diagrams, colours: Mapping[str, Pen]
+    page: Page, view: PageView, scene: LinkageScene, sheet: InstantPage, colours: Mapping[str, Pen]
 ) -> None:
     """An arc with a head in the middle of every link that turns."""
     places = scene.at(0)
-    for link, turn in found.velocity.turns.items():
-        points = [places[name] for name in found.mechanism.links[link].coordinates if name in places]
-        if link not in found.centres or found.centres[link] is None or len(points) < 2:
+    for link, forward in sheet.senses.items():
+        points = [places[name] for name in sheet.mechanism.links[link].coordinates if name in places]
+        if len(points) < 2:
             continue
         middle = view.mm(0.5 * (points[0] + points[1]))
         radius = min(ARC, max(0.5 * ARC, 0.3 * float(np.hypot(*(points[1] - points[0]))) / view.scale))
         angle = float(np.arctan2(*(points[1] - points[0])[::-1])) + np.pi / 2
-        arc = angle + np.linspace(-2.2, 2.2, 25) * (1.0 if turn > 0 else -1.0)
+        arc = angle + np.linspace(-2.2, 2.2, 25) * (1.0 if forward else -1.0)
         path = middle + radius * np.stack([np.cos(arc), np.sin(arc)], axis=1)
         signs.turning_arrow(page.overlay, path, colours[link].colour)
         page.avoid(pairwise(path))

@@ -31,11 +31,8 @@ from centrode.render.pages.page import (
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
-    from centrode.analysis.graphic.diagrams import Diagram
-    from centrode.analysis.graphic.stage import Edge
-    from centrode.model.mechanism import Mechanism
     from centrode.model.settings import Display
-    from centrode.sheets.pages import VectorDiagramPage
+    from centrode.sheets.pages import DiagramStroke, VectorDiagramPage
 
 SHORT = 0.35
 """Vectors shorter than this [mm] are left out."""
@@ -51,70 +48,64 @@ DASHES: Mapping[str, Any] = {
 
 def vector_diagram_figure(sheet: VectorDiagramPage, display: Display) -> Figure:
     """A page A5 across: a diagram at its scale, which is true on paper, with the vector equations it was drawn by."""
-    found, diagram = sheet.diagrams, sheet.diagram
     page = new_page()
-    factor, unit = shown_as(diagram.unit, display)
-    scale = factor * diagram.scale
-    ends = [0j, *diagram.images.values(), *diagram.hidden.values()]
-    ends += [end for edge in diagram.edges for end in (edge.start, edge.end)]
-    view = PageView.about(CORNER, SIZE, flat([factor * end for end in ends]), scale)
-    colours = pens(found.mechanism.link_names)
-    drawn = draw_edges(page, view, diagram, factor, colours)
-    draw_images(page, view, diagram, factor, found.mechanism)
-    name_edges(page, view, drawn, diagram.order, factor, colours)
+    factor, unit = shown_as(sheet.unit, display)
+    scale = factor * sheet.scale
+    view = PageView.about(CORNER, SIZE, flat([factor * corner for corner in sheet.corners]), scale)
+    colours = pens(sheet.mechanism.link_names)
+    drawn = draw_strokes(page, view, sheet.strokes, factor, colours)
+    draw_images(page, view, sheet, factor)
+    name_strokes(page, view, drawn, sheet.order, factor, colours)
     spelling = PlainSpelling(display)
-    symbol = "μ_v" if diagram.order == 1 else "μ_a"
+    symbol = "μ_v" if sheet.order == 1 else "μ_a"
     head = [
-        caption(found.mechanism, found.exact, 0),
+        caption(sheet.mechanism, sheet.instant, 0),
         f"{symbol} = {scale:g} {typeset_unit(unit)} " + _("per mm"),
     ]
     write_head(
-        page, spelling.text(sheet.title), found.mechanism, head, [spelling.text(one) for one in sheet.lines]
+        page, spelling.text(sheet.title), sheet.mechanism, head, [spelling.text(one) for one in sheet.lines]
     )
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
     return page.figure
 
 
-def draw_edges(
-    page: Page, view: PageView, diagram: Diagram, factor: float, colours: Mapping[str, Pen]
-) -> list[Edge]:
+def draw_strokes(
+    page: Page, view: PageView, strokes: Sequence[DiagramStroke], factor: float, colours: Mapping[str, Pen]
+) -> list[DiagramStroke]:
     """Parts of vector equations and images of links; those too short or drawn already are left out."""
-    drawn: list[Edge] = []
+    drawn: list[DiagramStroke] = []
     seen: list[Array] = []
-    for edge in diagram.edges:
-        ends = np.array([view.mm(place) for place in flat([factor * edge.start, factor * edge.end])])
-        from_pole = edge.start == 0 and edge.kind in ("relative", "sliding", "image")
-        if np.hypot(*(ends[1] - ends[0])) < SHORT or from_pole:
+    for stroke in strokes:
+        ends = np.array([view.mm(place) for place in flat([factor * stroke.start, factor * stroke.end])])
+        if np.hypot(*(ends[1] - ends[0])) < SHORT:
             continue
         if any(min(abs(ends - other).max(), abs(ends[::-1] - other).max()) < SHORT for other in seen):
             continue
         seen.append(ends)
-        drawn.append(edge)
-        colour = colours[edge.link].colour if edge.link in colours else GROUND
-        if edge.kind == "image":
+        drawn.append(stroke)
+        colour = colours[stroke.link].colour if stroke.link in colours else GROUND
+        if stroke.kind == "image":
             page.overlay.plot(*ends.T, color=colour, linewidth=0.8, linestyle=DASHES["image"], zorder=4)
             page.avoid([(ends[0], ends[1])])
         else:
-            arrow(page, ends[0], ends[1], colour, DASHES.get(edge.kind, "-"))
+            arrow(page, ends[0], ends[1], colour, DASHES.get(stroke.kind, "-"))
     return drawn
 
 
-def draw_images(page: Page, view: PageView, diagram: Diagram, factor: float, mechanism: Mechanism) -> None:
+def draw_images(page: Page, view: PageView, sheet: VectorDiagramPage, factor: float) -> None:
     """The pole, and an arrow from it to the image of every point; images that coincide share a name.
 
     The pole is p_v or p_a, so that it is not taken for the image of a point P.
     """
     pole = view.mm(np.zeros(2))
-    ends: list[tuple[Array, list[str]]] = [(pole, ["p_v" if diagram.order == 1 else "p_a"])]
-    moving = {name: diagram.images[name] for name in mechanism.moving_points}
-    still = {name: diagram.images[name] for name in mechanism.frame.points if name in diagram.images}
-    for name, image in {**still, **moving, **diagram.hidden}.items():
+    ends: list[tuple[Array, list[str]]] = [(pole, ["p_v" if sheet.order == 1 else "p_a"])]
+    for name, image in sheet.images:
         end = view.mm(flat([factor * image])[0])
         near = next((names for at, names in ends if np.hypot(*(at - end)) < TOGETHER), None)
         if near is not None:
-            near.append(name.lower())
+            near.append(name)
             continue
-        ends.append((end, [name.lower()]))
+        ends.append((end, [name]))
         arrow(page, pole, end, INK, width=1.3)
     page.overlay.plot([pole[0]], [pole[1]], marker="o", markersize=3.0, color=INK, zorder=6)
     for end, names in ends:
@@ -122,14 +113,19 @@ def draw_images(page: Page, view: PageView, diagram: Diagram, factor: float, mec
         page.name(end, typeset(text), clear=1.0, size=9.0)
 
 
-def name_edges(
-    page: Page, view: PageView, edges: Sequence[Edge], order: int, factor: float, colours: Mapping[str, Pen]
+def name_strokes(
+    page: Page,
+    view: PageView,
+    strokes: Sequence[DiagramStroke],
+    order: int,
+    factor: float,
+    colours: Mapping[str, Pen],
 ) -> None:
     """Names of relative vectors and of the parts of accelerations, at their middles."""
     letter = "v" if order == 1 else "a"
-    for edge in edges:
-        if edge.kind in ("image", "carried"):
+    for stroke in strokes:
+        if stroke.kind in ("image", "carried"):
             continue
-        middle = view.mm(flat([factor * (edge.start + edge.end) / 2])[0])
-        colour = colours[edge.link].colour if edge.link in colours else GROUND
-        page.name(middle, symbol(letter, edge.name, edge.kind), clear=0.6, size=7.0, colour=colour)
+        middle = view.mm(flat([factor * (stroke.start + stroke.end) / 2])[0])
+        colour = colours[stroke.link].colour if stroke.link in colours else GROUND
+        page.name(middle, symbol(letter, stroke.name, stroke.kind), clear=0.6, size=7.0, colour=colour)
