@@ -274,13 +274,14 @@ def animate_body(
     said : callable
         Told after each frame how many are done, and of how many.
     """
+    rate = PER_SECOND
     if isinstance(body, WheelMover):
         stage = walking_stage(body, frames or FRAMES_OF_A_STEP, SIZE, title, display, dark=dark)
         rate = STEPS_PER_SECOND
+    elif isinstance(body, ProfileBody):
+        stage = roller_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
     else:
-        make = roller_stage if isinstance(body, ProfileBody) else follower_stage
-        stage = make(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
-        rate = PER_SECOND
+        stage = follower_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
     write_stage(stage, Path(path), Timing(stage.frames, rate), said)
 
 
