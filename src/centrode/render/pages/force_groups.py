@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +9,7 @@ from matplotlib.axes import Axes
 
 from centrode.render.drawing import signs
 from centrode.render.drawing.linkage import draw_body
-from centrode.render.drawing.style import GROUND, INK, MUTED, Pen, pens
+from centrode.render.drawing.style import GROUND, INK, MUTED, pens
 from centrode.render.drawing.texts import plain
 from centrode.render.pages.force_signs import force_arrows, moment_arc
 from centrode.render.pages.page import Array, Page, PageView, flat
@@ -18,8 +17,7 @@ from centrode.scenes.linkage import wheel_at
 from centrode.scenes.places import LinkageScene, corners
 
 if TYPE_CHECKING:
-    from centrode.dynamics.force_polygons.polygons import ForcePolygons, GroupForces
-    from centrode.model.mechanism import Guide
+    from centrode.sheets.force_pages import GroupPage, GuideSign
 
 RAIL = 14.0
 """Half the length of a guide's line [mm]."""
@@ -27,51 +25,35 @@ TINY = 1e-12
 """Moments smaller than this part of the greatest force times length are none."""
 
 
-def draw_group(
-    page: Page, view: PageView, found: ForcePolygons, group: GroupForces, scene: LinkageScene
-) -> None:
+def draw_group(page: Page, view: PageView, sheet: GroupPage, scene: LinkageScene) -> None:
     """Links, sliders and hinges of a group, its outer forces and the reactions of its outer joints."""
     axes = view.axes(page)
     sign = 1.1 * view.scale
-    colours = pens(found.mechanism.link_names)
     places = scene.at(0)
-    shown = draw_bodies(axes, page, view, scene, group, colours, sign)
-    for guide in found.mechanism.guides:
-        draw_guide(axes, page, view, scene, guide, group, found, sign)
-    pins = {joint.name for joint in group.joints if joint.kind == "hinge"}
-    pins |= {one.label for one in group.actions if one.source == "reaction"}
+    shown = draw_bodies(axes, page, view, scene, sheet, sign)
+    for guide in sheet.guides:
+        draw_guide(axes, page, view, scene, guide, sign)
     for name in shown:
-        if name in pins:
+        if name in sheet.pins:
             signs.hinge(axes, places[name], sign)
         else:
             signs.traced_point(axes, places[name], sign, INK)
         page.name(view.mm(places[name]), plain(name), clear=2.2, size=9.0)
-    draw_marks(page, view, found, group, scene.factor)
-    draw_forces(page, view, found, group, scene.factor)
+    draw_marks(page, view, sheet, scene.factor)
+    draw_forces(page, view, sheet, scene.factor)
 
 
-def draw_marks(page: Page, view: PageView, found: ForcePolygons, group: GroupForces, factor: float) -> None:
+def draw_marks(page: Page, view: PageView, sheet: GroupPage, factor: float) -> None:
     """Special points of the construction, if they lie in the view, with the lines on which they lie."""
-    for name, mark in group.marks:
-        at = view.mm(flat([factor * mark])[0])
+    for mark in sheet.marks:
+        at = view.mm(flat([factor * mark.place])[0])
         if (at < view.corner + 4.0).any() or (at > view.corner + view.size - 4.0).any():
             continue
         signs.cross(page.overlay, at, 1.2, INK)
-        page.name(at, name, clear=1.4, size=9.0)
-        hinges = [found.places[joint.name] for joint in group.joints if joint.kind == "hinge"]
-        for hinge in hinges:
-            arms = [other for other in hinges if other != hinge and on_line(hinge, other, mark)]
-            if arms:
-                end = view.mm(flat([factor * hinge])[0])
-                page.overlay.plot(
-                    *np.array([end, at]).T, color=MUTED, linewidth=0.6, linestyle="--", zorder=3
-                )
-
-
-def on_line(first: complex, second: complex, place: complex) -> bool:
-    """Whether a place lies on the line through two others."""
-    along, way = second - first, place - first
-    return abs((along.conjugate() * way).imag) <= 1e-9 * abs(along) * max(abs(way), abs(along))
+        page.name(at, mark.name, clear=1.4, size=9.0)
+        for hinge in mark.hinges:
+            end = view.mm(flat([factor * hinge])[0])
+            page.overlay.plot(*np.array([end, at]).T, color=MUTED, linewidth=0.6, linestyle="--", zorder=3)
 
 
 def draw_bodies(
@@ -79,13 +61,13 @@ def draw_bodies(
     page: Page,
     view: PageView,
     scene: LinkageScene,
-    group: GroupForces,
-    colours: Mapping[str, Pen],
+    sheet: GroupPage,
     sign: float,
 ) -> list[str]:
     """The links of a group with their numbers; returns the points that belong to them or to its sliders."""
     places, shown = scene.at(0), list[str]()
-    for number, body in zip(group.numbers, group.bodies, strict=True):
+    colours = pens(scene.mechanism.link_names)
+    for number, body in sheet.bodies:
         if body not in scene.mechanism.links:
             continue
         link = scene.mechanism.links[body]
@@ -100,34 +82,24 @@ def draw_bodies(
             disc = wheel_at(scene, wheel, 0) if wheel.link == body else None
             if disc is not None:
                 signs.wheel(axes, disc.centre, disc.radius, disc.angle, colours[body].colour, 1.0)
-    shown += [joint.name for joint in group.joints if joint.kind == "hinge"]
+    shown += sheet.hinges
     return list(dict.fromkeys(name for name in shown if name in places))
 
 
 def draw_guide(
-    axes: Axes,
-    page: Page,
-    view: PageView,
-    scene: LinkageScene,
-    guide: Guide,
-    group: GroupForces,
-    found: ForcePolygons,
-    sign: float,
+    axes: Axes, page: Page, view: PageView, scene: LinkageScene, drawn: GuideSign, sign: float
 ) -> None:
     """A guide of the group: its line, and what slides on it."""
-    joint = next((one for one in group.joints if one.kind == "guide" and one.name == guide.id), None)
-    if joint is None:
-        return
+    guide = scene.mechanism.guide(drawn.guide)
     place = scene.at(0)[guide.point]
-    along = flat([joint.along])[0]
-    carrier = joint.other(guide.on)
+    along = flat([drawn.along])[0]
     ends = [place - RAIL * view.scale * along, place + RAIL * view.scale * along]
-    if guide.on in group.bodies:
-        start = scene.carried(guide.on, next(iter(found.mechanism.points_of(guide.on).values())), 0)
+    if drawn.has_line:
+        start = scene.carried(guide.on, next(iter(scene.mechanism.points_of(guide.on).values())), 0)
         reach = [*ends, *([] if start is None else [start])]
         ways = [float((end - place) @ along) for end in reach]
         line = [place + min(ways) * along, place + max(ways) * along]
-        colour = pens(found.mechanism.link_names)[guide.on].colour
+        colour = pens(scene.mechanism.link_names)[guide.on].colour
         if start is not None:
             foot = place + float((start - place) @ along) * along
             axes.plot(*np.array([start, foot]).T, color=colour, linewidth=2.4, zorder=2.9)
@@ -137,44 +109,23 @@ def draw_guide(
         style = "-" if guide.on == "frame" else "--"
         axes.plot(*np.array(line).T, color=MUTED, linewidth=0.9, linestyle=style, zorder=1.5)
     page.avoid([(view.mm(line[0]), view.mm(line[1]))])
-    if carrier in group.bodies:
+    if drawn.slider is not None:
         turn = float(np.arctan2(along[1], along[0]))
         signs.slider(axes, place, turn, sign, INK if guide.link is None else GROUND)
-        number = found.names.index(carrier)
-        page.name(view.mm(place), str(number), clear=3.2, size=9.0, colour=GROUND)
+        page.name(view.mm(place), str(drawn.slider), clear=3.2, size=9.0, colour=GROUND)
         outline = view.mm(signs.slider_outline(place, turn, sign))
         page.avoid(zip(outline, np.roll(outline, -1, axis=0), strict=True))
 
 
-def draw_forces(page: Page, view: PageView, found: ForcePolygons, group: GroupForces, factor: float) -> None:
+def draw_forces(page: Page, view: PageView, sheet: GroupPage, factor: float) -> None:
     """Outer forces in black, reactions of outer joints in the colour of their link."""
-    colours = pens(found.mechanism.link_names)
-    actions = [*group.actions, *group.reactions]
+    colours = {name: pen.colour for name, pen in pens(sheet.mechanism.link_names).items()} | {"": INK}
 
     def at(place: complex) -> Array:
         return view.mm(flat([factor * place])[0])
 
-    def colour(body: str, reaction: bool) -> str:
-        return colours[body].colour if reaction and body in colours else INK
-
-    force_arrows(
-        page,
-        [
-            (one.symbol, one.force, at(one.place), colour(one.body, one.source == "reaction"))
-            for one in actions
-        ],
-    )
-    greatest = max((abs(one.force) for one in actions), default=0.0) * view.scale / factor
-    for one in actions:
+    force_arrows(page, [(one.name, one.force, at(one.place), colours[one.link]) for one in sheet.forces])
+    greatest = max((abs(one.force) for one in sheet.forces), default=0.0) * view.scale / factor
+    for one in sheet.moments:
         if abs(one.moment) > TINY * greatest:
-            placed = one.source == "drive" or one.force != 0
-            place = one.place if placed else middle_of(found, one.body)
-            name = one.symbol if one.force == 0 else f"M{one.symbol.removeprefix('R')}"
-            moment_arc(page, at(place), one.moment, name, colour(one.body, one.source == "reaction"))
-
-
-def middle_of(found: ForcePolygons, body: str) -> complex:
-    """Where a moment on a link is shown."""
-    points = list(found.mechanism.links[body].coordinates) if body in found.mechanism.links else []
-    places = [found.places[point] for point in points]
-    return sum(places, 0j) / len(places) if places else 0j
+            moment_arc(page, at(one.place), one.moment, one.name, colours[one.link])
