@@ -58,14 +58,19 @@ def draw_mechanism(
     faded = list(faded)
     for number, other in enumerate(faded):
         draw_links(axes, scene, other, links, alpha=0.14 + 0.16 * (number + 1) / len(faded))
-    draw_frame(axes, scene, sample)
-    draw_cams(axes, scene, sample)
-    draw_links(axes, scene, sample, links)
-    draw_hinges(axes, scene, sample, links)
+    draw_bodies(axes, scene, sample, links)
     if colour is None:
         draw_drive(axes, scene, sample)
     if names:
         draw_names(axes, scene, sample)
+
+
+def draw_bodies(axes: Axes, scene: LinkageScene, sample: int, links: Mapping[str, Pen]) -> None:
+    """Frame, cams, links and hinges at a sample, without drives and names."""
+    draw_frame(axes, scene, sample)
+    draw_cams(axes, scene, sample)
+    draw_links(axes, scene, sample, links)
+    draw_hinges(axes, scene, sample, links)
 
 
 def frame_axes(axes: Axes, scene: MotionPlaces) -> None:

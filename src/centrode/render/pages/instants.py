@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from centrode.locale import _
@@ -17,8 +16,7 @@ from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.quantities import typeset_unit
 from centrode.render.drawing import signs
-from centrode.render.drawing.cams import draw_cams
-from centrode.render.drawing.linkage import draw_drive, draw_frame, draw_hinges, draw_links
+from centrode.render.drawing.linkage import draw_bodies, draw_drive
 from centrode.render.drawing.style import INK, MUTED, Pen, pens
 from centrode.render.drawing.tags import lines
 from centrode.render.drawing.texts import plain
@@ -64,9 +62,10 @@ def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     per_mm = max(round_scale(greatest, LONGEST), sheet.finest)
     scene, view = placed(sheet, factor, per_mm)
     axes = view.axes(page)
-    draw_mechanism_in(axes, scene)
-    page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
     colours = pens(sheet.mechanism.link_names)
+    draw_bodies(axes, scene, 0, colours)
+    draw_drive(axes, scene, 0)
+    page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
     draw_velocities(page, view, sheet, factor, per_mm)
     draw_centres(page, view, sheet, factor, colours)
     draw_senses(page, view, scene, sheet, colours)
@@ -104,16 +103,6 @@ def placed(sheet: InstantPage, factor: float, per_mm: float) -> tuple[LinkageSce
     inches = SIGN_INCHES * now.extent / (SIGN * scale)
     scene = replace(whole, low=now.low, high=now.high, inches=inches)
     return scene, PageView.about(CORNER, SIZE, chosen, scale)
-
-
-def draw_mechanism_in(axes: Axes, scene: LinkageScene) -> None:
-    """The mechanism in its conventional signs, without names."""
-    links = pens(scene.mechanism.link_names)
-    draw_frame(axes, scene, 0)
-    draw_cams(axes, scene, 0)
-    draw_links(axes, scene, 0, links)
-    draw_hinges(axes, scene, 0, links)
-    draw_drive(axes, scene, 0)
 
 
 def draw_velocities(page: Page, view: PageView, sheet: InstantPage, factor: float, per_mm: float) -> None:

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
-from centrode.render.drawing.cams import draw_cams
-from centrode.render.drawing.linkage import draw_frame, draw_hinges, draw_links
+from centrode.render.drawing.linkage import draw_bodies, draw_links
 from centrode.render.drawing.style import INK, MUTED, pens
 from centrode.render.drawing.tags import lines
 from centrode.render.drawing.texts import plain
@@ -71,10 +70,7 @@ def draw_positions(page: Page, view: PageView, scene: LinkageScene, count: int) 
     colours = pens(scene.mechanism.link_names)
     for sample in range(count - 1, 0, -1):
         draw_links(axes, scene, sample, colours, alpha=0.22)
-    draw_frame(axes, scene, 0)
-    draw_cams(axes, scene, 0)
-    draw_links(axes, scene, 0, colours)
-    draw_hinges(axes, scene, 0, colours)
+    draw_bodies(axes, scene, 0, colours)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
-from centrode.render.drawing.cams import draw_cams
-from centrode.render.drawing.linkage import draw_frame, draw_hinges, draw_links
+from centrode.render.drawing.linkage import draw_bodies
 from centrode.render.drawing.style import GROUND, INK, pens
 from centrode.render.drawing.tags import lines
 from centrode.render.drawing.texts import plain
@@ -59,10 +58,7 @@ def vector_page(sheet: VectorPage) -> Figure:
     page, per_mm = new_page(), round_scale(greatest, LONGEST)
     scene, view = _place(scene, sample)
     axes, links = view.axes(page), pens(mechanism.link_names)
-    draw_frame(axes, scene, sample)
-    draw_cams(axes, scene, sample)
-    draw_links(axes, scene, sample, links)
-    draw_hinges(axes, scene, sample, links)
+    draw_bodies(axes, scene, sample, links)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, sample))
     for name, place in places.items():
         page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
