@@ -1,4 +1,4 @@
-"""Names of bodies: sliders that no link is named for, and the words that a reader has for frame and sliders."""
+"""Names of bodies and places in words: sliders without a link, frame and sliders to a reader, values of the drives."""
 
 from __future__ import annotations
 

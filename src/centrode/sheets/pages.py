@@ -39,7 +39,7 @@ class PositionsPage:
 
 
 @dataclass(frozen=True)
-class PointVelocity:
+class MovingPoint:
     """Where a point is [m] and how fast it moves [m/s], as complex numbers."""
 
     point: str
@@ -67,7 +67,7 @@ class InstantPage:
     instant, course : the motion at the instant, and all of it: slots are as long as their pins travel
     scale : metres that a millimetre stands for
     finest : least velocity [m/s] that a millimetre may stand for
-    velocities : of the moving points
+    velocities : of the points that move
     centres : of the links that turn
     senses : link -> whether it turns counter-clockwise
     lines : below each other in the column at the right
@@ -79,7 +79,7 @@ class InstantPage:
     course: xarray.Dataset
     scale: float
     finest: float
-    velocities: tuple[PointVelocity, ...]
+    velocities: tuple[MovingPoint, ...]
     centres: tuple[CentreOfLink, ...]
     senses: Mapping[str, bool]
     lines: tuple[Text, ...]

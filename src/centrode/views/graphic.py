@@ -16,7 +16,7 @@ from centrode.sheets.pages import (
     CentreOfLink,
     DiagramStroke,
     InstantPage,
-    PointVelocity,
+    MovingPoint,
     VectorDiagramPage,
 )
 from centrode.sheets.sheet import (
@@ -254,7 +254,7 @@ def _instant_page(found: Diagrams) -> InstantPage:
         found.scale,
         found.velocity.scale,
         tuple(
-            PointVelocity(point, found.places[point], found.velocity.images[point])
+            MovingPoint(point, found.places[point], found.velocity.images[point])
             for point in found.mechanism.moving_points
         ),
         tuple(
