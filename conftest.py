@@ -13,7 +13,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator
-from contextlib import nullcontext, redirect_stderr, redirect_stdout
+from contextlib import ExitStack, contextmanager, nullcontext, redirect_stderr, redirect_stdout
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -26,11 +26,11 @@ from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import centrode as ct
 from blank_canvas import blank_pictures, remember_mathematics
+from centrode.animation import animate, cams
 from centrode.cams.parameter_choice.search import choose_cam
 from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
-from centrode.present.animations import animate
 from centrode.sweeps.sweep import read_sweep
 
 settings.register_profile(
@@ -50,7 +50,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 OWN_PROCESS = ("README.md",)
 """Pages whose first command is started as a reader starts it, pictures and all; all others run here."""
-FEW_FRAMES = {"FRAMES": 6, "FRAMES_OF_A_STEP": 6, "FRAMES_OF_A_TURN": 6}
+FEW_FRAMES = {animate: ("FRAMES",), cams: ("FRAMES_OF_A_STEP", "FRAMES_OF_A_TURN")}
 """What `--animate` writes here where it would write 36 to 60; `centrode animate` is typed with its own numbers."""
 FEW_DESIGNS = (3,)
 """How many points the front of a choice has here where it would have 15."""
@@ -85,11 +85,20 @@ def run_as_process(command: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
+@contextmanager
+def few_frames() -> Iterator[None]:
+    """Context in which animations have six frames."""
+    with ExitStack() as stack:
+        for module, names in FEW_FRAMES.items():
+            stack.enter_context(mock.patch.multiple(module, **dict.fromkeys(names, 6)))
+        yield
+
+
 def run_here(command: str) -> tuple[int, str]:
     """What `run_as_process` returns, without the start of a process: about a second for each of a hundred commands.
 
     Pictures are written blank, animations and fronts are short, one process does the work of several: tests/cli and
-    tests/present render pictures and start processes. The language and the environment are afterwards what they
+    tests/render render pictures and start processes. The language and the environment are afterwards what they
     were. Words are split as a shell splits them; what a shell would do more than that is refused.
     """
     words = shlex.split(command, comments=True)
@@ -97,7 +106,7 @@ def run_here(command: str) -> tuple[int, str]:
     assert not re.search(r"[|&;<>$`*?~\\]", unquoted), f"{command}: this page needs a shell, see OWN_PROCESS"
     streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", newline="\n") for _stream in range(2)]
     with (
-        mock.patch.multiple(animate, **FEW_FRAMES) if "--animate" in words else nullcontext(),
+        few_frames() if "--animate" in words else nullcontext(),
         mock.patch.object(choose_cam, "__defaults__", FEW_DESIGNS),
         blank_pictures(),
         mock.patch.dict(os.environ, {"LANGUAGE": "en"}),
@@ -148,7 +157,7 @@ class PythonParser(PythonCodeBlockParser):
             evaluate = region.evaluator
 
             def run(example: Example, evaluate: Any = evaluate) -> str | None:
-                with mock.patch.multiple(animate, **FEW_FRAMES), blank_pictures():
+                with few_frames(), blank_pictures():
                     said: str | None = evaluate(example)
                 return said
 

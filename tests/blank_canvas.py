@@ -12,8 +12,8 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.mathtext import MathTextParser
 
-from centrode.present import figure_files
 from centrode.render.document import figures
+from centrode.render.figures.pictures import files
 
 SVG = (
     b'<svg xmlns="http://www.w3.org/2000/svg" width="100pt" height="100pt" viewBox="0 0 100 100">'
@@ -66,11 +66,11 @@ def blank_pictures() -> Iterator[None]:
     """Context in which commands and reports make every figure and write every file, and render no figure.
 
     For tests of what stands beside the pictures. That a figure can be rendered, and how it looks, is tested where
-    nothing is left out: in tests/present, and by the tests of commands and reports that are marked `drawn`.
+    nothing is left out: in tests/render, and by the tests of commands and reports that are marked `drawn`.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(figures, "FigureCanvasSVG", BlankCanvas)
-        patch.setattr(figure_files, "FigureCanvasAgg", BlankCanvas)
-        patch.setattr(figure_files, "FigureCanvasSVG", BlankCanvas)
+        patch.setattr(files, "FigureCanvasAgg", BlankCanvas)
+        patch.setattr(files, "FigureCanvasSVG", BlankCanvas)
         patch.setattr(Figure, "draw_without_rendering", lambda _figure: None)
         yield

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 import centrode as ct
+from centrode.assignments import results as variant_results
 from centrode.locale import chosen_language
 from centrode.report import study as report_study
-from centrode.study import variant_results
 
 Computes = Callable[..., Any]
 

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
-from centrode.present.sphere.globe import Globe
-from centrode.render.linkages import draw, initial_sample, read_scene
+from centrode.render.figures.linkages import draw, initial_sample, read_scene
+from centrode.scenes.sphere import Globe
 
 DOCS = Path(__file__).parents[1] / "docs"
 FOLDER = DOCS / "images" / "gallery"

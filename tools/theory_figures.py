@@ -21,7 +21,7 @@ from centrode.geometry import sphere
 from centrode.geometry.on_sphere import SPHERE, SphereCircle
 from centrode.model.cam import vary_cam
 from centrode.numerics.arrays import ARRAYS
-from centrode.present.style import INK, MUTED, PALETTE, house_style
+from centrode.render.drawing.style import INK, MUTED, PALETTE, house_style
 
 Array: TypeAlias = NDArray[np.float64]
 

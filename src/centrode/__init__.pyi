@@ -79,7 +79,7 @@ from .topics.presentation import figures as figures
 from .topics.presentation import write as write
 from .topics.presentation import open as open
 from .topics.presentation import Result as Result
-from .present import animate as animate
+from .animation.animate import animate as animate
 from .report.variants.folders import write_variants as write_variants
 
 # Reports

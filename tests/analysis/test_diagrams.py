@@ -19,11 +19,12 @@ from centrode.analysis.graphic.diagrams import (
     driven_rates,
     velocity_diagram,
 )
-from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet, round_scale
+from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet
 from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.path import grid_at
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import solve
+from centrode.numerics.round_scales import round_scale
 from drawn import EPS, OPERATIONS, answers, errors, errors_of
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions

@@ -17,8 +17,7 @@ from centrode.cams.profiles import cam_body, cam_outlines, shoe_outlines
 from centrode.cams.results import cam_profile_results, walking_wheel_results
 from centrode.errors import InputError
 from centrode.model.settings import Display
-from centrode.present import dxf_files
-from centrode.render import write_table
+from centrode.render import dxf_files, write_table
 from centrode.render.outlines import write_outlines_dxf, write_outlines_svg
 
 ezdxf = pytest.importorskip("ezdxf")

@@ -146,7 +146,7 @@ def test_no_design_keeps_the_bounds(centrode: Centrode, pressed: Path) -> None:
 
 
 def test_the_wheel_walks(centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("centrode.present.animations.animate.FRAMES_OF_A_STEP", 5)
+    monkeypatch.setattr("centrode.animation.cams.FRAMES_OF_A_STEP", 5)
     text = ct.cam_text(ct.example("walking-wheel-three-legs")).partition("[choose]")[0]
     (folder / "wheel.toml").write_text(text)
     done = centrode("cam", "wheel.toml", "--out", "w", "--animate", "--no-figures", "--samples", "5")
@@ -167,7 +167,7 @@ range = { to = "60 deg" }
 def test_a_cam_turns_below_its_roller(
     centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch, more: str
 ) -> None:
-    monkeypatch.setattr("centrode.present.animations.animate.FRAMES_OF_A_TURN", 6)
+    monkeypatch.setattr("centrode.animation.cams.FRAMES_OF_A_TURN", 6)
     (folder / "cam.toml").write_text(f'roller = {{ radius = "8 mm" }}\n{more}\n{ROLLED}')
     done = centrode("cam", "cam.toml", "--out", "w", "--animate", "--no-figures", "--samples", "5", "--dark")
     assert (done.code, done.err) == (0, "")

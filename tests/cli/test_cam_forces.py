@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from centrode.present.animations import animate
+from centrode.animation import cams as animated_cams
 
 Centrode = Callable[..., Any]
 
@@ -119,8 +119,8 @@ def test_the_linkage_and_its_cam_move_together(centrode: Centrode, folder: Path)
 def test_a_cam_turns_under_its_follower(
     centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert animate.FRAMES_OF_A_TURN == 60
-    monkeypatch.setattr(animate, "FRAMES_OF_A_TURN", 6)
+    assert animated_cams.FRAMES_OF_A_TURN == 60
+    monkeypatch.setattr(animated_cams, "FRAMES_OF_A_TURN", 6)
     asked = ("--out", "turn", "--samples", "9", "--animate", "--no-figures", "--dark")
     assert centrode("cam", "indexing-cam", *asked).code == 0
     with Image.open(folder / "turn" / "cam.gif") as animation:

@@ -11,8 +11,9 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.force_polygons import polygons
-from centrode.dynamics.force_polygons.polygons import PAPERS, ROOM, ForcePolygons, round_scale
+from centrode.dynamics.force_polygons.polygons import PAPERS, ROOM, ForcePolygons
 from centrode.dynamics.force_polygons.steps import Step
+from centrode.numerics.round_scales import FORCE_SCALES, round_scale
 from centrode.render.terminal import plain_text
 from centrode.views.force_polygons import step_text
 from mechanisms import EPS, Parts, four_bar, parts_of
@@ -151,7 +152,7 @@ def test_each_of_several_drives_has_its_lever() -> None:
 
 @pytest.mark.parametrize("least", [1e-9, 0.3, 1.0, 1.0000001, 2.2, 2.6, 7.0, 12345.0])
 def test_scales_are_of_the_series(least: float) -> None:
-    scale = round_scale(least)
+    scale = round_scale(least, series=FORCE_SCALES)
     assert least <= scale * (1 + 1e-9) <= 2.5 * least * (1 + 1e-8)
     mantissa = scale / 10.0 ** math.floor(math.log10(scale) + 1e-9)
     assert min(abs(mantissa - step) for step in (1.0, 2.0, 2.5, 5.0)) <= 16 * EPS * mantissa

@@ -143,3 +143,23 @@ def test_modules_that_would_import_each_other_are_found() -> None:
     }
     moves = Moves(Table(modules={"a/both": ("a/one", "a/three")}), sources)
     assert moves.circles()
+
+
+def test_names_of_a_face_that_ceases_are_taken_from_their_modules() -> None:
+    files = {
+        "a/__init__.py": "import lazy_loader\n",
+        "a/__init__.pyi": "from .one import f as f\n",
+        "a/one.py": "def f(x):\n    return x\n",
+        "__init__.pyi": "from .a import f as f\n",
+        "/tests/test_a.py": "from centrode.a import f\n\nassert f(1)\n",
+    }
+    faces = ("src/centrode/a/__init__.py", "src/centrode/a/__init__.pyi")
+    sources = {}
+    for place, text in files.items():
+        path = Path(place[1:]) if place.startswith("/") else Path("src/centrode") / place
+        sources[path] = Source(path, text)
+    moves = Moves(Table(modules={"b/two": ("a/one",)}, gone=faces), sources)
+    texts, gone = moves.results()
+    assert not moves.questions and {Path(face) for face in faces} <= gone
+    assert texts[Path("src/centrode/__init__.pyi")] == "from .b.two import f as f\n"
+    assert texts[Path("tests/test_a.py")].startswith("from centrode.b.two import f\n")

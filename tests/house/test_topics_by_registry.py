@@ -20,10 +20,10 @@ ALLOWED = {
     # topics of many mechanisms have commands and folders of their own: they go on with what was interrupted
     "cli/sweep.py": {"centrode.sweeps.sweep"},
     "cli/variants.py": {"variants"},
-    "report/variants/answers.py": {"centrode.study.variant_results"},
-    "report/variants/files.py": {"centrode.study.variant_results"},
+    "report/variants/answers.py": {"centrode.assignments.results"},
+    "report/variants/files.py": {"centrode.assignments.results"},
     "report/variants/folders.py": {
-        "centrode.study.variant_results",
+        "centrode.assignments.results",
         "centrode.equations.integration",
         "centrode.views",
     },
@@ -36,6 +36,9 @@ ALLOWED = {
         "run",
         "equations",
     },
+    # a layer of a drawing at full size, not the topic
+    "render/drafting/board.py": {"centrodes"},
+    "render/drafting/sheet.py": {"centrodes"},
     # a type of an option: points that counterweights stand on
     "cli/option_values.py": {"centrode.dynamics.balancing.balance"},
     # the kind of a block, not the topic

@@ -8,7 +8,7 @@ import pytest
 import centrode as ct
 from centrode.cams.followers.motion import follower_motion
 from centrode.model.examples import example_text
-from centrode.present.cams.driving_cam_drawing import driving_cams
+from centrode.scenes.driving_cams import driving_cams
 
 EPS = np.finfo(float).eps
 

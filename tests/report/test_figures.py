@@ -13,9 +13,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from centrode.locale import speaking
-from centrode.present.spelled_figures import spell_decimals
-from centrode.present.style import Decimals, house_style
 from centrode.render.document.figures import FLAT, picture
+from centrode.render.drawing.style import Decimals, house_style
+from centrode.render.figures.files import spell_decimals
 
 TITLE = "Press 2.5"
 

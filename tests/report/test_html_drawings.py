@@ -12,8 +12,8 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from centrode.errors import InputError
-from centrode.present.figure_files import METADATA
-from centrode.present.style import house_style
+from centrode.render.drawing.style import house_style
+from centrode.render.figures.files import METADATA
 from centrode.report.html.drawings import Drawings
 
 HOSTILE = b"""<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"

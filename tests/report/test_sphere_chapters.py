@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.model.labels import place_words
 from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBlock, TableBlock
 from centrode.report.chapters import CHAPTERS
 from centrode.report.document import report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
-from centrode.study.texts import place_words
 from report.texts import texts_of
 
 SPHERE = ("data", "words", "structure", "equations", "tables", "plots", "rotatability", "axes")

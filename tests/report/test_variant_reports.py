@@ -9,14 +9,14 @@ import pytest
 
 import centrode as ct
 from centrode.analysis.rotatability.causes import Cause, CauseKind, Tracer
+from centrode.assignments.answers import InstantAnswers, VariantAnswers, read_answers
+from centrode.assignments.results import VariantRow, Variants
+from centrode.assignments.tables import read_variants
 from centrode.errors import InputError
 from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
 from centrode.report.variants import files
 from centrode.report.variants.answers import answer_sheet
 from centrode.report.variants.files import VariantReport, write_variant_reports
-from centrode.study.variant_answers import InstantAnswers, VariantAnswers, read_answers
-from centrode.study.variant_results import VariantRow, Variants
-from centrode.study.variant_tables import read_variants
 
 ROWS = [
     {"variant": "first", "l2": 1.0, "l3": 1.2},

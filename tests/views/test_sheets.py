@@ -23,7 +23,6 @@ from centrode.dynamics.steady_motion.machine import machine_results
 from centrode.locale import _, choose_language
 from centrode.model.examples import example_text
 from centrode.model.settings import Display
-from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -32,6 +31,7 @@ from centrode.render.document.typst import quote
 from centrode.render.files import write_table
 from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.table_spelling import TableSpelling
 from centrode.render.terminal import table_text
 from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table

@@ -11,9 +11,9 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.present.spelled_tables import TableSpelling
+from centrode.assignments.results import VariantRow, Variants
 from centrode.render.files import write_table
-from centrode.study.variant_results import VariantRow, Variants
+from centrode.render.table_spelling import TableSpelling
 from centrode.sweeps import sweep
 
 CRANK_ROCKER = ct.example("crank-rocker")

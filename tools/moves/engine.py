@@ -180,6 +180,11 @@ class Moves:
         """The definition that a name of a module means, followed through modules that move."""
         inside = f"{module}.{name}"
         holder = self.modules.get(module)
+        stub = self._ceasing_face(module)
+        if stub is not None and inside not in self.modules:
+            for imported in stub.names.imports:
+                if imported.local == name:
+                    return self.target(stub, imported)
         if holder is None:
             return Target(inside) if inside in self.modules else None
         if name in holder.definitions or name not in holder.names.module.bound:
@@ -191,6 +196,11 @@ class Moves:
                 further = self.target(holder, imported)
                 return further or Target(module, name)
         return Target(module, name)
+
+    def _ceasing_face(self, module: str) -> Source | None:
+        """The stub that lists what a room passes on, where the room ceases."""
+        stub = SOURCE.joinpath(*module.split(".")[1:]) / "__init__.pyi"
+        return self.sources.get(stub) if str(stub) in self.table.gone else None
 
     # -- names of one source
 
@@ -232,6 +242,9 @@ class Moves:
             key: Key = ("outside", module, meaning)
         elif target.name is None:
             new = self.new_module(target.module)
+            if self._ceasing_face(target.module) is not None:
+                where = source.line(source.names.span(statement)[0])
+                self.questions.append(f"{target.module} ceases and is imported at {where}")
             key = ("module", new)
             if new == plan.here and source.module:
                 plan.inner[at] = target.module
@@ -605,6 +618,9 @@ class Moves:
         gone: set[Path] = set()
         for path, source in self.sources.items():
             plan = self.plans.get(path)
+            if str(path) in self.table.gone:
+                gone.add(path)
+                continue
             if source.module and source.module in self.new_modules:
                 continue
             new_path = self._moved_file(path)

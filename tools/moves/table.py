@@ -40,6 +40,8 @@ class Table:
     locals : (old module, function, name) -> new name
     methods : (old module, class, method) -> new name
     texts : passages
+    gone : files, from the root
+        Removed without a successor: the lazy face of a room that ceases, whose names are taken from their modules.
     """
 
     modules: Mapping[str, tuple[str, ...]]
@@ -49,6 +51,7 @@ class Table:
     locals: Mapping[tuple[str, str, str], str] = field(default_factory=dict)
     methods: Mapping[tuple[str, str, str], str] = field(default_factory=dict)
     texts: tuple[Text, ...] = ()
+    gone: tuple[str, ...] = ()
 
 
 def read_table(path: Path) -> Table:
@@ -78,4 +81,5 @@ def read_table(path: Path) -> Table:
         locals=places,
         methods=methods,
         texts=tuple(Text(**text) for text in content.get("texts", [])),
+        gone=tuple(content.get("gone", [])),
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOMS = (
     "numerics", "geometry", "laws", "model", "structure", "kinematics", "equations", "dynamics", "analysis", "cams",
-    "sweeps", "study", "present", "report",
+    "sweeps", "scenes", "assignments", "render", "animation", "export", "report",
 )  # fmt: skip
 """Folders of the package that mutants are drawn from."""
 COMPARISONS: Mapping[type[ast.cmpop], type[ast.cmpop]] = {

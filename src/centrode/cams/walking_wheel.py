@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 
 from centrode.cams.nodes import nodes_of
 from centrode.cams.return_arc import Arc, ClosedPath
-from centrode.cams.roller_path import JETS, Array, SymmetricPath, radius_jet
+from centrode.cams.roller_path import JETS, Array, Frames, SymmetricPath, frames, radius_jet
 from centrode.dynamics.steady_motion.cycle import NODES, Panels, PanelSeries
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
@@ -313,6 +313,10 @@ class WheelMover:
     def unevenness(self) -> float:
         """Greatest over least dX/dphi."""
         return self.rates.greatest / self.rates.least
+
+    def roller_frames(self, phi: Array) -> Frames:
+        """Places of the rollers' centres around the hub, with tangent and normal of their path, at angles [rad]."""
+        return frames(self.closed, phi)
 
     def pose(self, turned: float) -> WheelPose:
         """The wheel where the carrier has turned by an angle [rad]."""

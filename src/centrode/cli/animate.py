@@ -18,8 +18,8 @@ from centrode.locale import _, mark, ngettext
 from centrode.topics.registry import READ_PAIRS_OF_BODIES
 
 if TYPE_CHECKING:
-    from centrode.present.animations.animate import Shown
-    from centrode.present.animations.video_files import Animation
+    from centrode.animation.animate import Shown
+    from centrode.animation.video_files import Animation
 
 ENDINGS = (".gif", ".mp4")
 SIZE = "800x600"

@@ -67,7 +67,7 @@ def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given:
                 _write(sheets, draft, progress, description, figures=not no_figures, dark=dark)
                 if animate:
                     _animate(topics, [result for result, _sheet in found], draft, progress, dark=dark)
-                names = output.finish_folder(draft)
+                names = output.file_names(draft)
     click.echo(_(description.title) or cam)
     for sheet in sheets:
         if text := render.sheet_text(sheet, description.display):

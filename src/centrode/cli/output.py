@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from centrode.cli.tables import asked_spelling, spell_tables, table_files
+from centrode.cli.tables import asked_spelling, table_files
 from centrode.errors import InputError
 from centrode.files.drafts import draft_file, draft_folder, refusals
 from centrode.files.inputs import keep_inputs
@@ -41,9 +41,8 @@ def files_in(folder: Path, names: Sequence[str]) -> str:
     return paragraph(count.format(n=len(names), folder=folder) + ":", names)
 
 
-def finish_folder(draft: Path) -> list[str]:
-    """Names of the files in a draft folder, after its tables have been spelled as the command was asked to."""
-    spell_tables(draft)
+def file_names(draft: Path) -> list[str]:
+    """Names of the files in a draft folder."""
     return sorted(path.name for path in draft.iterdir())
 
 
@@ -76,17 +75,15 @@ def write_file(path: Path, text: str, *, force: bool = False) -> None:
 
 
 @contextmanager
-def output_table(path: Path, *, force: bool = False) -> Iterator[Path]:
-    """CSV file to write into; it appears spelled as the command was asked to, with a workbook beside it or without.
+def output_table(path: Path, *, force: bool = False) -> Iterator[tuple[Path, Path]]:
+    """CSV file to write into, and the workbook beside it; they are one where the command was asked for no workbook.
 
     Raises as `output_file` does, for each of the files.
     """
-    spelling = asked_spelling()
-    spelling.check()
+    asked_spelling().check()
     with ExitStack() as files:
         drafts = [files.enter_context(output_file(one, force=force)) for one in table_files(path)]
-        yield drafts[0]
-        spelling.spell_table(drafts[0], drafts[-1])
+        yield drafts[0], drafts[-1]
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.progress import Progress
-from centrode.cli.tables import need_table, table_files, tables_options
+from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import DamageWarning, InputError, MotionError
 from centrode.locale import _, mark
 
@@ -65,7 +65,7 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
         raise InputError(
             str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
         )
-    with output.output_table(target, force=force) as draft:
+    with output.output_table(target, force=force) as (draft, workbook):
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore", RuntimeWarning
@@ -74,7 +74,7 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
         if data.attrs["mechanisms"] < data["samples_ok"].size:
             raise KeyboardInterrupt  # a part of a table looks like a whole one
         (table,) = ct.tables(data).values()
-        render.write_table(table, draft, asked.mechanism.display)
+        render.write_table(table, draft, asked.mechanism.display, asked_spelling(), workbook)
     return data
 
 

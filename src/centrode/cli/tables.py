@@ -13,7 +13,7 @@ from centrode.errors import InputError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
-    from centrode.present.spelled_tables import TableSpelling
+    from centrode.render.table_spelling import TableSpelling
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -64,8 +64,3 @@ def need_table(path: Path | None) -> None:
 def table_files(path: Path) -> list[Path]:
     """The file of a table, and the workbook beside it where the running command was asked for one."""
     return [path, path.with_suffix(".xlsx")] if asked_spelling().xlsx else [path]
-
-
-def spell_tables(folder: Path) -> None:
-    """Add workbooks and put decimal commas into the tables of a folder, as the running command was asked to."""
-    asked_spelling().spell(folder)

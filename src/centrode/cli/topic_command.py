@@ -254,7 +254,7 @@ def _beside_folder(
             progress.say(_("drawing {name}").format(name=animation))
             with about(name):
                 command.animation(result, draft / animation, written["dark"])
-        names = output.finish_folder(draft)
+        names = output.file_names(draft)
     return result, sheet, output.files_in(folder, names)
 
 
@@ -283,12 +283,12 @@ def _beside_file(
         if chosen_language() != "en":
             with speaking("en"):  # what files hold is English
                 english = sheet_with_parts(topic, _result(topic, command, mechanism, arguments, progress))
-    with output.output_table(out, force=force) as draft:
+    with output.output_table(out, force=force) as (draft, workbook):
         if kind == "json" and english.record is not None:
             render.write_record(english.record, draft)
         elif kind == "csv":
             (table,) = english.tables.values()
-            render.write_table(table, draft, mechanism.display)
+            render.write_table(table, draft, mechanism.display, asked_spelling(), workbook)
         else:
             text = next(text for name, text in english.files.items() if _ending(name) == kind)
             draft.write_text(text, encoding="utf-8", newline="\n")

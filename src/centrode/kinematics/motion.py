@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -20,6 +20,7 @@ from centrode.kinematics.solve import Progress, Solved, requested_grid, solve
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import QUANTITIES
 from centrode.structure.assur import name_of
@@ -324,3 +325,29 @@ def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None
         if not np.isfinite(array).all():
             raise InputError(path, _("values must be finite"))
     return dimensions_of(mechanism, arrays, ARRAYS), sizes.pop()
+
+
+# What a drawing of one instant is made from: the motion with that instant among its samples, the points
+# named.
+
+ALL = "all"
+
+
+def motion_among(mechanism: Mechanism, course: xr.Dataset, place: float) -> tuple[xr.Dataset, int]:
+    """The samples of a motion with an instant among them, and the number of that sample.
+
+    `place` is a value of the drive [rad or m], or a time [s] where the drive is a law of time or there are several.
+    """
+    places = np.unique(np.append(mechanism.motion_parameter.instants(course), place))
+    return motion(mechanism, at=places), int(np.searchsorted(places, place))
+
+
+def moving_points(mechanism: Mechanism, names: Sequence[str], where: str) -> tuple[str, ...]:
+    """Points by their names, or every moving point for "all"; InputError, told of `where`, for another name."""
+    if ALL in names:
+        return mechanism.moving_points
+    for name in names:
+        if name not in mechanism.moving_points:
+            what = _("there is no moving point {name}").format(name=value_text(name))
+            raise InputError(where, what, nearest(name, mechanism.moving_points))
+    return tuple(names)

@@ -34,7 +34,7 @@ from centrode.model.values import (
     si,
 )
 from centrode.numerics.text_formula import compile_formula
-from centrode.quantities import ANGLES, LENGTHS
+from centrode.quantities import ANGLES, LENGTHS, display_unit
 
 REACHABLE = "reachable"
 """The range that a drive reaches from its initial position."""
@@ -58,6 +58,19 @@ class Display(DescriptionPart):
 
     length: Annotated[str, choice(*LENGTHS)] = "m"
     angle: Annotated[str, choice(*ANGLES)] = "rad"
+
+
+def shown_as(unit: str, display: Display | None) -> tuple[float, str]:
+    """Factor and unit in which a quantity of this SI unit is shown; SI itself where no display is given.
+
+    Inside, everything is SI and radians. Lengths and angles change their unit wherever they stand ("m/s^2" becomes
+    "mm/s^2", "rad/s" becomes "deg/s"), except that kinematic coefficients stay per radian of the drive: only so are
+    they the analogs of velocity and acceleration that textbooks print.
+    """
+    if display is None or unit in ("", "1"):
+        return 1.0, unit
+    angle = "rad" if "/rad" in unit else str(display.angle)
+    return display_unit(unit, str(display.length), angle)
 
 
 class Assembly(DescriptionPart):

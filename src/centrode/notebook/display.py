@@ -10,7 +10,7 @@ from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
-from centrode.present.displayed_units import shown_as
+from centrode.model.settings import shown_as
 from centrode.sheets.linkages import MechanismPicture
 from centrode.sheets.texts import Sentence
 from centrode.topics.presentation import display_of, is_result, page, sheet_of

@@ -1,7 +1,7 @@
 # One import an entry and one name an import: lazy_loader reads these lines.
-from .figures import figure_of as figure_of
-from .figures import figures_of as figures_of
-from .figures import write_pictures as write_pictures
+from .figures.pictures import figure_of as figure_of
+from .figures.pictures import figures_of as figures_of
+from .figures.pictures import write_pictures as write_pictures
 from .files import write_record as write_record
 from .files import write_summary as write_summary
 from .files import write_table as write_table

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from centrode.locale import speaking
-from centrode.present.displayed_units import shown_as
-from centrode.present.spelled_tables import PLAIN, TableSpelling
+from centrode.model.settings import shown_as
 from centrode.render.netcdf import write_dataset
 from centrode.render.outlines import write_outlines
 from centrode.render.spelling import PlainSpelling
+from centrode.render.table_spelling import PLAIN, TableSpelling
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
@@ -57,11 +57,14 @@ def write_record(record: Mapping[str, Any], path: Path) -> None:
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
-def write_table(table: Table, path: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
+def write_table(
+    table: Table, path: Path, display: Display, spelling: TableSpelling = PLAIN, workbook: Path | None = None
+) -> None:
     """Write a table as CSV in UTF-8, one line end everywhere; numbers read back bit for bit, one that is NaN is empty.
 
     With decimal commas fields are apart by semicolons, and a byte order mark goes before them: without it spreadsheets
-    take UTF-8 for a code page of theirs. Names and words keep their dots.
+    take UTF-8 for a code page of theirs. Names and words keep their dots. A workbook stands beside it where one is
+    wanted, if no other file is named for it.
     """
     encoding, delimiter, mark = ("utf-8-sig", ";", ",") if spelling.comma else ("utf-8", ",", ".")
     words = PlainSpelling(display)
@@ -72,7 +75,9 @@ def write_table(table: Table, path: Path, display: Display, spelling: TableSpell
         for first in range(0, len(table.columns[0].values), BLOCK):
             fields = [_fields(column, slice(first, first + BLOCK), words, mark) for column in table.columns]
             writer.writerows(zip(*fields, strict=True))
-    spelling.write_workbook(path.with_suffix(".xlsx"), headers, lambda: shown_columns(table, display))
+    spelling.write_workbook(
+        workbook or path.with_suffix(".xlsx"), headers, lambda: shown_columns(table, display)
+    )
 
 
 def shown_columns(table: Table, display: Display | None) -> list[list[float] | list[str]]:

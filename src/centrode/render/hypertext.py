@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-from centrode.present.figure_files import METADATA
-from centrode.present.spelled_figures import spell_decimals
-from centrode.present.style import house_style
-from centrode.render.figures import figures_of
+from centrode.render.drawing.style import house_style
+from centrode.render.figures.files import METADATA, spell_decimals
+from centrode.render.figures.pictures import figures_of
 from centrode.render.latex import aligned_relations
 from centrode.render.markup import MarkupPage
 

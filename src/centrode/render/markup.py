@@ -12,7 +12,7 @@ from centrode.render.spelling import PlainSpelling
 from centrode.render.symbolic import spell_symbolic
 from centrode.render.terminal import notes_of, sheet_text, symbol_texts, table_cells
 from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer
+from centrode.sheets.outlines import CamPlayer, WheelPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -140,7 +140,7 @@ class MarkupPage(PlainSpelling):
                 return self.displayed(linear_system(entries, *sides))
             case SymbolList(symbols):
                 return self.table((_("symbol"), _("value"), _("meaning")), self._symbols(symbols))
-            case Illustration() | Check() | CamPlayer() | MotionPlayer():
+            case Illustration() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
                 return ""
             case _:
                 assert_never(block)

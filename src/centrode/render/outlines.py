@@ -13,12 +13,12 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from centrode.present.dxf_files import dxf_document
+from centrode.render.dxf_files import dxf_document
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
     from centrode.cams.profiles import CamOutline
-    from centrode.present.scene import Array
+    from centrode.scenes.places import Array
     from centrode.sheets.outlines import OutlineSet
 
 _interpolate = partial(import_module, "scipy.interpolate")  # off the cold path

@@ -8,8 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, ngettext
-from centrode.present.displayed_units import formula, plain, shown_as
+from centrode.model.settings import shown_as
 from centrode.quantities import typeset_unit
+from centrode.render.drawing.texts import formula, plain
 from centrode.render.symbolic import plain_symbolic
 from centrode.sheets.symbolic import SymbolicLeaf
 from centrode.sheets.texts import (

@@ -12,7 +12,7 @@ from centrode.render.plain_formulas import relation_lines, symbol_lines, system_
 from centrode.render.plain_table import WIDTH, aligned, listing
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer
+from centrode.sheets.outlines import CamPlayer, WheelPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -110,7 +110,7 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             return "\n".join(system_lines(entries, *sides))
         case SymbolList(symbols):
             return "\n".join(symbol_lines([symbol_texts(one, spelling) for one in symbols]))
-        case Illustration() | Check() | CamPlayer() | MotionPlayer():
+        case Illustration() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
             return ""
         case _:
             assert_never(block)

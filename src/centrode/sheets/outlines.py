@@ -188,13 +188,27 @@ class WheelPositions:
 
 @dataclass(frozen=True)
 class CamPlayer:
-    """A cam that turns under its follower, or a wheel that walks: a page plays it, paper shows how it begins.
+    """A cam that turns under its follower: a page plays it, paper shows how it begins.
 
     Attributes
     ----------
     title : of the cam
-    body : what moves
+    body : the cam with its follower
     """
 
     title: Title
-    body: FollowerCam | WheelMover
+    body: FollowerCam
+
+
+@dataclass(frozen=True)
+class WheelPlayer:
+    """A wheel that walks: a page plays it, paper shows how it begins.
+
+    Attributes
+    ----------
+    title : of its cam
+    wheel : what moves
+    """
+
+    title: Title
+    wheel: WheelMover

@@ -5,6 +5,7 @@ A millimetre on paper stands for a round number of units; the renderer chooses i
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,6 @@ from centrode.sheets.texts import Sentence, Text
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.analysis.graphic.diagrams import Diagram, Diagrams
     from centrode.model.mechanism import Mechanism
 
 
@@ -39,19 +39,68 @@ class PositionsPage:
 
 
 @dataclass(frozen=True)
+class MovingPoint:
+    """Where a point is [m] and how fast it moves [m/s], as complex numbers."""
+
+    point: str
+    place: complex
+    rate: complex
+
+
+@dataclass(frozen=True)
+class CentreOfLink:
+    """The instant centre of a link [m], and the places of its points, whose perpendiculars meet there."""
+
+    link: str
+    place: complex
+    points: tuple[complex, ...]
+
+
+@dataclass(frozen=True)
 class InstantPage:
     """A mechanism at an instant with its instant centres, the velocities of its points and senses of rotation.
 
     Attributes
     ----------
     title : what it shows
-    diagrams : places, velocities, centres and the scale of the mechanism
+    mechanism : kinds of its links, joints and drives
+    instant, course : the motion at the instant, and all of it: slots are as long as their pins travel
+    scale : metres that a millimetre stands for
+    finest : least velocity [m/s] that a millimetre may stand for
+    velocities : of the points that move
+    centres : of the links that turn
+    senses : link -> whether it turns counter-clockwise
     lines : below each other in the column at the right
     """
 
     title: Sentence
-    diagrams: Diagrams
+    mechanism: Mechanism
+    instant: xarray.Dataset
+    course: xarray.Dataset
+    scale: float
+    finest: float
+    velocities: tuple[MovingPoint, ...]
+    centres: tuple[CentreOfLink, ...]
+    senses: Mapping[str, bool]
     lines: tuple[Text, ...]
+
+
+@dataclass(frozen=True)
+class DiagramStroke:
+    """A part of a vector equation, drawn between two ends, as complex numbers from the pole.
+
+    Attributes
+    ----------
+    kind : "relative", "normal", "tangential", ...: which part it is; an "image" joins the images of a link's points
+    name : of which points: "BA" of B against A, "C" of C along its guide
+    link : in whose colour it is drawn; empty of none
+    """
+
+    start: complex
+    end: complex
+    kind: str
+    name: str
+    link: str
 
 
 @dataclass(frozen=True)
@@ -61,11 +110,23 @@ class VectorDiagramPage:
     Attributes
     ----------
     title : what it shows
-    diagrams, diagram : everything that is drawn of the instant, and the diagram of it that this page has
+    mechanism, instant : whose, and its motion at the instant
+    order : 1 of velocities, 2 of accelerations
+    unit : SI unit of its vectors
+    scale : what a millimetre stands for, in that unit
+    corners : least and greatest of what the whole diagram needs
+    strokes : parts of vector equations and images of links
+    images : the points' names in small letters, and where their vectors from the pole end
     lines : below each other in the column at the right
     """
 
     title: Sentence
-    diagrams: Diagrams
-    diagram: Diagram
+    mechanism: Mechanism
+    instant: xarray.Dataset
+    order: int
+    unit: str
+    scale: float
+    corners: tuple[complex, complex]
+    strokes: tuple[DiagramStroke, ...]
+    images: tuple[tuple[str, complex], ...]
     lines: tuple[Text, ...]

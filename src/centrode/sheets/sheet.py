@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
-from centrode.sheets.outlines import CamPlayer, OutlineDrawing, OutlineSet, PathDrawing, WheelPositions
+from centrode.sheets.outlines import (
+    CamPlayer,
+    OutlineDrawing,
+    OutlineSet,
+    PathDrawing,
+    WheelPlayer,
+    WheelPositions,
+)
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
@@ -239,6 +246,7 @@ Block: TypeAlias = (
     | SymbolList
     | MotionPlayer
     | CamPlayer
+    | WheelPlayer
 )
 
 

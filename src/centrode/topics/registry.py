@@ -396,7 +396,7 @@ CENTRODES = Topic(
         ending=Lazily("centrode.analysis.instant_centres.results", "centrode_shortfall"),
         folder="centrodes",
         dark=True,
-        animation=Lazily("centrode.present.animations.animate", "animate_rolling"),
+        animation=Lazily("centrode.animation.animate", "animate_rolling"),
         animation_help=mark("Also write an animation: one centrode rolls on the other."),
     ),
 )
@@ -589,7 +589,7 @@ RUN = Topic(
         help=mark("Compute the motion of a mechanism: tables and pictures."),
         options=(RangeOptions(),),
         folder="result",
-        animation=Lazily("centrode.present.animations.animate", "animate_results"),
+        animation=Lazily("centrode.animation.animate", "animate_results"),
         animation_help=mark("Also write an animation of the motion."),
         animation_file="motion.gif",
     ),
@@ -630,8 +630,8 @@ SWEEP = Topic(
 
 VARIANTS = Topic(
     name="variants",
-    compute=Lazily("centrode.study.variant_results", "variants"),
-    result=Lazily("centrode.study.variant_results", "Variants"),
+    compute=Lazily("centrode.assignments.results", "variants"),
+    result=Lazily("centrode.assignments.results", "Variants"),
     view=Lazily("centrode.views.variants", "sheet"),
     subject="mechanisms",
 )
@@ -716,7 +716,7 @@ FOLLOWER_PROFILE = Topic(
     command=Command(
         help="",
         needs=NEEDS_FOLLOWER,
-        animation=Lazily("centrode.present.animations.animate", "animate_turning_cam"),
+        animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="cam.gif",
     ),
     document=InDocuments(
@@ -790,7 +790,7 @@ CAM_PROFILE = Topic(
         help="",
         options=(FlagOption("groove", mark("Also the outer wall of a groove that the roller runs in.")),),
         needs=NEEDS_CURVATURE_LAW,
-        animation=Lazily("centrode.present.animations.animate", "animate_profile"),
+        animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="cam.gif",
     ),
     document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),), instants=False),
@@ -809,7 +809,7 @@ WALKING_WHEEL = Topic(
     command=Command(
         help="",
         needs=NEEDS_CURVATURE_LAW,
-        animation=Lazily("centrode.present.animations.animate", "animate_step"),
+        animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="walking-wheel.gif",
     ),
     document=InDocuments(

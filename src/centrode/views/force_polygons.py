@@ -44,6 +44,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
+from centrode.views.force_pages import RIGHT_ANGLE, group_page, lever_page
 from centrode.views.instants import body_text, instant_title, place_number
 from centrode.views.load_names import load_text
 
@@ -63,7 +64,6 @@ NONE = 1e-13
 """What is smaller than this part of the greatest force is rounding of what is nothing."""
 ROUNDINGS = 1e4
 """Roundings that the routes may differ by: the square of the condition of some well turned mechanism."""
-RIGHT_ANGLE = Number(90.0, "deg", unit_fixed=True)
 PIN = "pin "
 """How bodies begin that are the bare pin of a hinge."""
 
@@ -456,23 +456,12 @@ def _rows(group: GroupForces) -> Iterator[tuple[str, Polygon, int, PolygonVector
 def _pages(found: ForcePolygons) -> dict[str, GroupPage | LeverPage]:
     """Pages of an instant: "group-1" and on in the order in which groups were solved, "lever" of each drive."""
     pages: dict[str, GroupPage | LeverPage] = {
-        f"group-{number}": GroupPage(
-            Sentence("Force polygon"),
-            _group_title(found, group),
-            found,
-            number - 1,
-            _steps(found, group).texts,
-        )
+        f"group-{number}": group_page(found, group, _group_title(found, group), _steps(found, group).texts)
         for number, group in enumerate(found.groups, start=1)
     }
-    for number, lever in enumerate(found.levers):
-        pages["lever" if len(found.levers) == 1 else f"lever-{lever.drive}"] = LeverPage(
-            Sentence("Zhukovsky's lever"),
-            Sentence("Velocity diagram turned by {angle} clockwise", angle=RIGHT_ANGLE),
-            found,
-            number,
-            tuple(_lever_lines(lever)),
-        )
+    for lever in found.levers:
+        name = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
+        pages[name] = lever_page(found, lever, tuple(_lever_lines(lever)))
     return pages
 
 
@@ -534,7 +523,7 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
         if isinstance(page, LeverPage):
             caption = Sentence(
                 "Zhukovsky's lever of drive {drive}: the velocity diagram turned by {angle} clockwise",
-                drive=Name(found.levers[page.lever].drive),
+                drive=Name(page.drive),
                 angle=RIGHT_ANGLE,
             )
             yield Illustration(page, caption)

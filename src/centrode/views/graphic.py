@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 from centrode.analysis.graphic.checks import GraphicCheck
 from centrode.errors import CentrodeError, Status
 from centrode.quantities import QUANTITIES
-from centrode.sheets.pages import InstantPage, VectorDiagramPage
+from centrode.sheets.pages import (
+    CentreOfLink,
+    DiagramStroke,
+    InstantPage,
+    MovingPoint,
+    VectorDiagramPage,
+)
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -64,6 +70,8 @@ MOST_DISTANCES = 3
 """Distances from an instant centre that are listed behind its place."""
 HEADS = {1: Sentence("velocities"), 2: Sentence("accelerations")}
 GROUPWISE = {1: Sentence("Velocities, group by group:"), 2: Sentence("Accelerations, group by group:")}
+OF_IMAGES = ("relative", "sliding", "image")
+"""Kinds of vectors that begin at the pole and end in an image: the image has an arrow of its own."""
 TITLES = {1: Sentence("Velocity diagram"), 2: Sentence("Acceleration diagram")}
 
 
@@ -228,12 +236,61 @@ def _trial_lines(step: ConstructionStep, order: int) -> list[Text]:
 
 def _pages(found: Diagrams) -> dict[str, Page]:
     """The mechanism at the instant, and both diagrams."""
-    instant = InstantPage(Sentence("Instant centres and velocities"), found, tuple(_turning(found)))
-    names = {"velocity": found.velocity, "acceleration": found.acceleration}
-    return {"mechanism": instant} | {
-        name: VectorDiagramPage(TITLES[diagram.order], found, diagram, tuple(_done(diagram)))
-        for name, diagram in names.items()
+    diagrams = {"velocity": found.velocity, "acceleration": found.acceleration}
+    return {"mechanism": _instant_page(found)} | {
+        name: _diagram_page(found, diagram) for name, diagram in diagrams.items()
     }
+
+
+def _instant_page(found: Diagrams) -> InstantPage:
+    """Places, velocities and centres; links that translate have no centre and no sense."""
+    centres = {link: place for link, place in found.centres.items() if place is not None}
+    links = found.mechanism.links
+    return InstantPage(
+        Sentence("Instant centres and velocities"),
+        found.mechanism,
+        found.exact,
+        found.course,
+        found.scale,
+        found.velocity.scale,
+        tuple(
+            MovingPoint(point, found.places[point], found.velocity.images[point])
+            for point in found.mechanism.moving_points
+        ),
+        tuple(
+            CentreOfLink(link, place, tuple(found.places[point] for point in links[link].coordinates))
+            for link, place in centres.items()
+        ),
+        {link: turn > 0 for link, turn in found.velocity.turns.items() if link in centres},
+        tuple(_turning(found)),
+    )
+
+
+def _diagram_page(found: Diagrams, diagram: Diagram) -> VectorDiagramPage:
+    """The vectors of a diagram; those from the pole to an image are drawn as the image's own."""
+    ends = [0j, *diagram.images.values(), *diagram.hidden.values()]
+    ends += [end for edge in diagram.edges for end in (edge.start, edge.end)]
+    shown = [*found.mechanism.frame.points, *found.mechanism.moving_points]
+    images = {name: diagram.images[name] for name in shown if name in diagram.images} | dict(diagram.hidden)
+    return VectorDiagramPage(
+        TITLES[diagram.order],
+        found.mechanism,
+        found.exact,
+        diagram.order,
+        diagram.unit,
+        diagram.scale,
+        (
+            complex(min(end.real for end in ends), min(end.imag for end in ends)),
+            complex(max(end.real for end in ends), max(end.imag for end in ends)),
+        ),
+        tuple(
+            DiagramStroke(edge.start, edge.end, edge.kind, edge.name, edge.link)
+            for edge in diagram.edges
+            if edge.start != 0 or edge.kind not in OF_IMAGES
+        ),
+        tuple((name.lower(), image) for name, image in images.items()),
+        tuple(_done(diagram)),
+    )
 
 
 def _done(diagram: Diagram) -> list[Text]:

@@ -31,8 +31,8 @@ from centrode.views.rotatability import cause_text
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from centrode.study.variant_answers import InstantAnswers
-    from centrode.study.variant_results import VariantRow, Variants
+    from centrode.assignments.answers import InstantAnswers
+    from centrode.assignments.results import VariantRow, Variants
 
 STATUS_WORDS = {
     "ok": Sentence("ok"),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from centrode.cams.profiles import shoe_outlines
-from centrode.sheets.outlines import CamPlayer, OutlineSet, WheelPositions
+from centrode.sheets.outlines import OutlineSet, WheelPlayer, WheelPositions
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -49,7 +49,7 @@ def sheet(results: WalkingWheelResults) -> Sheet:
         )
     variables = [str(name) for name in dataset.data_vars if name != "carrier_angle"]
     title = Title(results.cam.title)
-    motion = Section(NOTHING, (CamPlayer(title, wheel),))
+    motion = Section(NOTHING, (WheelPlayer(title, wheel),))
     positions = Sentence("The walking wheel where its carrier has turned by")
     return Sheet(
         heading=heading,

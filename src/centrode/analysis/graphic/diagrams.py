@@ -18,7 +18,6 @@ from centrode.analysis.graphic.stage import (
     Edge,
     VectorDrawing,
     extent_of,
-    round_scale,
 )
 from centrode.errors import InputError, MotionError, Status
 from centrode.geometry.plane import pose_with_point
@@ -31,6 +30,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
+from centrode.numerics.round_scales import round_scale
 from centrode.quantities import status_word
 from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.gearing import Round

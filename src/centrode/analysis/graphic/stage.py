@@ -20,8 +20,6 @@ from centrode.structure.dimensions import Dimensions
 
 PARALLEL = 1e-12
 """Lines whose sine is smaller count as parallel: rounding of directions makes some 1e-16, a dead point 1e-8."""
-ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
-"""Scales that a person takes, times a power of ten."""
 COARSEST_ANGLE, COARSEST_LENGTH = math.pi / 6, 0.01
 """Reading steps [rad] and [m on paper] above which a drawing says nothing."""
 
@@ -95,15 +93,6 @@ def cross(a: complex, b: complex) -> float:
 def dot(a: complex, b: complex) -> float:
     """Cosine of the angle between a and b, times both lengths."""
     return (a.conjugate() * b).real
-
-
-def round_scale(extent: float, room: float) -> float:
-    """The finest round scale at which an extent goes into a room: of [SI] and [mm] in SI a millimetre."""
-    if not extent > 0.0:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(extent / room))
-    # a hair smaller is taken as well, so that an extent of a round scale itself is not sent to the next
-    return next(float(f"{step * power:.3g}") for step in ROUND if step * power >= (1 - 1e-9) * extent / room)
 
 
 def extent_of(places: Iterable[complex]) -> float:

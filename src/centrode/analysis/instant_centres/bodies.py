@@ -22,6 +22,7 @@ from centrode.errors import InputError
 from centrode.kinematics.motion import BATCH
 from centrode.locale import _
 from centrode.model.files import parse_mechanism, with_value
+from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.values import unit_vector
@@ -179,19 +180,6 @@ def _column(motion: xr.Dataset, variable: str) -> Array | Places:
 def body_names(mechanism: Mechanism) -> tuple[str, ...]:
     """Bodies by number: the frame, links and sliders ("slider C": a point on a guide without a link of its own)."""
     return (FRAME, *mechanism.link_names, *sliders_of(mechanism))
-
-
-def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
-    """Name -> guide of the sliders that a description does not name as links."""
-    sliders: dict[str, Guide] = {}
-    for guide in mechanism.guides:
-        if guide.link is None:
-            name = f"slider {guide.id}"
-            # a link may have the name already
-            while name in mechanism.links or name in sliders:
-                name += "'"
-            sliders[name] = guide
-    return sliders
 
 
 def vectors(places: Places) -> Array:

@@ -15,7 +15,6 @@ from centrode.analysis.instant_centres.bodies import (
     Seen,
     mechanism_of_motion,
     refuse_batch,
-    sliders_of,
     vectors,
 )
 from centrode.errors import InputError, NotComputedYet, Status
@@ -34,6 +33,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import start_of
 from centrode.kinematics.solve import fit_for, solve
 from centrode.locale import _
+from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.numerics.jets import Jet

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -48,13 +47,12 @@ from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.model.reading import nearest
+from centrode.numerics.round_scales import FORCE_SCALES, round_scale
 from centrode.quantities import status_word
 from centrode.structure.plan import Structure
 
 # Force polygons as data: vectors one behind the other, with names and a round scale.
 
-ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
-"""Scales of forces, times a power of ten."""
 PARTS = "ⁿᵗ"
 """Marks of normal and tangential parts behind the name of a reaction."""
 PAPERS = {"A5": (210.0, 148.0), "A4": (297.0, 210.0), "A3": (420.0, 297.0)}
@@ -90,6 +88,16 @@ class PolygonVector:
         """Where the arrow ends [N]."""
         return self.start + self.force
 
+    @property
+    def is_part(self) -> bool:
+        """Whether it is the normal or the tangential part of a reaction."""
+        return self.name[-1] in PARTS
+
+    @property
+    def whole(self) -> str:
+        """Name of the reaction that it is a part of, else its own."""
+        return self.name[:-1] if self.is_part else self.name
+
 
 @dataclass(frozen=True)
 class Polygon:
@@ -114,7 +122,7 @@ class Polygon:
         return tuple(
             replace(first, name=first.name[:-1], force=first.force + second.force)
             for first, second in pairwise(self.vectors)
-            if first.name[-1] in PARTS and first.name[:-1] == second.name[:-1]
+            if first.is_part and first.name[:-1] == second.name[:-1]
         )
 
     @property
@@ -132,6 +140,10 @@ class Polygon:
             if one.name == name:
                 return one
         raise KeyError(name)
+
+    def parts_of(self, name: str) -> tuple[PolygonVector, ...]:
+        """The normal and the tangential part of a reaction; KeyError where it was not found in parts."""
+        return tuple(self.vector(name + mark) for mark in PARTS)
 
 
 def chain_actions(actions: Iterable[Action]) -> tuple[PolygonVector, ...]:
@@ -164,15 +176,7 @@ def scale_of(vectors: Sequence[PolygonVector], room: Size) -> float:
     corners = [0j, *(vector.end for vector in vectors)]
     wide = max(corner.real for corner in corners) - min(corner.real for corner in corners)
     high = max(corner.imag for corner in corners) - min(corner.imag for corner in corners)
-    return round_scale(max(wide / room[0], high / room[1]))
-
-
-def round_scale(least: float) -> float:
-    """The least number of the series that is not smaller; 1 of nothing."""
-    if not least > 0.0:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(least))
-    return next(float(f"{step * power:.3g}") for step in ROUND if step * power >= (1 - 1e-9) * least)
+    return round_scale(max(wide / room[0], high / room[1]), series=FORCE_SCALES)
 
 
 def sheet_of(paper: str) -> Size:
@@ -357,6 +361,11 @@ class ForcePolygons:
     outer: tuple[Action, ...]
     places: Mapping[str, complex]
     paper: str
+
+    @property
+    def paper_size(self) -> Size:
+        """Width and height of the sheet of paper [mm]."""
+        return sheet_of(self.paper)
 
     @property
     def polygons(self) -> tuple[Polygon, ...]:

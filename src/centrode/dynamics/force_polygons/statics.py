@@ -17,12 +17,12 @@ from typing import Any, Literal, TypeAlias, assert_never
 import numpy as np
 
 from centrode.analysis.graphic.stage import VectorDrawing, cross
-from centrode.analysis.instant_centres.bodies import sliders_of
 from centrode.dynamics.load_coordinates import Component, Distance, HalfSquare, Slide, Spin, Travel, Turn
 from centrode.dynamics.loads import AppliedLoad, LoadTerm, MassesAndLoads
 from centrode.dynamics.state import Centre, Mass, Radial, State
 from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _
+from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Drive, Guide, Mechanism
 from centrode.numerics.operations import PLAIN
 from centrode.structure.constraints import Contact, GearRatio, NoSlip, contact_point

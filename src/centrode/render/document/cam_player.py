@@ -11,13 +11,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from centrode.cams.followers.geometry import FollowerCam
-from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.model.settings import Display
-from centrode.present.animations.cams import GAP, WALLS, FollowerLayer
-from centrode.present.animations.layers import View
-from centrode.present.cams.walking_wheel import (
+from centrode.render.document.blocks import Moving, Outline, shown
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import Numbers
+from centrode.render.drawing.cams import GAP, WALLS, FollowerDrawing
+from centrode.render.drawing.linkage import MARGIN
+from centrode.render.drawing.signs import slider_outline
+from centrode.render.drawing.style import GROUND, INK, MUTED, house_style
+from centrode.render.drawing.walking_wheel import (
     CAM,
     CARRIER,
     FREE,
@@ -27,17 +30,12 @@ from centrode.present.cams.walking_wheel import (
     reach,
     window,
 )
-from centrode.present.drawing import MARGIN
-from centrode.present.signs import slider_outline
-from centrode.present.style import GROUND, INK, MUTED, house_style
-from centrode.render.document.blocks import Moving, Outline, shown
-from centrode.render.document.figures import picture
-from centrode.render.document.numbers import Numbers
+from centrode.scenes.places import View
 
 if TYPE_CHECKING:
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.walking_wheel import WheelMover, WheelPose
-    from centrode.present.cams.driving_cam import DrivingCam
-    from centrode.sheets.outlines import CamPlayer
+    from centrode.scenes.driving_cams import DrivingCam
 
 # Signs that shapes are made of: circles, hatched lines.
 
@@ -101,14 +99,6 @@ def _rod(ends: Array) -> Outline:
     return Outline(np.array([[0.0, 0.0], [length, 0.0]]), poses, INK)
 
 
-def moving_cam(player: CamPlayer) -> Moving:
-    """The motion of a cam or of a walking wheel, to be played."""
-    title = _(player.title.text)
-    if isinstance(player.body, FollowerCam):
-        return moving_follower(player.body, title)
-    return moving_wheel(player.body, title)
-
-
 def moving_follower(body: FollowerCam, title: str = "") -> Moving:
     """A cam that turns under its follower, to be played; its mark can be dragged around.
 
@@ -120,12 +110,12 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
         Of the cam, as its user wrote it.
     """
     angles = math.tau * np.arange(TURN + 1) / TURN
-    layer = FollowerLayer(body, angles, 1.0)
-    cam, samples = layer.cam, np.arange(TURN + 1)
-    reach = layer.reach()
+    drawing = FollowerDrawing(body, angles, 1.0)
+    cam, samples = drawing.cam, np.arange(TURN + 1)
+    reach = drawing.reach()
     low, high = reach.min(axis=0), reach.max(axis=0)
     view = View(low, high, float(np.max(high - low)) / INCHES)
-    layer.stand(view)
+    drawing.stand(view)
     size = view.sign
     tips = np.array([cam.foot(int(sample)) for sample in samples])
     marks = np.array([cam.mark(int(sample))[1] for sample in samples])
@@ -138,7 +128,7 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
             bodies["arm"] = ("C", "A")
     shapes = list(cam_shapes(cam, samples, size))
     if cam.pivot is None:
-        shapes += _stem(layer, tips)
+        shapes += _stem(drawing, tips)
     numbers = Numbers(Display(), DIGITS)
     degrees = numbers.column(np.degrees(angles).tolist(), least=1e-9)
     return Moving(
@@ -150,7 +140,7 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
         drive=angles,
         drive_texts=tuple(f"φ = {one}°" for one in degrees),
         tracks=(),
-        still=picture(_still(layer, view), ""),
+        still=picture(_still(drawing, view), ""),
         caption=_("Motion of {title}").format(title=shown(title) or _("the cam and its follower")),
         shapes=tuple(shapes),
         driven=("K",),
@@ -159,18 +149,18 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
     )
 
 
-def _stem(layer: FollowerLayer, tips: Array) -> Iterator[Outline]:
+def _stem(drawing: FollowerDrawing, tips: Array) -> Iterator[Outline]:
     """The stem of a translating follower, and the walls of its guide."""
     poses = np.column_stack([tips, np.zeros(len(tips))])
-    yield Outline(np.array([[0.0, 0.0], [0.0, layer.stem]]), poses, INK)
-    low = layer.top + GAP * layer.far
+    yield Outline(np.array([[0.0, 0.0], [0.0, drawing.stem]]), poses, INK)
+    low = drawing.top + GAP * drawing.far
     for side in (-1.0, 1.0):
-        x = tips[0, 0] + 1.2 * side * layer.size
-        ends = np.array([x, low]), np.array([x, low + WALLS * layer.far])
-        yield Outline(hatch(*ends, np.array([side, 0.0]), layer.size), AT_REST, GROUND)
+        x = tips[0, 0] + 1.2 * side * drawing.size
+        ends = np.array([x, low]), np.array([x, low + WALLS * drawing.far])
+        yield Outline(hatch(*ends, np.array([side, 0.0]), drawing.size), AT_REST, GROUND)
 
 
-def _still(layer: FollowerLayer, view: View) -> Figure:
+def _still(drawing: FollowerDrawing, view: View) -> Figure:
     """The cam and its follower at the beginning of a turn."""
     room = MARGIN * float(np.max(view.high - view.low))
     low, high = view.low - room, view.high + room
@@ -181,8 +171,8 @@ def _still(layer: FollowerLayer, view: View) -> Figure:
         axes.set_aspect("equal")
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-        layer.ground(axes)
-        layer.draw(axes, 0)
+        drawing.ground(axes)
+        drawing.draw(axes, 0)
         axes.set_axis_off()
     return figure
 
@@ -239,7 +229,7 @@ def _shapes(wheel: WheelMover, poses: list[WheelPose], rollers: dict[str, Array]
     still = np.array([[0.0, wheel.height, 0.0]])
     yield from _ground(wheel, poses)
     phi = np.linspace(wheel.closed.start, wheel.closed.stop, 2 * POINTS)
-    frame = frames(wheel.closed, phi)
+    frame = wheel.roller_frames(phi)
     yield Outline(-frame.place, still, MUTED)
     yield Outline(-(frame.place - wheel.roller * frame.normal), still, CAM, filled=True)
     ring = carrier_radius(wheel)

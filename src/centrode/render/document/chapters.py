@@ -9,20 +9,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.locale import _
-from centrode.render import figures
 from centrode.render.document import blocks
-from centrode.render.document.cam_player import moving_cam
+from centrode.render.document.cam_player import moving_follower, moving_wheel
 from centrode.render.document.figures import picture
 from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers, spelled_number
 from centrode.render.document.scale import INCH, drawn_to_scale, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
-from centrode.render.force_pages import drawing_end, group_scales
-from centrode.render.instant_pages import DRAWING as INSTANT
-from centrode.render.position_pages import DRAWING as POSITIONS
+from centrode.render.figures import pictures as figures_pictures
+from centrode.render.pages.force_polygons import drawing_end, group_scales
+from centrode.render.pages.instants import DRAWING as INSTANT
+from centrode.render.pages.positions import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer
+from centrode.sheets.outlines import CamPlayer, WheelPlayer
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
@@ -81,7 +81,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return _facts(facts, spelling.text(caption), spelling)
         case Illustration(picture_or_name, caption):
             shown = pictures[picture_or_name] if isinstance(picture_or_name, str) else picture_or_name
-            figure = figures.figure_of(shown, spelling.numbers.display)
+            figure = figures_pictures.figure_of(shown, spelling.numbers.display)
             if isinstance(shown, GroupPage | LeverPage):
                 # cut from its page: the column beside it stands in the text of the chapter
                 name = spelling.text(shown.title if caption is None else caption)
@@ -99,7 +99,9 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Check():
             return _check(block, spelling)
         case CamPlayer():
-            return moving_cam(block)
+            return moving_follower(block.body, _(block.title.text))
+        case WheelPlayer():
+            return moving_wheel(block.wheel, _(block.title.text))
         case Items(texts, numbered):
             return blocks.ItemsBlock(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):
@@ -140,8 +142,8 @@ def _drawn(
 ) -> blocks.Picture:
     """The drawing of a page without its head and its column, with its scale in the caption."""
     if isinstance(page, VectorDiagramPage):
-        factor, unit = spelling.numbers.shown(page.diagram.unit)
-        scale = factor * page.diagram.scale
+        factor, unit = spelling.numbers.shown(page.unit)
+        scale = factor * page.scale
     else:  # a drawing of a mechanism has axes of its own, in which its scale can be read
         unit, scale = spelling.numbers.shown("m")[1], scale_of(figure)
     caption = _("{title}; a millimetre stands for {scale} {unit}").format(

@@ -10,10 +10,9 @@ from typing import Any
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from centrode.present.figure_files import METADATA
-from centrode.present.spelled_figures import respell, spell_decimals
-from centrode.present.style import house_style
 from centrode.render.document.blocks import Picture
+from centrode.render.drawing.style import house_style
+from centrode.render.figures.files import METADATA, respell, spell_decimals
 
 FLAT = 0.68
 """Height of curves by their width of which two, with their captions, find room on a page."""

@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from centrode.errors import InputError, Status
 from centrode.locale import _
 from centrode.model.values import unit_vector
-from centrode.present import signs
-from centrode.present.drawing import MARGIN, draw_mechanism, nearest
-from centrode.present.linkage_scene import scene_of
-from centrode.present.scene import LinkageScene, corners, span
-from centrode.present.sphere.globe import Globe, draw_globe, globe_of
-from centrode.present.style import GROUND, INK, house_style, pens
-from centrode.present.wheels import BARREL, OVER, slides
 from centrode.render.document.blocks import Moving, Outline, RingBlock, shown
 from centrode.render.document.cam_player import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import NARROW, Numbers
-from centrode.render.linkages import complete, initial_sample
+from centrode.render.drawing import signs
+from centrode.render.drawing.globe import draw_globe
+from centrode.render.drawing.linkage import MARGIN, draw_mechanism, nearest
+from centrode.render.drawing.style import GROUND, INK, house_style, pens
+from centrode.render.figures.linkages import complete, initial_sample
+from centrode.scenes.linkage import BARREL, OVER, scene_of, slides
+from centrode.scenes.places import LinkageScene, corners, span
+from centrode.scenes.sphere import Globe, globe_of
 
 if TYPE_CHECKING:
     import xarray

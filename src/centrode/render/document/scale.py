@@ -12,10 +12,10 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from centrode.present.figure_files import METADATA
-from centrode.present.style import house_style
 from centrode.render.document.blocks import Picture
 from centrode.render.document.figures import spell_as_in_tables
+from centrode.render.drawing.style import house_style
+from centrode.render.figures.files import METADATA
 
 INCH = 25.4
 ROOM = 2.0

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.present.style import DASHES, GROUND, PALETTE
 from centrode.render.document.blocks import Moving, Outline, RingBlock
+from centrode.render.drawing.style import DASHES, GROUND, PALETTE
 
 Array = NDArray[np.float64]
 WIDE, TALLEST = 6400, 5200

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode import render
+from centrode.assignments.answers import InstantAnswers, VariantAnswers
+from centrode.assignments.results import rotation_of
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.errors import CentrodeError
 from centrode.kinematics.preparation import ready
@@ -16,14 +18,12 @@ from centrode.render.document.blocks import Report
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
 from centrode.report.study import Moment, moments_of
-from centrode.study.rotation import rotation_of
-from centrode.study.variant_answers import InstantAnswers, VariantAnswers
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
 
 if TYPE_CHECKING:
+    from centrode.assignments.results import Variants
     from centrode.report.study import ReportStudy
-    from centrode.study.variant_results import Variants
 
 OF_LINKS = ("angle", "angular_velocity", "angular_acceleration")
 ON_SPHERE = ("joint_angle", "joint_velocity", "joint_acceleration")

@@ -8,6 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from centrode.assignments.answers import VariantAnswers, read_answers
+from centrode.assignments.results import spoken_variants
+from centrode.assignments.tables import Table
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import Report
@@ -17,13 +20,10 @@ from centrode.report.files import FORMATS, check_formats, document, write_report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answers import answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, write_variants
-from centrode.study.variant_answers import VariantAnswers, read_answers
-from centrode.study.variant_results import spoken_variants
-from centrode.study.variant_tables import Table
 
 if TYPE_CHECKING:
-    from centrode.present.spelled_tables import TableSpelling
-    from centrode.study.variant_results import VariantResults, VariantRow, Variants
+    from centrode.assignments.results import VariantResults, VariantRow, Variants
+    from centrode.render.table_spelling import TableSpelling
 
 ANSWERS = "answers.json"
 

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 from centrode import render
+from centrode.assignments.results import FAULT, STEPS, VariantResults, VariantRow, Variants, compute_variant
+from centrode.assignments.tables import Table, Variant, read_variants
 from centrode.equations.integration import IntegrationResults
 from centrode.errors import InputError
 from centrode.files.drafts import clear_folder, draft_folder, refusals, remove_file, replace_file, write_whole
@@ -23,9 +25,7 @@ from centrode.files.locks import hold_lock
 from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
-from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.study.variant_results import FAULT, STEPS, VariantResults, VariantRow, Variants, compute_variant
-from centrode.study.variant_tables import Table, Variant, read_variants
+from centrode.render.table_spelling import PLAIN, TableSpelling
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
 from centrode.views import motion
@@ -98,10 +98,9 @@ def run(task: Task) -> VariantRow:
     draft.mkdir()
     try:
         results = compute_variant(parse_mechanism(task.topology), task.variant)
-        _write(results, draft, figures=task.figures)
+        _write(results, draft, task.spelling, figures=task.figures)
         if task.more is not None and results.mechanism is not None:
             task.more(results, draft)
-        task.spelling.spell(draft)
     except OSError:
         raise
     except Exception as fault:
@@ -130,21 +129,21 @@ def _exchange(task: Task, draft: Path, row: VariantRow) -> None:
     write_whole(task.folder / MARKER, {"digest": task.digest, "row": row.as_dict(), "files": names})
 
 
-def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
+def _write(results: VariantResults, folder: Path, spelling: TableSpelling, *, figures: bool) -> None:
     """The files of one variant; none of one that was refused."""
     study, mechanism, integration = results.study, results.mechanism, results.integration
     if study is None or mechanism is None:
         return
     shown = motion.sheet(study)
     (folder / "mechanism.toml").write_text(mechanism_text(mechanism), encoding="utf-8", newline="\n")
-    render.write_table(shown.tables["motion"], folder / "motion.csv", mechanism.display)
+    render.write_table(shown.tables["motion"], folder / "motion.csv", mechanism.display, spelling)
     render.write_summary(sheet_of(study).scalars, folder / "summary.json")
     if figures:
         render.write_pictures(shown.pictures, folder, mechanism.display)
     if integration is not None:
         sheet = sheet_of(IntegrationResults(mechanism, integration, study.motion))
         for name, table in sheet.tables.items():
-            render.write_table(table, folder / f"{name}.csv", mechanism.display)
+            render.write_table(table, folder / f"{name}.csv", mechanism.display, spelling)
         if figures:
             render.write_pictures(sheet.pictures, folder, mechanism.display)
 

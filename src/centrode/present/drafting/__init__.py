@@ -1,1 +1,0 @@
-"""Drawings for the shop: the mechanism at full size in conventional signs, as DXF and SVG in layers."""

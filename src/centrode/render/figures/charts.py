@@ -1,0 +1,214 @@
+"""Hodographs, bar charts and linkages with discs as figures of matplotlib, in the house style."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from centrode.locale import _
+from centrode.render.drawing.linkage import draw_mechanism
+from centrode.render.drawing.style import DASHES, INK, MUTED, PALETTE, Decimals, Pen, pens
+from centrode.render.drawing.texts import formula, label_with_unit
+from centrode.render.figures.curves import legend_width, write_legend, write_title
+from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.scenes.linkage import scene_of
+from centrode.scenes.places import LinkageScene, box
+from centrode.sheets.charts import (
+    BarChart,
+    Bars,
+    CarriedDisc,
+    DesignDot,
+    FrontDiagram,
+    Hodograph,
+    HodographCurve,
+    LinkageWithDiscs,
+)
+
+if TYPE_CHECKING:
+    from centrode.model.settings import Display
+
+Chart: TypeAlias = Hodograph | BarChart | LinkageWithDiscs
+TICKS = 20
+"""The most positions of bars that have a tick each."""
+
+
+def _pen(one: HodographCurve | Bars) -> Pen:
+    return Pen(PALETTE[one.place], DASHES[1] if one.approximate else DASHES[0])
+
+
+def _write_titles(figure: Figure, chart: Chart, display: Display) -> None:
+    mechanism = PlainSpelling(display).text(chart.mechanism)
+    write_title(figure, FigureSpelling(display).text(chart.title), mechanism)
+
+
+def hodograph_figure(hodograph: Hodograph, display: Display) -> Figure:
+    """Ends of vectors from one origin, to one scale."""
+    spelling = FigureSpelling(display)
+    (across, x_label, _x), (up, y_label, _y) = spelling.label(hodograph.x), spelling.label(hodograph.y)
+    curves = [(one, _pen(one), one.ends * (across, up)) for one in hodograph.curves]
+    size = np.ptp(np.concatenate([ends for _one, _pen, ends in curves]), axis=0)
+    width, height = np.maximum(6.0 * size / max(float(size.max()), np.finfo(float).tiny), 2.6)
+    figure = Figure(figsize=(width + 2.9, height + 1.1), layout="constrained")
+    axes = figure.subplots()
+    for one, pen, ends in curves:
+        word = spelling.text(one.name)
+        axes.plot(ends[:, 0], ends[:, 1], color=pen.colour, linestyle=pen.dashes, label=word)
+        marks = np.unique(np.linspace(0, len(ends) - 1, 11).round().astype(int))
+        axes.plot(ends[marks, 0], ends[marks, 1], ".", color=pen.colour, markersize=5)
+        axes.plot(ends[:1, 0], ends[:1, 1], "o", color=pen.colour, markersize=6)
+    axes.plot([0.0], [0.0], "+", color=INK, markersize=9)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(Decimals())
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    _write_titles(figure, hodograph, display)
+    return figure
+
+
+def bar_figure(chart: BarChart, display: Display) -> Figure:
+    """Panels of bars below each other; the legend stands in the first."""
+    spelling = FigureSpelling(display)
+    figure = Figure(figsize=(9.2, 6.4), layout="constrained")
+    rows = figure.subplots(len(chart.panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, panel in zip(rows, chart.panels, strict=True):
+        factor, label, _unit = spelling.label(panel.label)
+        _draw_bars(axes, panel.bars, factor, spelling)
+        axes.set_ylabel(label)
+        axes.yaxis.set_major_formatter(Decimals())
+        axes.grid(visible=False, axis="x")
+        axes.set_axisbelow(True)
+    rows[-1].set_xlabel(spelling.text(chart.across))
+    figure.axes[0].legend(loc="upper right")
+    _write_titles(figure, chart, display)
+    return figure
+
+
+def _draw_bars(axes: Axes, kinds: Sequence[Bars], factor: float, spelling: FigureSpelling) -> None:
+    positions = kinds[0].positions
+    width = 0.76 / len(kinds) * float(positions[1] - positions[0] if len(positions) > 1 else 1.0)
+    for number, one in enumerate(kinds):
+        side = number - (len(kinds) - 1) / 2
+        axes.bar(
+            one.positions + side * width,
+            factor * one.heights,
+            width,
+            color=_pen(one).colour,
+            label=spelling.text(one.name),
+        )
+    axes.set_xticks(positions if len(positions) <= TICKS else positions[:: -(-len(positions) // TICKS)])
+    if not any(one.heights.any() for one in kinds):
+        axes.set_ylim(0.0, 1.0)
+
+
+def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
+    """The linkage at a sample with its discs, whose names stand in a legend."""
+    sample = drawing.sample
+    scene = _wide_enough(scene_of(drawing.description, drawing.motion), drawing.discs, sample)
+    size = scene.high - scene.low
+    colours = pens(drawing.description.link_names)
+    names = [PlainSpelling(display).text(one.name) for one in drawing.discs]
+    beside = legend_width(names) if names else 0.0
+    width, height = 6.4 * size / scene.extent
+    figure = Figure(figsize=(max(width, 3.2) + 1.0 + beside, height + 1.5), layout="constrained")
+    axes = figure.subplots()
+    draw_mechanism(axes, scene, sample)
+    key: list[tuple[Artist, str]] = []
+    for one, name in zip(drawing.discs, names, strict=True):
+        circle = _draw_disc(axes, scene, sample, one, colours[one.link].colour)
+        key += [] if circle is None else [(circle, name)]
+    write_legend(axes, key, inches=float(height))
+    axes.grid(visible=False)
+    axes.set_xlabel(label_with_unit(formula("x"), str(display.length)))
+    axes.set_ylabel(label_with_unit(formula("y"), str(display.length)))
+    _write_titles(figure, drawing, display)
+    return figure
+
+
+def _reach(scene: LinkageScene, one: CarriedDisc) -> float:
+    """Radius of the circle that is drawn: the disc's own, else a sign."""
+    return 2.4 * scene.sign if one.radius is None else max(one.radius * scene.factor, 1.5 * scene.sign)
+
+
+def _wide_enough(scene: LinkageScene, discs: Sequence[CarriedDisc], sample: int) -> LinkageScene:
+    """The scene with corners that hold the discs too."""
+    corners = [np.array([scene.low, scene.high])]
+    for one in discs:
+        at = scene.carried(one.link, one.place, sample)
+        if at is not None:
+            corners.append(np.array([at - _reach(scene, one), at + _reach(scene, one)]))
+    low, high = box(corners)
+    return replace(scene, low=low, high=high)
+
+
+def _draw_disc(axes: Axes, scene: LinkageScene, sample: int, one: CarriedDisc, colour: str) -> Circle | None:
+    """An arm from the base, and a filled circle; great discs lie behind the links."""
+    at, base = scene.carried(one.link, one.place, sample), scene.at(sample).get(one.base)
+    if at is None or base is None:
+        return None
+    axes.plot([base[0], at[0]], [base[1], at[1]], color=colour, linewidth=2.4, zorder=2.9)
+    circle = Circle(
+        (at[0], at[1]), _reach(scene, one), facecolor=colour, edgecolor=INK, linewidth=0.9, zorder=1.9
+    )
+    circle.set_alpha(0.55)
+    axes.add_patch(circle)
+    return circle
+
+
+FRONT, CHOSEN, START, BOUND = PALETTE[0], PALETTE[1], INK, PALETTE[3]
+HIGH, LOW = 3.9, 1.35
+"""Inches of the panel of the front, and of each below it."""
+
+
+def front_figure(diagram: FrontDiagram, display: Display) -> Figure:
+    """Best designs over the bound that moves; the legend stands beside the first panel."""
+    spelling, words = FigureSpelling(display), PlainSpelling(display)
+    across, label, _unit = spelling.label(diagram.x)
+    first, *below = diagram.panels
+    names = [_("best designs"), *(words.text(dot.name) for dot in first.dots)]
+    height = HIGH + LOW * len(below) + 1.1
+    figure = Figure(figsize=(6.6 + legend_width(names, HIGH), height), layout="constrained")
+    rows = figure.subplots(
+        len(diagram.panels), 1, sharex=True, height_ratios=[HIGH, *([LOW] * len(below))], squeeze=False
+    )[:, 0]
+    key: list[tuple[Artist, str]] = []
+    for axes, panel in zip(rows, diagram.panels, strict=True):
+        up, y_label, _unit = spelling.label(panel.label)
+        marks = {"marker": "o", "markersize": 3.5} if panel is first else {}
+        (line,) = axes.plot(
+            across * diagram.values, up * panel.values, color=FRONT, label=_("best designs"), **marks
+        )
+        key.append((line, _("best designs")))
+        if panel is first and diagram.bound is not None:
+            bound = axes.axvline(across * diagram.bound, color=BOUND, linestyle="--", linewidth=1.2)
+            key.append((bound, _("bound")))
+        for level in panel.levels:
+            axes.axhline(up * level, color=MUTED, linewidth=0.9, linestyle=":")
+        key += [(_dot(axes, dot, (across, up)), words.text(dot.name)) for dot in panel.dots]
+        axes.set_ylabel(y_label)
+        axes.yaxis.set_major_formatter(Decimals())
+        if panel is first:
+            axes.xaxis.set_major_formatter(Decimals())
+            write_legend(axes, key, inches=HIGH)
+    rows[-1].set_xlabel(label)
+    write_title(figure, spelling.text(diagram.title), words.text(diagram.mechanism))
+    return figure
+
+
+def _dot(axes: Axes, dot: DesignDot, factors: tuple[float, float]) -> Artist:
+    """A design as its sign: empty where it misses a bound."""
+    colour = CHOSEN if dot.chosen else START
+    look: dict[str, Any] = {"color": colour, "marker": "D" if dot.chosen else "s"}
+    look["markerfacecolor"] = colour if dot.admissible else "white"
+    (drawn,) = axes.plot(
+        [factors[0] * dot.x], [factors[1] * dot.y], linestyle="none", markersize=6, zorder=5, **look
+    )
+    return drawn

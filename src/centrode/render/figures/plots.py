@@ -1,0 +1,203 @@
+"""Plots of sheets as figures of matplotlib: panels of curves, their sizes on logarithmic scales, diagrams."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, assert_never
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from centrode.render.drawing.style import DASHES, INK, PALETTE, Decimals, Pen
+from centrode.render.figures.curves import DrawnAbscissa, Panel, angle_ticks, sheet, write_legend, write_title
+from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.sheets.plots import CurveRole, TraceKind
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from centrode.model.settings import Display
+    from centrode.sheets.plots import Abscissa, Curve, CurveDiagram, CurvePanel, Overlay, Plot, Trace
+
+INCHES = 4.6
+"""Height of a diagram's axes, which its legend may take."""
+COLOURED = PALETTE[:-1]
+"""The palette without its black, which is the sum's among parts."""
+TICKS = 9
+"""The most ticks of an angle."""
+ROOM = 0.08
+"""Share of the panel that the name of a single place takes at its right."""
+MARKED = (0, (6, 2, 1.5, 2))
+"""Dashes of the line at a single place."""
+
+
+def plot_figure(plot: Plot, display: Display) -> Figure:
+    """A figure of panels over one abscissa."""
+    spelling = FigureSpelling(display)
+    rows = [[_panel(panel, spelling) for panel in row] for row in plot.rows]
+    title, mechanism = spelling.text(plot.title), PlainSpelling(display).text(plot.mechanism)
+    abscissa = drawn_abscissa(plot.abscissa, spelling)
+    if plot.sizes_above is not None:
+        figure = _sizes([panel for row in rows for panel in row], abscissa, plot.sizes_above)
+        write_title(figure, title, mechanism)
+    else:
+        figure = sheet(title, mechanism, rows, abscissa)
+    if plot.overlay is not None:
+        _lay_over(figure, plot.overlay, spelling)
+    across = spelling.label(plot.abscissa.label)[0]
+    for axes, panel in zip(figure.axes, (panel for row in plot.rows for panel in row), strict=True):
+        _add_dots(axes, panel, across, spelling)
+        if panel.from_zero:
+            axes.set_ylim(bottom=0.0)
+    _mark_places(figure, plot, across, spelling)
+    return figure
+
+
+def _add_dots(axes: Axes, panel: CurvePanel, across: float, spelling: FigureSpelling) -> None:
+    """Draw the single values of a panel, with their entries in its legend."""
+    up, entries = spelling.label(panel.label)[0], []
+    for name, x, y in panel.dots:
+        (dot,) = axes.plot([across * x], [up * y], "o", color=INK, markersize=5, clip_on=False, zorder=5)
+        entries.append((dot, PlainSpelling(spelling.display).text(name)))
+    if entries:
+        write_legend(axes, [*_entries(axes), *entries])
+
+
+def _mark_places(figure: Figure, plot: Plot, across: float, spelling: FigureSpelling) -> None:
+    """A line at each place that the panels show, its name along that in the first one."""
+    for name, value in plot.places:
+        place = across * value
+        low, high = figure.axes[0].get_xlim()
+        if not low <= place <= high:
+            continue
+        for axes in figure.axes:
+            axes.axvline(place, color=INK, linewidth=0.9, linestyle=MARKED)
+        beside = 12 if high - place > ROOM * (high - low) else -4
+        figure.axes[0].annotate(
+            spelling.text(name), (place, 0.34), xycoords=("data", "axes fraction"), xytext=(beside, 0),
+            textcoords="offset points", rotation=90, ha="right", va="center", color=INK, fontsize=8.5,
+        )  # fmt: skip
+
+
+def _entries(axes: Axes) -> list[tuple[Artist, str]]:
+    """What the legend of a panel has."""
+    legend = axes.get_legend()
+    if legend is None:
+        return []
+    return [
+        (handle, text.get_text())
+        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True)
+        if handle is not None
+    ]
+
+
+def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> None:
+    """Draw the curves of a second route over those of a figure, with one entry in its legends."""
+    abscissa = drawn_abscissa(overlay.abscissa, spelling)
+    look: dict[str, Any] = {"color": INK, "linestyle": (0, (2.5, 2.5)), "linewidth": 0.9}
+    panels = [_panel(panel, spelling) for row in overlay.rows for panel in row]
+    for axes, panel in zip(figure.axes, panels, strict=True):
+        for curve in panel.curves.values():
+            axes.plot(abscissa.values, curve[abscissa.order], zorder=3, **look)
+        if entries := _entries(axes):
+            name = PlainSpelling(spelling.display).text(overlay.name)
+            write_legend(axes, [*entries, (Line2D([], [], **look), name)])
+
+
+def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Figure:
+    """Panels below each other with the sizes of their curves on logarithmic scales."""
+    figure = Figure(figsize=(8.2, 3.0 * len(panels)), layout="constrained")
+    grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False)
+    for axes, panel in zip(grid.ravel(), panels, strict=True):
+        handles: list[tuple[Artist, str]] = []
+        for name, curve in panel.curves.items():
+            size = np.abs(curve[abscissa.order])
+            pen = panel.pens[name]
+            (line,) = axes.plot(
+                abscissa.values,
+                np.where(size > least, size, np.nan),  # the scale would show nothing but rounding
+                color=pen.colour,
+                linestyle=pen.dashes,
+                label=name,
+            )
+            handles.append((line, name))
+        axes.set_yscale("log")
+        if abscissa.values[0] < abscissa.values[-1]:
+            ends = float(abscissa.values[0]), float(abscissa.values[-1])
+            axes.set_xlim(ends)
+            angle_ticks(axes.xaxis, *ends, abscissa.unit, TICKS)
+        axes.set_ylabel(panel.label)
+        write_legend(axes, handles)
+    grid[-1, 0].set_xlabel(abscissa.label)
+    return figure
+
+
+def drawn_abscissa(abscissa: Abscissa, spelling: FigureSpelling) -> DrawnAbscissa:
+    """An abscissa in the unit that is shown, with its label."""
+    factor, label, unit = spelling.label(abscissa.label)
+    cut = abscissa.cut if abscissa.cut.size else np.zeros(len(abscissa.values), dtype=bool)
+    events = tuple((factor * value, kind) for value, kind in abscissa.events)
+    return DrawnAbscissa(factor * abscissa.values, abscissa.order, abscissa.breaks, cut, events, label, unit)
+
+
+def _panel(panel: CurvePanel, spelling: FigureSpelling) -> Panel:
+    factor, label, unit = spelling.label(panel.label)
+    # legends write names as they are: plain text, in which dollar signs are escaped where it is drawn
+    names = [PlainSpelling(spelling.display).text(curve.name) for curve in panel.curves]
+    curves = {name: factor * curve.values for name, curve in zip(names, panel.curves, strict=True)}
+    pens = {name: _pen(curve) for name, curve in zip(names, panel.curves, strict=True)}
+    return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend)
+
+
+def _pen(curve: Curve) -> Pen:
+    """Colours in turn, then the same colours dashed; what is approximate is dashed at once, black is a sum's alone."""
+    if curve.role is CurveRole.LEVEL:
+        return Pen(INK, DASHES[1])
+    if curve.role is CurveRole.SUM:
+        return Pen(INK)
+    place = curve.place
+    colours: Sequence[str] = COLOURED if curve.role is CurveRole.PART else PALETTE
+    dashes = DASHES[1] if curve.approximate else DASHES[place // len(colours) % len(DASHES)]
+    return Pen(colours[place % len(colours)], dashes)
+
+
+def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
+    """A figure of one quantity over another."""
+    spelling = FigureSpelling(display)
+    across, x_label, _unit = spelling.label(diagram.x)
+    up, y_label, _unit = spelling.label(diagram.y)
+    figure = Figure(figsize=(9.6, INCHES + 1.2), layout="constrained")
+    axes = figure.subplots()
+    key = [
+        _trace(axes, trace, place, (across, up), PlainSpelling(display))
+        for place, trace in enumerate(diagram.traces)
+    ]
+    axes.set_xlim(across * diagram.across[0], across * diagram.across[1])
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    axes.yaxis.set_major_formatter(Decimals())
+    write_legend(axes, key, inches=INCHES)
+    write_title(figure, spelling.text(diagram.title), PlainSpelling(display).text(diagram.mechanism))
+    return figure
+
+
+def _trace(
+    axes: Axes, trace: Trace, place: int, factors: tuple[float, float], spelling: PlainSpelling
+) -> tuple[Artist, str]:
+    """Draw a trace with its marks; returns its entry in the legend."""
+    colour = PALETTE[place % len(PALETTE)]
+    x, y = factors[0] * trace.x, factors[1] * trace.y
+    match trace.kind:
+        case TraceKind.CURVE:
+            (line,) = axes.plot(x, y, color=colour)
+        case TraceKind.LINE:
+            (line,) = axes.plot(x, y, color=colour, linewidth=1.2)
+        case TraceKind.SEGMENT:
+            (line,) = axes.plot(x, y, color=INK, linewidth=3.0, clip_on=False)
+        case _:
+            assert_never(trace.kind)
+    for mark in trace.marks * factors:
+        axes.plot([mark[0]], [mark[1]], "o", color=colour, markersize=5)
+    return line, spelling.text(trace.name)

@@ -1,0 +1,158 @@
+"""The mechanism of an instant drawn to scale: instant centres, velocities of its points, senses of rotation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+
+from centrode.locale import _
+from centrode.model.settings import shown_as
+from centrode.numerics.round_scales import round_scale
+from centrode.quantities import typeset_unit
+from centrode.render.drawing import signs
+from centrode.render.drawing.linkage import draw_bodies, draw_drive
+from centrode.render.drawing.style import INK, MUTED, Pen, pens
+from centrode.render.drawing.tags import lines
+from centrode.render.drawing.texts import plain
+from centrode.render.figures.linkages import caption
+from centrode.render.pages.page import (
+    COLUMN,
+    CORNER,
+    SIZE,
+    TOP,
+    Array,
+    Page,
+    PageView,
+    arrow,
+    flat,
+    new_page,
+    symbol,
+    write_head,
+)
+from centrode.render.spelling import PlainSpelling
+from centrode.scenes.linkage import scene_of
+from centrode.scenes.places import SIGN_INCHES, LinkageScene
+
+if TYPE_CHECKING:
+    from centrode.model.settings import Display
+    from centrode.sheets.pages import InstantPage
+
+DRAWING = COLUMN, TOP
+"""Where the drawing of a page of an instant ends: at the column and below the head [mm]."""
+SIGN = 1.1
+"""Radius of a hinge's circle [mm]."""
+LONGEST = 18.0
+"""Most that a vector of velocity is long [mm]."""
+ARC = 3.2
+"""Radius of an arc that shows a sense of rotation [mm]."""
+
+
+def instant_figure(sheet: InstantPage, display: Display) -> Figure:
+    """A page A5 across: the mechanism at its scale, which is true on paper, with what its velocities say."""
+    spelling = PlainSpelling(display)
+    page = new_page()
+    factor, unit = shown_as("m", display)
+    greatest = max((abs(one.rate) for one in sheet.velocities), default=0.0)
+    per_mm = max(round_scale(greatest, LONGEST), sheet.finest)
+    scene, view = placed(sheet, factor, per_mm)
+    axes = view.axes(page)
+    colours = pens(sheet.mechanism.link_names)
+    draw_bodies(axes, scene, 0, colours)
+    draw_drive(axes, scene, 0)
+    page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
+    draw_velocities(page, view, sheet, factor, per_mm)
+    draw_centres(page, view, sheet, factor, colours)
+    draw_senses(page, view, scene, sheet, colours)
+    for name, place in scene.at(0).items():
+        page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
+    speed_factor, speed_unit = shown_as("m/s", display)
+    head = [
+        caption(sheet.mechanism, sheet.instant, 0),
+        f"μ_l = {factor * sheet.scale:g} {unit} " + _("per mm"),
+        f"μ_v = {speed_factor * per_mm:g} {typeset_unit(speed_unit)} " + _("per mm"),
+    ]
+    listed = [spelling.text(one) for one in sheet.lines]
+    write_head(page, spelling.text(sheet.title), sheet.mechanism, head, listed)
+    page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
+    return page.figure
+
+
+def placed(sheet: InstantPage, factor: float, per_mm: float) -> tuple[LinkageScene, PageView]:
+    """The scene with its signs as large as on the page, and a view of all but the instant centres that do not fit.
+
+    Slots are as long as their pins travel in the whole motion; the view is that of the instant.
+    """
+    scale = factor * sheet.scale
+    now = scene_of(sheet.mechanism, sheet.instant)
+    together = [data.drop_dims("event", errors="ignore") for data in (sheet.instant, sheet.course)]
+    whole = scene_of(sheet.mechanism, xarray.concat(together, dim="sample", data_vars="minimal"))
+    tips = [factor * (one.place + sheet.scale / per_mm * one.rate) for one in sheet.velocities]
+    chosen = np.vstack([now.low, now.high, flat(tips)]) if tips else np.array([now.low, now.high])
+    centres = [flat([factor * centre.place])[0] for centre in sheet.centres]
+    for centre in sorted(centres, key=lambda at: float(np.abs(at - (now.low + now.high) / 2).max())):
+        more = np.vstack([chosen, centre])
+        if ((more.max(axis=0) - more.min(axis=0)) / scale > SIZE - 12.0).any():
+            break
+        chosen = more
+    inches = SIGN_INCHES * now.extent / (SIGN * scale)
+    scene = replace(whole, low=now.low, high=now.high, inches=inches)
+    return scene, PageView.about(CORNER, SIZE, chosen, scale)
+
+
+def draw_velocities(page: Page, view: PageView, sheet: InstantPage, factor: float, per_mm: float) -> None:
+    """Velocities of the moving points as arrows, a millimetre standing for `per_mm` [m/s]."""
+    for one in sheet.velocities:
+        start = view.mm(flat([factor * one.place])[0])
+        end = start + flat([one.rate / per_mm])[0]
+        if np.hypot(*(end - start)) < 1.0:
+            continue
+        arrow(page, start, end, INK, width=1.1)
+        page.name(end, symbol("v", one.point), clear=0.8, size=7.5)
+
+
+def draw_centres(
+    page: Page, view: PageView, sheet: InstantPage, factor: float, colours: Mapping[str, Pen]
+) -> None:
+    """Instant centres with the perpendiculars that meet there, of those that lie on the page."""
+    names: list[tuple[Array, list[str]]] = []
+    for centre in sheet.centres:
+        at = view.mm(flat([factor * centre.place])[0])
+        if (at < CORNER).any() or (at > CORNER + SIZE).any():
+            continue
+        for point in centre.points:
+            place = view.mm(flat([factor * point])[0])
+            page.overlay.plot(*np.array([place, at]).T, color=MUTED, linewidth=0.6, linestyle="--", zorder=3)
+            page.avoid([(place, at)])
+        near = next((known for place, known in names if np.hypot(*(place - at)) < 1.0), None)
+        if near is not None:
+            near.append(centre.link)
+            continue
+        names.append((at, [centre.link]))
+        signs.cross(page.overlay, at, 1.0, colours[centre.link].colour)
+    for at, links in names:
+        text = ", ".join(symbol("P", link) for link in links[:4]) + (", …" if len(links) > 4 else "")
+        page.name(at, text, clear=1.4, size=7.5)
+
+
+def draw_senses(
+    page: Page, view: PageView, scene: LinkageScene, sheet: InstantPage, colours: Mapping[str, Pen]
+) -> None:
+    """An arc with a head in the middle of every link that turns."""
+    places = scene.at(0)
+    for link, forward in sheet.senses.items():
+        points = [places[name] for name in sheet.mechanism.links[link].coordinates if name in places]
+        if len(points) < 2:
+            continue
+        middle = view.mm(0.5 * (points[0] + points[1]))
+        radius = min(ARC, max(0.5 * ARC, 0.3 * float(np.hypot(*(points[1] - points[0]))) / view.scale))
+        angle = float(np.arctan2(*(points[1] - points[0])[::-1])) + np.pi / 2
+        arc = angle + np.linspace(-2.2, 2.2, 25) * (1.0 if forward else -1.0)
+        path = middle + radius * np.stack([np.cos(arc), np.sin(arc)], axis=1)
+        signs.turning_arrow(page.overlay, path, colours[link].colour)
+        page.avoid(pairwise(path))
