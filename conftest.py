@@ -29,6 +29,10 @@ from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
 from centrode.present.animations import animate
 
+# Matrices here are small, and a worker runs on every core: threads of the linear algebra would only wait for each
+# other, at a hundred times the cost. It reads this as it is loaded, in workers and in the processes that tests start.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 settings.register_profile(
     "house", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
