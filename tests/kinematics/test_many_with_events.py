@@ -22,7 +22,7 @@ from growing import DYADS, grown, mechanism_of
 from growing_sphere import KINDS as ON_SPHERE
 from growing_sphere import grown as grown_on_sphere
 from mechanisms import four_bar, parts_of
-from samples import few
+from samples import few, spread
 
 pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 
@@ -155,7 +155,7 @@ def test_change_points(name: str, continuation: str, by_machine_code: list[int])
     assert len(expected.branches.events) >= 4 * 20
 
 
-@pytest.mark.parametrize("name", [*SPECIAL, "galloway", "scott-russell"])
+@pytest.mark.parametrize("name", spread([*SPECIAL, "galloway", "scott-russell"], 3))
 def test_change_points_that_are_just_missed(name: str) -> None:
     """Lengths wrong in their last places, samples next to where a change point would be."""
     mechanism = ct.example(name)
