@@ -156,7 +156,7 @@ def test_after_how_many_turns_it_closes(case: tuple[ct.Mechanism, float], traced
 @pytest.mark.parametrize(
     ("name", "low", "high"),
     few(
-        [("triad", -0.3, 1.4), ("gear, two turns", 0.0, 2.2), ("change points", -0.4, 1.7)],
+        [("gear, two turns", 0.0, 2.2), ("change points", -0.4, 1.7)],
         [
             ("triad", -1.5, 4.0),
             ("gear, two turns", 0.0, 2.8),
@@ -189,7 +189,7 @@ def test_it_is_as_if_followed_on(name: str, low: float, high: float, monkeypatch
         assert one == pytest.approx(two, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", ["triad", "gear, two turns"])
+@pytest.mark.parametrize("name", few(["gear, two turns"], ["triad", "gear, two turns"]))
 def test_started_turns_later_it_moves_alike(name: str) -> None:
     """The same links with a drive that starts ten turns further on: there nothing has been repeated."""
     mechanism = ct.Mechanism(**CASES[name][0])
@@ -234,7 +234,7 @@ def test_a_result_belongs_to_its_value_alone(name: str) -> None:
     end = start_of(mechanism) + period * tau
     values = [end - 0.3, end, np.nextafter(end, inf), end + 0.05, end + 0.2, end + 1.3 * tau]
     together = ct.motion(mechanism, at=[*values, start_of(mechanism) - 1.2 * tau])
-    for k in few((1, 2, 5), range(6)):
+    for k in few((2, 5), range(6)):
         value = values[k]
         alone = ct.motion(mechanism, at=[value])
         for number in NUMBERS:
