@@ -13,6 +13,9 @@ WITHOUT_EXTRAS := tests/sweeps/test_without_extras.py tests/sweeps/test_sweeps.p
 	$(SCHEMES)::test_a_step_that_is_shown_is_a_step $(SCHEMES)::test_what_cannot_be_compiled_runs_on_arrays \
 	$(SCHEMES)::test_nothing_that_moves_it
 
+# Matrices are small, and workers run on every core: threads of the linear algebra would only wait for each other.
+quick tests tests-without-extras samples campaigns snapshots: export OPENBLAS_NUM_THREADS := 1
+
 # A stamp is newer than pyproject.toml when what it stands for is installed.
 BASE := $(VENV)/.stamp-base
 FOR_DEMO := $(VENV)/.stamp-demo

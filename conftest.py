@@ -32,9 +32,19 @@ from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
 from centrode.sweeps.sweep import read_sweep
+from samples import few
+
+# Matrices here are small, and a worker runs on every core: threads of the linear algebra would only wait for each
+# other, at a hundred times the cost. It reads this as it is loaded, in workers and in the processes that tests start.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 settings.register_profile(
-    "house", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
+    "house",
+    max_examples=few(30, 100),
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 settings.register_profile(
     "explore", parent=settings.get_profile("house"), derandomize=False, max_examples=2000

@@ -67,7 +67,7 @@ from .cams.results import cam_contact as cam_contact
 from .cams.parameter_choice.search import choose_cam as choose_cam
 
 # Many mechanisms
-from .study.variant_results import variants as variants
+from .assignments.results import variants as variants
 from .sweeps.sweep import sweep as sweep
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample

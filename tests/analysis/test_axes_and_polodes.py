@@ -18,6 +18,7 @@ from centrode.kinematics.motion import initial_place
 from growing import mechanism_of
 from growing_sphere import KINDS, grown
 from mechanisms import EPS, four_bar
+from samples import few
 
 Vector = Any
 
@@ -91,7 +92,7 @@ def test_axes_follow_from_places_a_little_before_and_after(link: str, against: s
     assert 3.5 <= errors[0] / errors[1] <= 4.5 or errors[0] <= 64 * EPS / 1e-2
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=few(10, 25), deadline=None)
 @given(st.lists(st.sampled_from(KINDS), min_size=1, max_size=3), st.integers(0, 2**16))
 def test_axes_of_three_bodies_lie_on_one_great_circle(kinds: list[str], seed: int) -> None:
     """Kennedy's theorem on random mechanisms, and the construction from places against the velocities."""

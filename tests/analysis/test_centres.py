@@ -17,6 +17,7 @@ from centrode.analysis.instant_centres.kennedy import construct_centres
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import grown_higher, higher_descriptions
 from mechanisms import EPS, conditioning, moved, point, solved_at
+from samples import few
 
 WORTH = 1e5
 """Positions whose condition is worse than this prove nothing about centres and are passed over."""
@@ -41,7 +42,7 @@ def places(centres: Any, sample: int = 0) -> dict[tuple[str, str], complex]:
     return {name: complex(*at) for name, at in zip(names, values, strict=True) if np.isfinite(at).all()}
 
 
-@settings(max_examples=40)
+@settings(max_examples=few(12, 40))
 @given(descriptions())
 def test_the_constructed_centres_have_no_relative_velocity(parts: dict[str, Any]) -> None:
     motion, rounding = at_start(parts)
@@ -51,7 +52,7 @@ def test_the_constructed_centres_have_no_relative_velocity(parts: dict[str, Any]
         assert made.mismatch[step.pair] <= step.error + rounding, step
 
 
-@settings(max_examples=6)
+@settings(max_examples=few(3, 6))
 @given(higher_descriptions())
 def test_groups_of_higher_class_too(parts: dict[str, Any]) -> None:
     try:
@@ -67,7 +68,7 @@ def test_groups_of_higher_class_too(parts: dict[str, Any]) -> None:
         assert made.mismatch[step.pair] <= 64 * (step.error + residual), step
 
 
-@settings(max_examples=30)
+@settings(max_examples=few(10, 30))
 @given(descriptions())
 def test_three_centres_lie_on_a_line(parts: dict[str, Any]) -> None:
     """Kennedy's theorem for every triple, those at infinity included."""
@@ -296,7 +297,7 @@ def test_where_no_two_lines_tell_one_centre_comes_from_the_velocities(group: str
     assert all(made.mismatch[step.pair] <= step.error for step in made.steps)
 
 
-@settings(max_examples=20)
+@settings(max_examples=few(8, 20))
 @given(st.sampled_from(KINDS), st.integers(0, 2**16))
 def test_a_turned_and_moved_mechanism_has_its_centres_turned_and_moved(kind: str, seed: int) -> None:
     parts = grown([kind], seed)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from mechanisms import EPS, four_bar, point
+from samples import few
 
 
 def curve(data: Any, name: str) -> Any:
@@ -186,7 +187,7 @@ MECHANISMS = (
 )
 
 
-@settings(max_examples=12)
+@settings(max_examples=few(6, 12))
 @given(st.sampled_from(MECHANISMS), st.floats(0.2, 6.0), st.floats(0.3, 2.8))
 def test_the_circle_the_cubic_and_the_point_do_what_they_are_for(
     which: tuple[str, str, str], q: float, turn: float

@@ -55,7 +55,7 @@ def test_the_examples_have_dyads_of_all_kinds() -> None:
     assert kinds >= {"RRR", "RRP", "RPR", "PRP", "RPP", "gear", "gear train", "rolling wheel", "higher class"}
 
 
-@settings(max_examples=few(25, 50))
+@settings(max_examples=few(10, 50))
 @given(descriptions())
 def test_random_mechanisms(parts: dict[str, Any]) -> None:
     prepared = ready(mechanism_of(parts))
@@ -65,7 +65,7 @@ def test_random_mechanisms(parts: dict[str, Any]) -> None:
     assert (found[0] <= found[1]).all()
 
 
-@settings(max_examples=few(8, 25))
+@settings(max_examples=few(3, 25))
 @given(higher_descriptions())
 def test_random_groups_of_higher_class(parts: dict[str, Any]) -> None:
     try:

@@ -11,10 +11,11 @@ import pytest
 import centrode as ct
 from centrode.analysis.rotatability.causes import CauseKind, Tracer
 from mechanisms import EPS
+from samples import examples_at_hand
 from turning import assert_swings
 
 SLOW = "scissor-lift-cylinder"
-"""Its group of higher class takes seconds; what every example gives is asserted of it here."""
+"""Its group of higher class takes seconds."""
 LIMITED = [
     "slider-between-cranks-locked",
     "double-rocker",
@@ -27,7 +28,7 @@ LIMITED = [
 ]
 
 
-@pytest.mark.parametrize("name", LIMITED)
+@pytest.mark.parametrize("name", examples_at_hand(LIMITED))
 def test_limits_are_those_of_ct_limits_to_the_last_bit(name: str) -> None:
     mechanism = ct.example(name)
     found = ct.rotatability(mechanism)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from centrode.cams.roller_path import arc_series, exponential_series, next_cosine, system_series
+from samples import few
 
 TERMS = 12
 # right-angled triangles: sine and cosine of the pressure angle as fractions
@@ -41,7 +42,7 @@ def by_equation_23(
     return a, b
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=few(15, 40), deadline=None)
 @given(ANGLES, POSITIVE, NUMBERS, POSITIVE)
 def test_three_recursions_are_one_for_exponentials(
     angle: tuple[int, int, int], k0: Fraction, k1: Fraction, rho: Fraction
@@ -55,7 +56,7 @@ def test_three_recursions_are_one_for_exponentials(
     assert paper == (sines[: TERMS + 1], cosines[:TERMS])
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=few(15, 40), deadline=None)
 @given(ANGLES, POSITIVE, st.lists(NUMBERS, min_size=TERMS, max_size=TERMS), POSITIVE)
 def test_the_general_recursion_is_that_of_the_equations(
     angle: tuple[int, int, int], k0: Fraction, more: list[Fraction], rho: Fraction
@@ -73,7 +74,7 @@ def test_the_general_recursion_is_that_of_the_equations(
         assert product(slopes, b, n) == product(radii, a, n)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=few(10, 20), deadline=None)
 @given(ANGLES, POSITIVE, POSITIVE)
 def test_along_the_arc_a_constant_curvature_draws_a_circle(
     angle: tuple[int, int, int], k0: Fraction, rho: Fraction

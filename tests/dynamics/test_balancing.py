@@ -26,7 +26,7 @@ def static_moment(mechanism: ct.Mechanism, link: str, base: str) -> complex:
     return one.mass * complex(one.centre[0] - x, one.centre[1] - y)
 
 
-@settings(max_examples=few(6, 20))
+@settings(max_examples=few(3, 20))
 @given(st.integers(0, 10_000))
 def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(seed: int) -> None:
     mechanism = four_bar(seed)

@@ -79,7 +79,7 @@ def test_no_size_and_no_force() -> None:
     assert empty.sizes.shape == (0, 2)
 
 
-@settings(max_examples=few(20, 60), deadline=None)
+@settings(max_examples=few(10, 60), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 6))
 def test_where_little_feeds_back_plain_iteration_comes_to_the_same(seed: int, width: int) -> None:
     random = np.random.default_rng(seed)

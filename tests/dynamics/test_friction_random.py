@@ -196,7 +196,7 @@ def test_every_kind_of_dyad(kind: str, seed: int) -> None:
         assert check(grown(["RRR", kind], seed), seed + 100, 0.1) >= 1
 
 
-@settings(max_examples=few(6, 15), deadline=None)
+@settings(max_examples=few(4, 15), deadline=None)
 @given(descriptions(), SEEDS)
 def test_random_mechanisms(parts: dict[str, Any], seed: int) -> None:
     check(parts, seed)

@@ -68,7 +68,7 @@ def strongest(data: Any) -> float:
     return 50.0 * (scale_of(data) + float(abs(data.angle).max())) + 10.0 * fast**2
 
 
-@settings(max_examples=few(10, 30))
+@settings(max_examples=few(6, 30))
 @given(descriptions(), SEEDS)
 def test_random_mechanisms(parts: dict[str, Any], seed: int) -> None:
     assume(agree(parts, seed))

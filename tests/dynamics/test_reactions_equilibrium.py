@@ -22,7 +22,7 @@ from growing_higher import HIGHER, grown_higher
 from kinetostatics import motion_and_reactions, number_of_equations, structure
 from mechanisms import EPS, parts_of
 from newton_euler import FRAME, Balance, dot, vector
-from samples import few
+from samples import examples_at_hand, few
 
 Array = npt.NDArray[np.float64]
 WIDTH = 0.3
@@ -126,7 +126,7 @@ def test_every_kind_of_group(kind: str, seed: int) -> None:
     assert check(grown(["RRR", kind], seed), seed + 100) >= 1
 
 
-@settings(max_examples=few(6, 15), deadline=None)
+@settings(max_examples=few(3, 15), deadline=None)
 @given(descriptions(), SEEDS)
 def test_random_mechanisms(parts: dict[str, Any], seed: int) -> None:
     check(parts, seed)
@@ -150,19 +150,21 @@ def spelled_out(mechanism: ct.Mechanism) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     "name",
-    [
-        "excavator-arm",
-        "five-bar-two-drives",
-        "two-link-arm",
-        "scissor-lift-cylinder",
-        "planetary-gear-train",
-        "cardan-gear",
-        "geared-five-bar",
-        "elliptic-trammel",
-        "shaper",
-        "slider-between-cranks",
-        "third-class-triad",
-    ],
+    examples_at_hand(
+        [
+            "excavator-arm",
+            "five-bar-two-drives",
+            "two-link-arm",
+            "scissor-lift-cylinder",
+            "planetary-gear-train",
+            "cardan-gear",
+            "geared-five-bar",
+            "elliptic-trammel",
+            "shaper",
+            "slider-between-cranks",
+            "third-class-triad",
+        ]
+    ),
 )
 def test_built_in_mechanisms(name: str) -> None:
     """Several drives, cylinders, planetary gears, hinges of three links, a mechanism without fixed hinges."""

@@ -62,7 +62,7 @@ def by_newton(mechanism: ct.Mechanism, data: xr.Dataset, about: complex) -> tupl
     return force, moment, great, far
 
 
-@settings(max_examples=few(10, 25))
+@settings(max_examples=few(5, 25))
 @given(st.lists(st.sampled_from(DYADS), min_size=1, max_size=3), st.integers(0, 2**32 - 1))
 def test_newtons_law_holds_at_every_sample(kinds: list[str], seed: int) -> None:
     parts = burdened(grown(kinds, seed), seed)

@@ -87,7 +87,7 @@ def test_rates_of_examples(name: str) -> None:
     check_rates(ct.example(name))
 
 
-@settings(max_examples=few(12, 25))
+@settings(max_examples=few(6, 25))
 @given(descriptions())
 def test_rates_of_random_mechanisms(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)
@@ -95,7 +95,7 @@ def test_rates_of_random_mechanisms(parts: dict[str, Any]) -> None:
     check_rates(mechanism)
 
 
-@settings(max_examples=few(5, 10))
+@settings(max_examples=few(2, 10))
 @given(higher_descriptions())
 def test_rates_of_random_groups_of_higher_class(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)
@@ -139,7 +139,7 @@ def test_determinants_of_examples(name: str) -> None:
         check_determinants(ct.example(name))
 
 
-@settings(max_examples=few(12, 25))
+@settings(max_examples=few(6, 25))
 @given(descriptions())
 def test_determinants_of_random_mechanisms(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)

@@ -15,9 +15,10 @@ from centrode.equations.instants import instant_of, rates_compared
 from centrode.errors import Status
 from centrode.model.examples import example_text
 from centrode.model.examples.catalogue import load
-from samples import examples_at_hand
+from samples import examples_at_hand, few
 
 EPS = float(np.finfo(float).eps)
+WITH_SLIDES = few("whitworth-quick-return", "scissor-lift-cylinder")
 
 
 def planar() -> list[str]:
@@ -51,7 +52,7 @@ def test_systems_give_the_rates_of_the_closed_forms(name: str) -> None:
 
 
 def test_constraints_hold_at_every_sample() -> None:
-    for name in ("rolling-wheel-rod", "planetary-hypocycloid", "scissor-lift-cylinder", "galloway"):
+    for name in ("rolling-wheel-rod", "planetary-hypocycloid", WITH_SLIDES, "galloway"):
         equations, motion = examined(name)
         for sample in range(7):
             if motion.status[sample] != Status.OK:
@@ -100,7 +101,7 @@ def test_the_sphere_is_refused() -> None:
 
 
 def test_another_unit_of_length_changes_lengths_alone() -> None:
-    equations, motion = examined("scissor-lift-cylinder")
+    equations, motion = examined(WITH_SLIDES)
     middle = 3
     metres, millimetres = (instant_of(equations, motion, middle, length) for length in (1.0, 1e3))
     for group, one, other in zip(equations.groups, metres.velocities, millimetres.velocities, strict=True):

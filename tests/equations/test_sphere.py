@@ -98,7 +98,7 @@ def test_examples_agree_with_motion(name: str) -> None:
         assert "driven links and dyads" in refused.what
 
 
-@settings(max_examples=few(12, 25), deadline=None)
+@settings(max_examples=few(6, 25), deadline=None)
 @given(mechanisms(("RRR", "RRP", "rigid point", "turned link")))
 def test_random_mechanisms_agree_with_motion(growing: Growing) -> None:
     mechanism = mechanism_of(growing)

@@ -14,6 +14,7 @@ import centrode as ct
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from mechanisms import EPS, Parts, events, moved, parts_of, point, statuses
+from samples import few
 
 M = JetFunctions(ARRAYS)
 Form = Callable[[Any], Any]
@@ -89,8 +90,13 @@ def test_through_change_points_on_and_off_the_event(name: str, samples: int) -> 
             assert error <= allowed
 
 
-@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("turn", [0.3, 2.0, -1.234])
+TURNS, SCALES = (0.3, 2.0, -1.234), (1e-6, 1.0, 1e6)
+
+
+@pytest.mark.parametrize(
+    ("turn", "scale"),
+    few([*zip(TURNS, SCALES, strict=True)], [(turn, scale) for turn in TURNS for scale in SCALES]),
+)
 @pytest.mark.parametrize("name", EXACT)
 def test_any_frame_and_any_size(name: str, turn: float, scale: float) -> None:
     errors = worst_errors(name, turn, scale, -2 * np.pi, 2 * np.pi, 361)

@@ -16,6 +16,7 @@ from centrode.kinematics.higher_class.newton import SMALL
 from centrode.kinematics.path import Path
 from mechanisms import EPS, OPERATIONS, Parts, events, parts_of, statuses
 from redriven import answer
+from samples import few
 
 NUMBERS = ("position", "velocity", "acceleration", "angle", "status")
 
@@ -116,7 +117,12 @@ CASES: dict[str, tuple[Parts, float]] = {
 }
 
 
-@pytest.fixture(params=CASES)
+@pytest.fixture(
+    params=few(
+        ("triad", "gear, two turns", "gear, nearly", "wheel behind", "sphere", "near miss", "locking"),
+        tuple(CASES),
+    )
+)
 def case(request: pytest.FixtureRequest) -> tuple[ct.Mechanism, float]:
     parts, period = CASES[request.param]
     return ct.Mechanism(**{key: value for key, value in parts.items() if key != "study"}), period
@@ -149,12 +155,15 @@ def test_after_how_many_turns_it_closes(case: tuple[ct.Mechanism, float], traced
 
 @pytest.mark.parametrize(
     ("name", "low", "high"),
-    [
-        ("triad", -1.5, 4.0),
-        ("gear, two turns", 0.0, 2.8),
-        ("change points", -0.4, 1.7),
-        ("wheel behind", -1.3, 0.0),
-    ],
+    few(
+        [("gear, two turns", 0.0, 2.2), ("change points", -0.4, 1.7)],
+        [
+            ("triad", -1.5, 4.0),
+            ("gear, two turns", 0.0, 2.8),
+            ("change points", -0.4, 1.7),
+            ("wheel behind", -1.3, 0.0),
+        ],
+    ),
 )
 def test_it_is_as_if_followed_on(name: str, low: float, high: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same statuses; numbers as two ways to start Newton's method agree, events as well as they are found."""
@@ -180,7 +189,7 @@ def test_it_is_as_if_followed_on(name: str, low: float, high: float, monkeypatch
         assert one == pytest.approx(two, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", ["triad", "gear, two turns"])
+@pytest.mark.parametrize("name", few(["gear, two turns"], ["triad", "gear, two turns"]))
 def test_started_turns_later_it_moves_alike(name: str) -> None:
     """The same links with a drive that starts ten turns further on: there nothing has been repeated."""
     mechanism = ct.Mechanism(**CASES[name][0])
@@ -225,7 +234,8 @@ def test_a_result_belongs_to_its_value_alone(name: str) -> None:
     end = start_of(mechanism) + period * tau
     values = [end - 0.3, end, np.nextafter(end, inf), end + 0.05, end + 0.2, end + 1.3 * tau]
     together = ct.motion(mechanism, at=[*values, start_of(mechanism) - 1.2 * tau])
-    for k, value in enumerate(values):
+    for k in few((2, 5), range(6)):
+        value = values[k]
         alone = ct.motion(mechanism, at=[value])
         for number in NUMBERS:
             assert np.array_equal(alone[number][0], together[number][k], equal_nan=True), (number, value)

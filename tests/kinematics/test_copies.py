@@ -17,7 +17,7 @@ from centrode.kinematics.solve import Solved
 from centrode.structure.groups import Newton
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, Parts, conditioning, moved, solve_evenly
-from samples import ALL, few
+from samples import examples_at_hand, few
 
 Complex: TypeAlias = npt.NDArray[np.complex128]
 
@@ -59,7 +59,7 @@ def images_of(solved: Solved, rotor: complex, mirrored: bool, shift: complex) ->
     return found
 
 
-@settings(max_examples=few(15, 40))
+@settings(max_examples=few(10, 40))
 @given(descriptions(), st.floats(-3.1, 3.1), st.sampled_from([1e-6, 1e-3, 1.0, 1e3, 1e6]), st.booleans())
 def test_turned_scaled_and_mirrored_copies(parts: Parts, turn: float, scale: float, mirrored: bool) -> None:
     sense = -1.0 if mirrored else 1.0
@@ -69,7 +69,7 @@ def test_turned_scaled_and_mirrored_copies(parts: Parts, turn: float, scale: flo
     alike(one, other, images, sense, scale * float(one.ready.structure.dimensions.scale))
 
 
-@settings(max_examples=20)
+@settings(max_examples=few(10, 20))
 @given(descriptions(), st.floats(-9, 9), st.floats(-9, 9))
 def test_shifted_copies(parts: Parts, x: float, y: float) -> None:
     one = motion_about_the_start(parts)
@@ -116,7 +116,7 @@ def rewritten(guide: Parts, names: dict[str, str], bodies: dict[str, str]) -> Pa
     return new
 
 
-@settings(max_examples=few(12, 30))
+@settings(max_examples=few(8, 30))
 @given(descriptions(), st.integers(0, 2**31))
 def test_renamed_and_reordered_copies(parts: Parts, seed: int) -> None:
     one = motion_about_the_start(parts)
@@ -133,7 +133,7 @@ def test_renamed_and_reordered_copies(parts: Parts, seed: int) -> None:
     assert one.ready.mobility == other.ready.mobility == 1
 
 
-@settings(max_examples=few(12, 30))
+@settings(max_examples=few(8, 30))
 @given(descriptions(), st.integers(1, 6), st.integers(0, 5))
 def test_a_value_is_the_same_bits_in_any_company(parts: Parts, stride: int, first: int) -> None:
     """Fewer samples, a part of the range, backwards: at the same value of the drive all numbers have the same bits."""
@@ -165,7 +165,7 @@ BY_TIME = ("wiper", "two-link-arm", "cam-driven-linkage")
 """Driven by laws of time, or several drives: a value of the drive alone does not say where they are."""
 
 
-@pytest.mark.parametrize("name", [n for n in ct.example_names() if n not in BY_TIME])
+@pytest.mark.parametrize("name", [n for n in examples_at_hand(ct.example_names()) if n not in BY_TIME])
 def test_examples_give_the_same_bits_alone_and_together(name: str) -> None:
     prepared = ready(ct.example(name))
     study = prepared.mechanism.study
@@ -174,7 +174,7 @@ def test_examples_give_the_same_bits_alone_and_together(name: str) -> None:
     whole = solve_evenly(prepared, 97, low, high)
     # groups of higher class are followed anew for each value
     higher = any(isinstance(group, Newton) for group in prepared.structure.groups)
-    for k in (0, 77) if higher and not ALL else (0, 1, 17, 50, 77, 96):
+    for k in few((77,) if higher else (0, 50, 77), (0, 1, 17, 50, 77, 96)):
         q = float(whole.span.parameter[k])
         same_bits(whole, k, solve_evenly(prepared, 1, q, q), 0)
 

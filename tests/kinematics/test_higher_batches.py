@@ -11,6 +11,7 @@ import xarray as xr
 import centrode as ct
 from mechanisms import EPS, moved, parts_of, statuses
 from redriven import answer
+from samples import few
 
 EXAMPLES = (
     "third-class-triad", "fourth-class-group", "stephenson-driven-at-rocker", "watt-driven-second-loop"
@@ -19,6 +20,7 @@ ROD = {
     "third-class-triad": "AB", "fourth-class-group": "BD", "stephenson-driven-at-rocker": "PR",
     "watt-driven-second-loop": "PR",
 }  # fmt: skip
+LOOKED_AT = few(EXAMPLES[:2], EXAMPLES)
 NUMBERS = ("position", "velocity", "acceleration", "angle", "status")
 
 
@@ -37,7 +39,7 @@ def at_home(name: str) -> tuple[np.ndarray, xr.Dataset, np.ndarray]:
     return values, ct.motion(mechanism, at=values), answer(mechanism, values)
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", LOOKED_AT)
 def test_the_same_bits_alone_and_together(name: str) -> None:
     """Whatever else is asked for: one sample, many, more mechanisms, those beyond a chunk."""
     mechanism = ct.example(name)
@@ -46,21 +48,21 @@ def test_the_same_bits_alone_and_together(name: str) -> None:
     path = f"links.{ROD[name]}.length"
     lengths = ct.value_at(mechanism, path) * np.linspace(0.99, 1.01, 151)
     batch = ct.motion(mechanism, at=values, vary={path: lengths})
-    for k in (0, 4, 8):
+    for k in few((0, 8), (0, 4, 8)):
         alone = ct.motion(mechanism, at=values[[k]])
         for number in NUMBERS:
             assert np.array_equal(alone[number][0], together[number][k], equal_nan=True), number
-    for lane in (0, 75, 150):
+    for lane in few((0, 150), (0, 75, 150)):
         alone = ct.motion(mechanism, at=values[[3]], vary={path: lengths[[lane]]})
         for number in NUMBERS:
             assert np.array_equal(alone[number][0, 0], batch[number][lane, 3], equal_nan=True), (number, lane)
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", LOOKED_AT)
 def test_a_batch_is_its_mechanisms(name: str) -> None:
     mechanism = ct.example(name)
     values, path = asked(mechanism, 7), f"links.{ROD[name]}.length"
-    lengths = ct.value_at(mechanism, path) * np.array([0.98, 1.0, 1.02])
+    lengths = ct.value_at(mechanism, path) * np.array(few([0.98, 1.02], [0.98, 1.0, 1.02]))
     batch = ct.motion(mechanism, at=values, vary={path: lengths})
     for lane, length in enumerate(lengths):
         single = ct.with_value(mechanism, path, float(length))
@@ -88,11 +90,17 @@ def test_mechanisms_that_do_not_close_are_absent_and_the_others_as_they_are() ->
     assert float(data.residual.max()) <= 1e-12
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+CHANGES = [{"scale": 1e-6}, {"scale": 1e6}, {"turn": 1.0}, {"mirrored": True}, {"shift": (3.0, -5.0)}]
+
+
 @pytest.mark.parametrize(
-    "change", [{"scale": 1e-6}, {"scale": 1e6}, {"turn": 1.0}, {"mirrored": True}, {"shift": (3.0, -5.0)}],
-    ids=lambda change: next(iter(change)) + str(next(iter(change.values()))),
-)  # fmt: skip
+    ("name", "change"),
+    few(
+        [(EXAMPLES[k % len(EXAMPLES)], change) for k, change in enumerate(CHANGES)],
+        [(name, change) for name in EXAMPLES for change in CHANGES],
+    ),
+    ids=lambda x: x if isinstance(x, str) else next(iter(x)) + str(next(iter(x.values()))),
+)
 def test_copies_move_alike(name: str, change: dict) -> None:
     mechanism = ct.example(name)
     values, here, answered = at_home(name)

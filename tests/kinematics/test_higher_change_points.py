@@ -11,8 +11,9 @@ import centrode as ct
 from centrode.structure.plan import structure_of
 from mechanisms import EPS, events, parts_of, point, statuses
 from redriven import Redriven, by_chain_rule, by_newton, reach_of, redriven
+from samples import few
 
-BASES = (0.7, -1.0, 2.0)
+BASES = few((0.7, -1.0), (0.7, -1.0, 2.0))
 SPECIAL = -1.85027107097245
 """Angle of FR where the crank of the exact parallelogram passes 0."""
 
@@ -63,7 +64,10 @@ def test_change_points_stand_where_the_crank_is_in_line(case: Redriven) -> None:
     assert sorted(found) == pytest.approx(sorted(expected), abs=1e-10)
 
 
-@pytest.mark.parametrize("longer", [1e-2, 1e-4, 1e-6, 1e-9, -1e-2, -1e-4, -1e-6, -1e-9, -1e-11])
+@pytest.mark.parametrize(
+    "longer",
+    few([1e-2, 1e-9, -1e-4, -1e-11], [1e-2, 1e-4, 1e-6, 1e-9, -1e-2, -1e-4, -1e-6, -1e-9, -1e-11]),
+)
 def test_a_near_miss_is_not_passed_as_a_crossing(longer: float) -> None:
     """With a coupler too long the crank locks; too short, it goes over to the antiparallelogram: FR turns back."""
     case = redriven(parallelogram(longer), "FR", 0.7)
@@ -76,7 +80,7 @@ def test_a_near_miss_is_not_passed_as_a_crossing(longer: float) -> None:
         assert np.min(np.abs(np.array(events(found, "limit")) - end)) <= 64 * EPS / np.sqrt(-longer)
 
 
-@pytest.mark.parametrize("longer", [1e-12, 1e-13, -1e-13])
+@pytest.mark.parametrize("longer", few([1e-12, -1e-13], [1e-12, 1e-13, -1e-13]))
 def test_a_miss_too_near_to_be_followed_is_told(longer: float) -> None:
     """Between rounding and what can be followed: nothing is given beyond, and no change point is claimed."""
     case = redriven(parallelogram(longer), "FR", 0.7)

@@ -32,7 +32,7 @@ def prepared_of(parts: dict[str, Any]) -> Ready:
         raise
 
 
-@settings(max_examples=few(6, 15))
+@settings(max_examples=few(2, 15))
 @given(higher_descriptions())
 def test_the_initial_position_is_the_one_drawn(parts: dict[str, Any]) -> None:
     prepared = prepared_of(parts)
@@ -49,7 +49,7 @@ def test_the_initial_position_is_the_one_drawn(parts: dict[str, Any]) -> None:
         assert abs(np.sin(0.5 * gap)) <= allowed * max(1.0, scale / max(arm, 1e-3))
 
 
-@settings(max_examples=few(6, 15))
+@settings(max_examples=few(2, 15))
 @given(higher_descriptions())
 def test_constraints_hold_with_two_derivatives(parts: dict[str, Any]) -> None:
     prepared = prepared_of(parts)
@@ -76,7 +76,7 @@ def test_constraints_hold_with_two_derivatives(parts: dict[str, Any]) -> None:
                     assert abs(jet.derivative(order)) <= limits[order] * unit, (constraint.label, order)
 
 
-@settings(max_examples=few(4, 8))
+@settings(max_examples=few(1, 8))
 @given(higher_descriptions())
 def test_samples_do_not_know_of_each_other(parts: dict[str, Any]) -> None:
     prepared = prepared_of(parts)

@@ -11,6 +11,7 @@ from centrode.kinematics.machine_code import batch
 from centrode.kinematics.preparation import ready
 from centrode.numerics import machine_code
 from centrode.structure.groups import Newton
+from samples import few
 
 pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 
@@ -33,8 +34,17 @@ TO_THE_BIT = [
 """Those with groups of higher class stand in `test_machine_code_higher`."""
 
 
-@pytest.mark.parametrize("share", [0.002, 0.3])
-@pytest.mark.parametrize("name", TO_THE_BIT)
+SHARES = (0.002, 0.3)
+"""Of a length: with the first hardly a mechanism meets limits, with the second many do."""
+
+
+@pytest.mark.parametrize(
+    ("name", "share"),
+    few(
+        [(name, SHARES[k % 2]) for k, name in enumerate(TO_THE_BIT[1::2])],
+        [(n, x) for n in TO_THE_BIT for x in SHARES],
+    ),
+)
 def test_the_bits_of_the_arrays(name: str, share: float) -> None:
     mechanism = ct.example(name)
     lengths = [link for link in mechanism.links if mechanism.links[link].length is not None]

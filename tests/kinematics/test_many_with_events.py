@@ -22,7 +22,7 @@ from growing import DYADS, grown, mechanism_of
 from growing_sphere import KINDS as ON_SPHERE
 from growing_sphere import grown as grown_on_sphere
 from mechanisms import four_bar, parts_of
-from samples import few
+from samples import few, spread
 
 pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 
@@ -104,7 +104,7 @@ SIX_BAR = ("RRR", "RRR")
 SLIDERS = ("RRP", "RRP carriage", "RPR", "RPR block", "PRP")
 
 
-@pytest.mark.parametrize("seed", range(few(8, 14)))
+@pytest.mark.parametrize("seed", range(few(4, 14)))
 def test_random_mechanisms_of_which_many_lock(seed: int) -> None:
     draw = np.random.default_rng(seed)
     kinds = {0: ["RRR"], 1: list(SIX_BAR), 2: [str(draw.choice(SLIDERS))]}.get(seed % 4)
@@ -155,7 +155,7 @@ def test_change_points(name: str, continuation: str, by_machine_code: list[int])
     assert len(expected.branches.events) >= 4 * 20
 
 
-@pytest.mark.parametrize("name", [*SPECIAL, "galloway", "scott-russell"])
+@pytest.mark.parametrize("name", spread([*SPECIAL, "galloway", "scott-russell"], 3))
 def test_change_points_that_are_just_missed(name: str) -> None:
     """Lengths wrong in their last places, samples next to where a change point would be."""
     mechanism = ct.example(name)
@@ -165,7 +165,7 @@ def test_change_points_that_are_just_missed(name: str) -> None:
     same(*both(mechanism, {path: ct.value_at(mechanism, path) * (1.0 + misses)}, at))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(few(3, 6)))
 def test_samples_next_to_limits(seed: int, by_machine_code: list[int]) -> None:
     """Samples within a few units of the last place of every limit of every mechanism."""
     draw = np.random.default_rng(seed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -30,11 +31,29 @@ SLIDE = ("slide", "slide_velocity", "slide_acceleration")
 COEFFICIENT = {name: f"{name}_coefficient" for names in (PLACE, ANGLE, JOINT, SLIDE) for name in names[1:]}
 
 
+@cache
+def motion_of(name: str) -> xr.Dataset:
+    """The motion at the samples of a record; not to be changed."""
+    record = ORACLE[name]
+    return ct.motion(ct.Mechanism(**record["parts"]), at=[sample["at"] for sample in record["samples"]])
+
+
+@cache
+def beside_limits(name: str) -> tuple[xr.Dataset, int]:
+    """The motion inside the limits of a record, then outside of them, and how many they are; not to be changed."""
+    record = ORACLE[name]
+    inside, outside = [], []
+    for limit in record["limits"]:
+        way = BESIDE * unit(record) * (1 if float(limit["at"]) > start(record) else -1)
+        inside.append(float(limit["at"]) - way)
+        outside.append(float(limit["at"]) + way)
+    return ct.motion(ct.Mechanism(**record["parts"]), at=[*inside, *outside]), len(inside)
+
+
 @pytest.mark.parametrize("name", ORACLE)
 def test_motion_against_thirty_digits(name: str) -> None:
     record = ORACLE[name]
-    mechanism = ct.Mechanism(**record["parts"])
-    motion = ct.motion(mechanism, at=[sample["at"] for sample in record["samples"]])
+    motion = motion_of(name)
     assert statuses(motion) == ["ok"] * len(record["samples"])
     for index, sample in enumerate(record["samples"]):
         for output, digits in sample["outputs"].items():
@@ -50,15 +69,7 @@ def test_motion_against_thirty_digits(name: str) -> None:
 @pytest.mark.parametrize("name", LIMITED)
 def test_limits_against_thirty_digits(name: str) -> None:
     record = ORACLE[name]
-    places = [float(limit["at"]) for limit in record["limits"]]
-    beside = BESIDE * unit(record)
-    motion = ct.motion(
-        ct.Mechanism(**record["parts"]),
-        samples=2,
-        start=min(*places, start(record)) - beside,
-        stop=max(*places, start(record)) + beside,
-    )
-    found = events(motion, "limit")
+    found = events(beside_limits(name)[0], "limit")
     for limit in record["limits"]:
         allowed = OPERATIONS * EPS * limit["condition"] * unit(record)
         with mp.workdps(40):
@@ -67,22 +78,17 @@ def test_limits_against_thirty_digits(name: str) -> None:
 
 @pytest.mark.parametrize("name", LIMITED)
 def test_a_motion_ends_at_its_limits(name: str) -> None:
-    record = ORACLE[name]
-    inside, outside = [], []
-    for limit in record["limits"]:
-        way = BESIDE * unit(record) * (1 if float(limit["at"]) > start(record) else -1)
-        inside.append(float(limit["at"]) - way)
-        outside.append(float(limit["at"]) + way)
-    mechanism = ct.Mechanism(**record["parts"])
-    assert statuses(ct.motion(mechanism, at=inside)) == ["ok"] * len(inside)
-    assert "ok" not in statuses(ct.motion(mechanism, at=outside))
+    motion, inside = beside_limits(name)
+    told = statuses(motion)
+    assert told[:inside] == ["ok"] * inside
+    assert "ok" not in told[inside:]
 
 
 @pytest.mark.parametrize("name", SPHERICAL)
 def test_angular_velocities_move_the_points_of_a_spherical_link(name: str) -> None:
     record = ORACLE[name]
     mechanism = ct.Mechanism(**record["parts"])
-    motion = ct.motion(mechanism, at=[sample["at"] for sample in record["samples"]])
+    motion = motion_of(name)
     many = len(record["parts"]["drives"]) > 1
     for index, sample in enumerate(record["samples"]):
         c = sample["condition"]

@@ -10,6 +10,7 @@ import pytest
 
 import centrode as ct
 from mechanisms import EPS, events, point, statuses
+from samples import few, spread
 
 DIGITS = 50
 ROUNDING = 2.0**-53
@@ -83,7 +84,7 @@ def values_about_change_points(ratio: float) -> np.ndarray[Any, np.dtype[np.floa
     return np.unique(np.concatenate([np.linspace(0.0, 6.25, 26), near, -near, np.pi + near, np.pi - near]))
 
 
-@pytest.mark.parametrize("ratio", RATIOS)
+@pytest.mark.parametrize("ratio", spread(RATIOS, 7))
 @pytest.mark.parametrize("kind", KINDS)
 def test_positions_and_derivatives(kind: str, ratio: float) -> None:
     q = values_about_change_points(ratio)
@@ -103,8 +104,8 @@ def test_positions_and_derivatives(kind: str, ratio: float) -> None:
                 assert error <= allowed, (order, at, error, allowed)
 
 
-@pytest.mark.parametrize("samples", [36, 361, 721])
-@pytest.mark.parametrize("ratio", RATIOS)
+@pytest.mark.parametrize("samples", few([36, 361], [36, 361, 721]))
+@pytest.mark.parametrize("ratio", spread(RATIOS, 7))
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_sample_is_lost(kind: str, ratio: float, samples: int) -> None:
     data = ct.motion(linkage(kind, ratio), samples)

@@ -37,7 +37,7 @@ def motion_about_the_start(parts: dict[str, Any]) -> tuple[Solved, list[int], An
     return solved, good, 16 * EPS * condition
 
 
-@settings(max_examples=few(25, 60))
+@settings(max_examples=few(12, 60))
 @given(descriptions())
 def test_constraints_hold_with_two_derivatives(parts: dict[str, Any]) -> None:
     solved, good, allowed = motion_about_the_start(parts)
@@ -60,7 +60,7 @@ def test_constraints_hold_with_two_derivatives(parts: dict[str, Any]) -> None:
                     assert abs(jet.derivative(order)) <= limits[order] * unit, (constraint.label, order)
 
 
-@settings(max_examples=few(12, 30))
+@settings(max_examples=few(8, 30))
 @given(descriptions())
 def test_velocities_solve_the_linear_equations(parts: dict[str, Any]) -> None:
     """J x' is 1 in the drive's row and 0 in all others."""
@@ -99,7 +99,7 @@ def rate_of(entity: Entity, jets: Positions, solved: Solved, sample: int) -> lis
     return [*(slope(x) for x in jets.poses[entity.name].origin), float(turning)]
 
 
-@settings(max_examples=few(12, 30))
+@settings(max_examples=few(8, 30))
 @given(descriptions())
 def test_higher_jets_foretell_the_motion(parts: dict[str, Any]) -> None:
     """The Taylor series of order 12 at one value of the drive gives the positions at another."""

@@ -16,6 +16,7 @@ import pytest
 import centrode as ct
 from centrode.structure.plan import structure_of
 from mechanisms import EPS, events, statuses
+from samples import spread
 
 START = 1.0
 
@@ -80,7 +81,7 @@ LEVERS = [
 ]
 
 
-@pytest.mark.parametrize("lever", LEVERS, ids=lambda x: f"{x.crank:.1f}")
+@pytest.mark.parametrize("lever", spread(LEVERS, 3), ids=lambda x: f"{x.crank:.1f}")
 def test_limits_of_a_narrow_loop(lever: Lever) -> None:
     mechanism, ends = lever.mechanism(), lever.limits()
     assert "higher class" in [group.kind for group in structure_of(mechanism).groups]
@@ -93,7 +94,7 @@ def test_limits_of_a_narrow_loop(lever: Lever) -> None:
         assert min(abs(x - end) for x in found) <= allowed
 
 
-@pytest.mark.parametrize("lever", LEVERS, ids=lambda x: f"{x.crank:.1f}")
+@pytest.mark.parametrize("lever", spread(LEVERS, 3), ids=lambda x: f"{x.crank:.1f}")
 def test_the_curve_is_followed_alike_in_every_unit(lever: Lever) -> None:
     """Powers of two do not round: the same bits come out."""
     places = [START + part * (end - START) for end, _allowed in lever.limits() for part in (0.3, 0.9)]

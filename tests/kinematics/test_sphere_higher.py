@@ -70,18 +70,20 @@ def test_a_six_bar_driven_elsewhere_is_the_same_mechanism() -> None:
 
 
 def crank_at_greatest(crank: ct.Mechanism) -> float:
-    """Greatest angle of GF: its slope by the crank is zero, found by bisection."""
+    """Greatest angle of GF: its slope by the crank is zero, found by ever shorter pieces."""
 
-    def slope(q: float) -> float:
-        return float(joint(ct.motion(crank, at=[q]), "GF", "joint_velocity_coefficient")[0])
+    def slopes(q: Array) -> Array:
+        return joint(ct.motion(crank, at=q), "GF", "joint_velocity_coefficient")
 
     coarse = ct.motion(crank, samples=361)
     q = coarse["drive_value"].to_numpy()[int(np.argmax(joint(coarse, "GF"))), 0]
     low, high = q - 0.02, q + 0.02
-    assert slope(low) > 0 > slope(high)
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if slope(middle) > 0 else (low, middle)
+    for _cut in range(5):
+        nodes = np.linspace(low, high, 65)
+        falling = slopes(nodes) <= 0.0
+        assert falling[-1] and not falling[0]
+        k = int(np.argmax(falling))
+        low, high = float(nodes[k - 1]), float(nodes[k])
     return float(joint(ct.motion(crank, at=[low]), "GF")[0])
 
 

@@ -25,7 +25,7 @@ WORTH = 1e5
 """Positions whose condition is worse than this prove nothing about formulas and are passed over."""
 
 
-@settings(max_examples=few(25, 60))
+@settings(max_examples=few(10, 60))
 @given(mechanisms())
 def test_mechanisms_assemble_where_they_were_drawn(grown: Growing) -> None:
     """Also with links driven against others; angles are those that were measured."""
@@ -61,7 +61,7 @@ def moving(parts: Parts, sense: float = 1.0) -> Solved:
     return solve_evenly(prepared, SAMPLES, q - sense * WIDTH, q + sense * WIDTH)
 
 
-@settings(max_examples=few(20, 50))
+@settings(max_examples=few(8, 50))
 @given(mechanisms(ONE_DRIVE))
 def test_links_move_as_rigid_bodies_about_the_centre(grown: Growing) -> None:
     """v = w x r and a = e x r + w x v; points on guides keep their arcs to poles; the drive has its rate."""
@@ -149,7 +149,7 @@ def image(parts: Parts, rotation: Array, mirrored: bool) -> Parts:
     return new
 
 
-@settings(max_examples=few(20, 40))
+@settings(max_examples=few(8, 40))
 @given(mechanisms(ONE_DRIVE), st.integers(0, 1000), st.booleans())
 def test_turned_and_mirrored_copies(grown: Growing, seed: int, mirrored: bool) -> None:
     """Places are those of the original, turned and reflected; angles those, or opposite."""

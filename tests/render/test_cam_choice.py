@@ -42,7 +42,7 @@ def test_the_front_and_its_parameters(found: CamChoice) -> None:
     assert texts == ["best designs", "bound", "start, misses a bound", "chosen"]
 
 
-def test_without_a_front_there_is_no_figure(found: ct.CamChoice) -> None:
+def test_without_a_front_there_is_no_figure(found: CamChoice) -> None:
     assert ct.figures(dataclasses.replace(found, front=None)) == {}
 
 

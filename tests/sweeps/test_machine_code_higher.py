@@ -86,7 +86,7 @@ def off(found: xr.Dataset, expected: xr.Dataset, order: int) -> float:
     )
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", few([*EXAMPLES][1::2], [*EXAMPLES]))
 def test_numbers_of_the_arrays(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Within some roundings times what positions and derivatives answer to the dimensions; no arrays needed."""
     mechanism, path = ct.example(name), EXAMPLES[name]
@@ -159,12 +159,12 @@ NEAR = {
 The last number says how far to go from there."""
 
 
-@pytest.mark.parametrize("where", NEAR)
+@pytest.mark.parametrize("where", few([*NEAR][::2], [*NEAR]))
 def test_near_a_limit(where: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """On both sides of it, down to rounding: what is certain keeps away from it."""
     name, path, middle, reach = NEAR[where]
     mechanism = ct.example(name)
-    aside = middle * np.geomspace(1e-12, reach, 14)
+    aside = middle * np.geomspace(1e-12, reach, few(4, 14))
     values = np.concatenate([middle - aside, middle + aside])
     counter = Counter(monkeypatch)
     found = ct.sweep(mechanism, {path: values}, OUTPUTS, 9, executor=MACHINE)
@@ -200,7 +200,7 @@ FORMULAS = {
 }
 
 
-@pytest.mark.parametrize("more", [{}, {"start": -2.0, "stop": 3.0}])
+@pytest.mark.parametrize("more", few([{"start": -2.0, "stop": 3.0}], [{}, {"start": -2.0, "stop": 3.0}]))
 def test_reduced_on_the_way(more: dict[str, float]) -> None:
     """Folds inside folds pass the samples again, from the initial position in their midst too."""
     mechanism, vary = triads(20)
@@ -214,7 +214,7 @@ def test_reduced_on_the_way(more: dict[str, float]) -> None:
     np.testing.assert_allclose(ranges[0], ranges[1], rtol=0.0, atol=bound(0) * 2.0 * np.pi)
 
 
-@pytest.mark.parametrize("reduce", [None, "mean"])
+@pytest.mark.parametrize("reduce", few(["mean"], [None, "mean"]))
 def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     reduce: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -242,7 +242,10 @@ def test_it_does_not_matter_which_samples_are_asked_for() -> None:
         assert off(few, more.isel(sample=slice(None, None, 50)), order) <= bound(order)
 
 
-@pytest.mark.parametrize(("start", "stop", "samples"), [(-9.0, 2.0, 9), (0.3, -0.1, 5), (0.2, 20.0, 25)])
+@pytest.mark.parametrize(
+    ("start", "stop", "samples"),
+    few([(-9.0, 2.0, 9), (0.3, -0.1, 5)], [(-9.0, 2.0, 9), (0.3, -0.1, 5), (0.2, 20.0, 25)]),
+)
 def test_turns_of_angles(start: float, stop: float, samples: int) -> None:
     """Of a dyad's link behind the group, which turns round with the crank, and of the group's own."""
     mechanism = ct.Mechanism(**grown_higher(["four sides", "RRR"], 2))

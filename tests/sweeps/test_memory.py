@@ -9,6 +9,7 @@ import pytest
 
 from centrode.numerics import machine_code
 from centrode.sweeps import designs
+from samples import few
 
 COMPILED = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 PROBE = """
@@ -41,15 +42,18 @@ def grown(mechanisms: int, samples: int, name: str, executor: str) -> tuple[int,
     return kilobytes * unit, result
 
 
+SWEEPS = [
+    (6_000, 37, "crank-rocker", "arrays"),
+    (400, 2_000, "crank-rocker", "arrays"),
+    (400, 37, "third-class-triad", "arrays"),
+    pytest.param(few(200_000, 500_000), 37, "six-bar-press", "machine code", marks=COMPILED),
+]
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="peak memory is asked of resource, which Windows lacks")
 @pytest.mark.parametrize(
     ("mechanisms", "samples", "name", "executor"),
-    [
-        (6_000, 37, "crank-rocker", "arrays"),
-        (400, 2_000, "crank-rocker", "arrays"),
-        (400, 37, "third-class-triad", "arrays"),
-        pytest.param(500_000, 37, "six-bar-press", "machine code", marks=COMPILED),
-    ],
+    few(SWEEPS[::3], SWEEPS),
 )
 def test_memory_is_bounded(mechanisms: int, samples: int, name: str, executor: str) -> None:
     """Chunks are full: with more mechanisms there are more of them, not greater ones."""

@@ -13,6 +13,7 @@ import pytest
 
 from centrode.numerics.expressions import EXPRESSIONS, variable
 from centrode.numerics.scans import Scan
+from samples import few
 
 NEEDS = "machine code needs llvmlite: pip install 'centrode[fast]'"
 kernels = pytest.importorskip("centrode.numerics.machine_code.kernels", reason=NEEDS)
@@ -74,9 +75,10 @@ def arguments() -> np.ndarray:
     multiples = near_quarter_turns()
     borders = np.arange(1, 60) * math.pi / 4
     parts = [
-        random.uniform(-10, 10, 3000), random.uniform(-REDUCED, REDUCED, 3000),
-        np.exp(random.uniform(-700, math.log(REDUCED), 1000)),
-        multiples[:1500], -multiples[:100], np.nextafter(multiples[:100], 0), np.nextafter(multiples[:100], 1e9),
+        random.uniform(-10, 10, few(800, 3000)), random.uniform(-REDUCED, REDUCED, few(800, 3000)),
+        np.exp(random.uniform(-700, math.log(REDUCED), few(300, 1000))),
+        multiples[: few(500, 1500)], -multiples[:100],
+        np.nextafter(multiples[:100], 0), np.nextafter(multiples[:100], 1e9),
         borders, np.nextafter(borders, 0), np.nextafter(borders, 1e9), [REDUCED, -REDUCED],
     ]  # fmt: skip
     return np.concatenate(parts)
