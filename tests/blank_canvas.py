@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.mathtext import MathTextParser
 
 from centrode.render.document import figures
-from centrode.render.figures.pictures import files
+from centrode.render.figures import files
 
 SVG = (
     b'<svg xmlns="http://www.w3.org/2000/svg" width="100pt" height="100pt" viewBox="0 0 100 100">'
@@ -47,7 +47,9 @@ def _write(target: str | IO[bytes], picture: bytes) -> None:
 
 def remember_mathematics() -> None:
     """Let matplotlib set each text of mathematics once: each canvas has a parser of its own, which knows no other's."""
-    parse = MathTextParser._parse_cached.__wrapped__  # type: ignore[attr-defined]
+    parse = getattr(MathTextParser._parse_cached, "__wrapped__", None)
+    if parse is None:  # done already, or another version of matplotlib
+        return
     parsers: dict[str, MathTextParser] = {}
 
     @lru_cache(4096)
