@@ -59,6 +59,11 @@ class Display(DescriptionPart):
     length: Annotated[str, choice(*LENGTHS)] = "m"
     angle: Annotated[str, choice(*ANGLES)] = "rad"
 
+    @property
+    def refuses_bare_angles(self) -> bool:
+        """Whether a text of an angle needs its unit: angles are shown in another one than that of numbers."""
+        return self.angle != "rad"
+
 
 class Assembly(DescriptionPart):
     """Which way groups are assembled, and what happens at change points.
