@@ -60,6 +60,9 @@ def test_rockers_swing_between_the_two_lines_of_crank_and_coupler() -> None:
         way = math.pi + second - first
         ratio = max(way, math.tau - way) / min(way, math.tau - way)
         assert swing.time_ratio == pytest.approx(ratio, rel=math.sqrt(EPS))
+        # the crank turns from the inner dead point on counter-clockwise to the outer one
+        assert swing.forward == pytest.approx(way, rel=math.sqrt(EPS))
+        assert swing.back == pytest.approx(math.tau - way, rel=math.sqrt(EPS))
         assert swing.least.in_line == swing.greatest.in_line == (("OA", "AB"),)
 
 
@@ -249,3 +252,16 @@ def test_a_mechanism_that_hardly_moves_between_two_dead_points(short: float, tmp
     assert rows["turns fully"].startswith("no")
     assert ("stops above" in rows) == bool(found.limits)
     assert recorded(found, tmp_path)["turns_fully"] is False
+
+
+def test_forward_and_back_follow_the_sense_of_the_drive() -> None:
+    """A drive that runs the other way goes the same ways the other way round: forward and back change places."""
+    mechanism = four_bar(1.0, 3.5, 3.0, 4.0)
+    (drive,) = mechanism.drives
+    assert drive.speed is not None
+    other = mechanism.model_copy(update={"drives": (drive.model_copy(update={"speed": -drive.speed}),)})
+    there, again = (swing_of(ct.rotatability(one), "DB") for one in (mechanism, other))
+    assert there.forward is not None and there.back is not None and again.forward is not None
+    assert abs(there.forward - there.back) > 0.1
+    assert again.forward == pytest.approx(there.back, rel=math.sqrt(EPS))
+    assert again.back == pytest.approx(there.forward, rel=math.sqrt(EPS))

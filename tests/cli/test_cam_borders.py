@@ -51,7 +51,7 @@ def test_both_stalls_are_told(centrode: Centrode, folder: Path) -> None:
     written(
         folder,
         'kind = "cam"\ncurvature = { law = "constant", k0 = 50 }\nstart = { radius = "100 mm" }\n'
-        'range = { from = -1, to = 1 }\ndisplay = { angle = "deg" }\n',
+        'range = { from = "-1 rad", to = "1 rad" }\ndisplay = { angle = "deg" }\n',
     )
     done = centrode("cam", "cam.toml", "--samples", "2", "--out", "out")
     at = math.degrees(math.asin(0.02 / 0.08))

@@ -19,7 +19,7 @@ length = 0.5
 angle = 0.0
 [links.AC]
 length = "1 m"
-angle = 0.5
+angle = "0.5 rad"
 mass = 9
 centre = [0.7225, 0]
 inertia = 0.45
@@ -50,7 +50,7 @@ on = "frame"
 through = "O"
 direction = "30 deg"
 link = "block"
-angle = 0.1
+angle = "0.1 rad"
 [[gears]]
 links = ["OA", "wheel"]
 carrier = "frame"

@@ -147,7 +147,7 @@ def test_keys_of_the_schema_are_those_of_the_parts() -> None:
 
 def test_a_turn_written_to_ten_digits_is_one() -> None:
     """What is missing after the tenth digit goes to the last segment; the law's period is a turn."""
-    third = "2.0943951024"
+    third = "'2.0943951024 rad'"
     segments = "\n".join(
         f"[[segments]]\nangle = {third}\nto = {to}\ncurve = '3-4-5'" for to in ("0.01", "0.02", "0")
     )
@@ -215,13 +215,13 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
         ("at_start = [0,", "at_start = [1e20,", "[[segments]] 3: the lift runs away"),
         (
             'through = [["60 deg", "15 mm"]]',
-            "through = [[1e-30, 0.015]]",
+            'through = [["1e-30 rad", 0.015]]',
             "[[segments]] 3: the lift runs away",
         ),
         (
             'from = "90 deg"\nangle = "pi/4 rad"',
-            "angle = 1e-7",
-            "1e-07 is beyond what can be computed with; stay above",
+            'angle = "1e-7 rad"',
+            '"1e-7 rad" is beyond what can be computed with; stay above',
         ),
         ("degree = 4", "degree = 40", "degree must be a whole number from 1 to 15, got 40"),
         ('contact = "roller"\nroller_radius = "10 mm"', 'contact = "roller"', '"roller_radius" is missing'),

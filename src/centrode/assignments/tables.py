@@ -17,7 +17,7 @@ from centrode.model.files import kind_at, with_values
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
 from centrode.model.reading import Problem, nearest, read_file, read_name, value_text
-from centrode.model.units import to_si, unit_factor
+from centrode.model.units import read_quantity, unit_factor
 
 # Columns of a table of variants: which numbers of a mechanism a header names.
 #
@@ -45,12 +45,14 @@ class VariantColumn:
     paths : what the number is put into; a driven link's initial angle is also the start of its drive
     kind : kind of quantity ("length", "angle", ...)
     factor : value in SI of one of the header's unit; None where it names none, so that cells may have their own
+    refuses_bare : whether an angle needs its unit in the header or in the cell
     """
 
     header: str
     paths: tuple[str, ...]
     kind: str
     factor: float | None
+    refuses_bare: bool = False
 
 
 def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColumn | None]:
@@ -101,7 +103,7 @@ def _column(mechanism: Mechanism, header: str) -> VariantColumn:
     except InputError as error:
         where = _("column {header}").format(header=value_text(header))
         raise InputError(where, error.what, error.repair) from None
-    return VariantColumn(header.strip(), paths, kind, factor)
+    return VariantColumn(header.strip(), paths, kind, factor, mechanism.display.refuses_bare_angles)
 
 
 def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...]:
@@ -290,9 +292,8 @@ def _number(column: VariantColumn, cell: object, where: str) -> float:
     given = cell.strip() if isinstance(cell, str) else cell
     if given == "" or given is None:
         raise InputError(where, _("the cell is empty"), _("give every variant a value"))
-    try:
-        if column.factor is None:
-            return to_si(given, column.kind)
-        return to_si(given, "ratio") * column.factor
-    except InputError as error:
-        raise InputError(where, error.what, error.repair) from None
+    if column.factor is None:
+        # a cell of a workbook may be a number: its text is what is written there
+        text = repr(given) if isinstance(given, int | float) and not isinstance(given, bool) else given
+        return read_quantity(text, column.kind, where, refuses_bare=column.refuses_bare)
+    return read_quantity(given, "ratio", where) * column.factor

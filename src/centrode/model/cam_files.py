@@ -15,7 +15,8 @@ from centrode.model.files import in_short_lines
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.reading import read_file
-from centrode.model.toml import is_cam, parse_tables, toml_tables
+from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
+from centrode.model.values import BareAngles
 
 AnyCam: TypeAlias = Cam | PlateCam
 """A cam by the curvature of its roller's path, or by the lift of its follower."""
@@ -61,10 +62,16 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
     >>> ct.parse_cam(ct.cam_text(cam)) == cam
     True
     """
-    return cam_from(toml_tables(text, where), where, folder)
+    tables = toml_tables(text, where)
+    return cam_from(tables, where, folder, bare_angles_of(tables))
 
 
-def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = None) -> AnyCam:
+def cam_from(
+    mapping: Mapping[str, Any],
+    where: str = "",
+    folder: Path | None = None,
+    bare_angles: BareAngles = "radians",
+) -> AnyCam:
     """The cam described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
     if not is_cam(mapping) and "links" in mapping:
         what = _("this describes a linkage, not a cam")
@@ -73,7 +80,7 @@ def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = 
         )
     given = [key for key in _OF_FOLLOWER if key in mapping]
     if not given:
-        return parse_tables(Cam, mapping, where, folder)
+        return parse_tables(Cam, mapping, where, folder, bare_angles)
     other = [key for key in _OF_CURVATURE if key in mapping]
     if other:
         what = _("{one} and {other} do not go together: a cam has a curvature law, or a follower's lift")
@@ -81,7 +88,7 @@ def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = 
             one=f"[{other[0]}]", other="[follower]" if given[0] == "follower" else "[[segments]]"
         )
         raise InputError(where, told, _("keep one of them"))
-    return parse_tables(PlateCam, mapping, where, folder)
+    return parse_tables(PlateCam, mapping, where, folder, bare_angles)
 
 
 def require_curvature_cam(cam: AnyCam) -> Cam:
@@ -113,10 +120,15 @@ def with_follower(cam: AnyCam) -> PlateCam:
 def cam_text(cam: AnyCam) -> str:
     """The cam as TOML in SI, without defaults; `parse_cam` gives exactly it back.
 
+    Where the cam displays degrees, angles are texts with their unit ("0.5 rad").
+
     Examples
     --------
     >>> import centrode as ct
     >>> print(ct.cam_text(ct.example("valve-cam")).splitlines()[1])
     kind = "cam"
     """
-    return in_short_lines(tomli_w.dumps(part_tables(cam)))
+    tables = part_tables(cam)
+    if cam.display.refuses_bare_angles:
+        tables = with_unit(part_tables(cam_from(tables, bare_angles="marked")))
+    return in_short_lines(tomli_w.dumps(tables))

@@ -10,7 +10,7 @@ from centrode.locale import _
 from centrode.model.examples import example_names, example_text
 from centrode.model.follower_cam import PlateCam
 from centrode.model.reading import Problem, nearest, read_file, value_text
-from centrode.model.toml import is_cam, parse_tables, toml_tables
+from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables
 from centrode.model.values import READING
 
 
@@ -53,6 +53,8 @@ def _parse_plate_cam(tables: Mapping[str, object], name: str) -> PlateCam:
         what = _("this cam has no follower whose lift could drive something")
         raise Problem(f"{name}: {what}" if name else what, _("write [follower] and [[segments]]"))
     try:
-        return parse_tables(PlateCam, tables, name, READING.get().folder)
+        outer = READING.get()
+        bare_angles = bare_angles_of(tables) if outer.bare_angles == "refused" else outer.bare_angles
+        return parse_tables(PlateCam, tables, name, outer.folder, bare_angles)
     except InputError as error:
         raise Problem(": ".join(part for part in (error.where, error.what) if part), error.repair) from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, model_validator
@@ -88,7 +88,7 @@ class Description(DescriptionPart):
     @model_validator(mode="wrap")
     @classmethod
     def _in_its_space(cls, data: Any, handler: ModelWrapValidatorHandler[Description]) -> Description:
-        token = READING.set(_reading_of(data, READING.get().folder))
+        token = READING.set(_reading_of(data, READING.get()))
         try:
             return handler(data)
         finally:
@@ -102,7 +102,7 @@ class Description(DescriptionPart):
     @property
     def motion_parameter(self) -> MotionParameter:
         """What a motion is a function of: the value of the one drive, or time; its unit and how instants are stated."""
-        return motion_parameter_of(self.drives, self.space)
+        return motion_parameter_of(self.drives, self.space, refuses_bare=self.display.refuses_bare_angles)
 
     def with_range(self, word: str | None) -> Self:
         """The mechanism whose study has a range by a word ("reachable") in place of its own; itself without a word.
@@ -205,15 +205,16 @@ def value_at_start(drive: Drive) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _reading_of(data: object, folder: Path) -> Reading:
+def _reading_of(data: object, outer: Reading) -> Reading:
     """Space and kind of the drives, from the raw data, for the values whose meaning they decide."""
     if not isinstance(data, Mapping):
-        return Reading(folder=folder)
+        return outer
     space = "sphere" if data.get("space") == "sphere" else "plane"
     given = data.get("drives")
     drives = given if isinstance(given, list | tuple) else ()
     coordinates = tuple(_coordinate(drive, space) for drive in drives)
-    return Reading(space, MotionParameter(coordinates, len(drives) > 1) if drives else UNDRIVEN, folder)
+    parameter = MotionParameter(coordinates, len(drives) > 1) if drives else UNDRIVEN
+    return replace(outer, space=space, parameter=parameter)
 
 
 def _coordinate(drive: object, space: str) -> DriveCoordinate:

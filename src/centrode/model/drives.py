@@ -201,7 +201,9 @@ def _check_cam(drive: Drive, cam: PlateCam) -> None:
         )
 
 
-def motion_parameter_of(drives: Sequence[Drive], space: str) -> MotionParameter:
+def motion_parameter_of(
+    drives: Sequence[Drive], space: str, *, refuses_bare: bool = False
+) -> MotionParameter:
     """What a motion of a mechanism with these drives, in the plane or on the sphere, is a function of."""
-    coordinates = (drive_coordinate(one.id, one.kind, space, one.speed) for one in drives)
+    coordinates = (drive_coordinate(one.id, one.kind, space, one.speed, refuses_bare) for one in drives)
     return MotionParameter(tuple(coordinates), by_time=len(drives) > 1)

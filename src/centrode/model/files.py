@@ -18,7 +18,8 @@ from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
-from centrode.model.toml import is_cam, parse_tables, toml_tables
+from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
+from centrode.model.values import BareAngles
 
 AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
 
@@ -75,19 +76,27 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     >>> ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
     True
     """
-    return mechanism_from(toml_tables(text, where), where, folder)
+    tables = toml_tables(text, where)
+    return mechanism_from(tables, where, folder, bare_angles_of(tables))
 
 
-def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = None) -> Mechanism:
+def mechanism_from(
+    mapping: Mapping[str, Any],
+    where: str = "",
+    folder: Path | None = None,
+    bare_angles: BareAngles = "radians",
+) -> Mechanism:
     """The mechanism described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
     if is_cam(mapping):
         repair = _("compute it with: centrode cam; in Python read it with read_cam")
         raise InputError(where, _("this describes a cam, not a linkage"), repair)
-    return parse_tables(Mechanism, mapping, where, folder)
+    return parse_tables(Mechanism, mapping, where, folder, bare_angles)
 
 
 def mechanism_text(mechanism: Mechanism) -> str:
     """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back.
+
+    Where the mechanism displays degrees, angles are texts with their unit ("0.5 rad").
 
     Examples
     --------
@@ -95,7 +104,11 @@ def mechanism_text(mechanism: Mechanism) -> str:
     >>> print(ct.mechanism_text(ct.example("crank-rocker"))[:40])
     title = "Crank-rocker four-bar linkage"
     """
-    return in_short_lines("\n".join(_sections(document(mechanism))))
+    tables = document(mechanism)
+    if mechanism.display.refuses_bare_angles:
+        # Which numbers are angles depends on the space and on what is driven: reading them again finds out.
+        tables = with_unit(document(mechanism_from(tables, bare_angles="marked")))
+    return in_short_lines("\n".join(_sections(tables)))
 
 
 def _sections(tables: Mapping[str, Any]) -> Iterator[str]:

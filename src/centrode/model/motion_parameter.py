@@ -8,13 +8,13 @@ because a law of time may pass the same value more than once.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import nearest, value_text
-from centrode.model.units import KINDS, to_si
+from centrode.model.units import KINDS, read_quantity
 
 Kind: TypeAlias = Literal["time", "angle", "length"]
 """A kind of quantity by its name in `units.KINDS`."""
@@ -37,10 +37,12 @@ class MotionVariable:
     ----------
     kind : "time", "angle" or "length"
     symbol : letter in figures
+    refuses_bare : whether a text of an angle needs a unit, because the description displays degrees
     """
 
     kind: Kind
     symbol: str
+    refuses_bare: bool = field(default=False, kw_only=True)
 
     @property
     def unit(self) -> str:
@@ -50,12 +52,10 @@ class MotionVariable:
     def read(self, text: float | str, where: str) -> float:
         """Value [s, rad or m] of a number in SI or of a text with a unit ("30 deg").
 
-        Raises InputError, which names `where`, for a text that is no number or has a unit of another kind.
+        Raises InputError, which names `where`, for a text that is no number or has a unit of another kind, or no unit
+        where it may mean degrees.
         """
-        try:
-            return to_si(text, self.kind)
-        except InputError as error:
-            raise InputError(where, error.what, error.repair) from None
+        return read_quantity(text, self.kind, where, refuses_bare=self.refuses_bare)
 
 
 TIME = MotionVariable("time", "t")
@@ -189,9 +189,12 @@ class MotionParameter:
         return speed
 
 
-def drive_coordinate(name: str, driven: str, space: str, speed: float | None) -> DriveCoordinate:
+def drive_coordinate(
+    name: str, driven: str, space: str, speed: float | None, refuses_bare: bool = False
+) -> DriveCoordinate:
     """The coordinate of a drive in the plane or on the sphere."""
-    return DriveCoordinate(kind_of_value(driven, space), SYMBOLS[driven], name, driven, speed)
+    kind = kind_of_value(driven, space)
+    return DriveCoordinate(kind, SYMBOLS[driven], name, driven, speed, refuses_bare=refuses_bare)
 
 
 def kind_of_value(driven: str, space: str) -> Kind:

@@ -59,6 +59,11 @@ class Display(DescriptionPart):
     length: Annotated[str, choice(*LENGTHS)] = "m"
     angle: Annotated[str, choice(*ANGLES)] = "rad"
 
+    @property
+    def refuses_bare_angles(self) -> bool:
+        """Whether a text of an angle needs its unit: angles are shown in another one than that of numbers."""
+        return self.angle != "rad"
+
 
 def shown_as(unit: str, display: Display | None) -> tuple[float, str]:
     """Factor and unit in which a quantity of this SI unit is shown; SI itself where no display is given.

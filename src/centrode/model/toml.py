@@ -14,7 +14,7 @@ from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
 from centrode.model.reading import DescriptionPart, input_error
-from centrode.model.values import READING, Reading
+from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
 
 # What the parser of TOML complains about, in sentences of ours: its own are for programmers, and English
 # only.
@@ -63,10 +63,14 @@ _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)",
 
 
 def parse_tables(
-    kind: type[Described], mapping: Mapping[str, Any], where: str, folder: Path | None
+    kind: type[Described],
+    mapping: Mapping[str, Any],
+    where: str,
+    folder: Path | None,
+    bare_angles: BareAngles = "radians",
 ) -> Described:
     """What plain dicts and lists describe, files beside it in `folder`; raises InputError that starts with `where`."""
-    token = READING.set(Reading(folder=folder or Path()))
+    token = READING.set(Reading(folder=folder or Path(), bare_angles=bare_angles))
     try:
         return kind.model_validate(dict(mapping))
     except ValidationError as error:
@@ -75,9 +79,25 @@ def parse_tables(
         READING.reset(token)
 
 
+def bare_angles_of(mapping: Mapping[str, Any]) -> BareAngles:
+    """What an angle without a unit is in a file: refused where the file displays anything but radians."""
+    display = mapping.get("display")
+    angle = display.get("angle", RAD) if isinstance(display, Mapping) else RAD
+    return "radians" if angle == RAD else "refused"
+
+
 def is_cam(mapping: Mapping[str, Any]) -> bool:
     """Whether a description says that it is a cam's."""
     return mapping.get("kind") == "cam"
+
+
+def with_unit(value: Any) -> Any:
+    """Tables and lists with angles that are `Radians` as texts with their unit; 0 needs none."""
+    if isinstance(value, Radians):
+        return f"{float(value)!r} {RAD}" if value else 0.0
+    if isinstance(value, Mapping):
+        return {key: with_unit(entry) for key, entry in value.items()}
+    return [with_unit(entry) for entry in value] if isinstance(value, list) else value
 
 
 def toml_tables(text: str, where: str) -> dict[str, Any]:

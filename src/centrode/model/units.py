@@ -79,6 +79,9 @@ COMMON: dict[str, dict[str, float]] = {
 }
 """SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
 
+ANGULAR = ("angle", "arc")
+"""Kinds of quantity that are angles."""
+
 _NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
 _UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
@@ -100,6 +103,39 @@ def to_si(value: object, kind: str) -> float:
         return _finite(float(value), value)
     except OverflowError:
         raise _wrong(value, kind) from None
+
+
+def read_quantity(value: object, kind: str, where: str, *, refuses_bare: bool = False) -> float:
+    """Value in SI of a number (already SI) or of a text with a unit; raises InputError that names `where`.
+
+    With `refuses_bare` a text of an angle needs its unit: where degrees are displayed, degrees may be meant.
+    """
+    try:
+        if refuses_bare and kind in ANGULAR and isinstance(value, str) and is_bare(value, kind):
+            raise bare_angle(value)
+        return to_si(value, kind)
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None
+
+
+def is_bare(value: object, kind: str) -> bool:
+    """Whether a number other than 0, or a text of one, has no unit; raises InputError for a text that is no number."""
+    if isinstance(value, str):
+        if len(value) > reading.QUANTITY_LENGTH:
+            return False  # its length is the fault that is reported
+        number, unit = _split_unit(value, kind)
+        return not unit and number != 0
+    return isinstance(value, int | float) and not isinstance(value, bool) and value != 0
+
+
+def bare_angle(value: object) -> InputError:
+    """What is wrong with an angle without a unit where degrees are displayed; without a place."""
+    number = str(value).strip()
+    what = _("{value} is an angle without a unit, and this description displays degrees")
+    if len(number) > reading.UNIT_LENGTH:
+        return InputError("", what.format(value=value_text(value)), _("write it with its unit, deg or rad"))
+    repair = _('write "{number} deg" or "{number} rad"').format(number=number)
+    return InputError("", what.format(value=value_text(value)), repair)
 
 
 def unit_factor(unit: str, kind: str) -> float:

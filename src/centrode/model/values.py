@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, PlainValidator
 
@@ -30,18 +30,37 @@ from centrode.model.reading import (
     table,
     value_text,
 )
-from centrode.model.units import to_si, unit_factor
+from centrode.model.units import ANGULAR, bare_angle, is_bare, to_si, unit_factor
 
 Vector = tuple[float, float]
 
 
+BareAngles = Literal["radians", "refused", "marked"]
+RAD = "rad"
+
+
+class Radians(float):
+    """An angle of a description that is written with its unit."""
+
+
 @dataclass(frozen=True)
 class Reading:
-    """What a value means depends on the whole: space, parameter of the motion, folder of the file."""
+    """What a value means depends on the whole.
+
+    Attributes
+    ----------
+    space : "plane" or "sphere"
+    parameter : of the motion
+    folder : of the file
+    bare_angles : what an angle without a unit is
+        "radians", as every number of Python is; "refused" in a file that displays other angles, whose author may have
+        meant degrees; "marked": radians, and every angle is read as `Radians`.
+    """
 
     space: str = "plane"
     parameter: MotionParameter = UNDRIVEN
     folder: Path = Path()
+    bare_angles: BareAngles = "radians"
 
     @property
     def length(self) -> str:
@@ -60,7 +79,26 @@ class Placed:
 
 
 def si(value: object, kind: str) -> float:
-    """`to_si`, with its complaint as a Problem."""
+    """`to_si`, with its complaint as a Problem; an angle without a unit is treated as the description wishes."""
+    if kind not in ANGULAR:
+        return _bounded(value, kind)
+    bare_angles = READING.get().bare_angles
+    if bare_angles == "refused" and _is_bare(value, kind):
+        error = bare_angle(value)
+        raise Problem(error.what, error.repair)
+    number = _bounded(value, kind)
+    return Radians(number) if bare_angles == "marked" else number
+
+
+def _is_bare(value: object, kind: str) -> bool:
+    try:
+        return is_bare(value, kind)
+    except InputError as error:
+        raise Problem(error.what, error.repair) from None
+
+
+def _bounded(value: object, kind: str) -> float:
+    """`to_si` within what can be computed with."""
     try:
         number = to_si(value, kind)
     except InputError as error:
@@ -266,13 +304,13 @@ def _csv_rows(name: str, columns: TableColumns, folder: Path) -> Rows:
     body = lines[1:] if factors else lines
     _count(len(body))
     width = len(lines[0]) if lines and columns.fit(len(lines[0])) else columns.least
-    units = factors or (1.0,) * width
+    units = factors or (None,) * width
     kinds = columns.kinds[:width]
     return tuple(_table_row(row, number, units, kinds, name) for number, row in enumerate(body, 1))
 
 
-def _header(row: list[str], columns: TableColumns) -> tuple[float, ...] | None:
-    """Factors to SI that a heading row says in brackets ("angle [deg]"); None if the first row is numbers."""
+def _header(row: list[str], columns: TableColumns) -> tuple[float | None, ...] | None:
+    """Factors to SI of the units in brackets ("angle [deg]"), None for no unit; None if the first row is numbers."""
     if not columns.fit(len(row)) or any(_NUMBER.match(cell.strip()) for cell in row):
         return None
     try:
@@ -281,13 +319,13 @@ def _header(row: list[str], columns: TableColumns) -> tuple[float, ...] | None:
         raise Problem(error.what, error.repair) from None
 
 
-def _heading_factor(cell: str, kind: str) -> float:
+def _heading_factor(cell: str, kind: str) -> float | None:
     unit = _UNIT.search(cell)
-    return unit_factor(unit.group(1), kind) if unit else 1.0
+    return unit_factor(unit.group(1), kind) if unit else None
 
 
 def _table_row(
-    row: list[str], number: int, factors: tuple[float, ...], kinds: tuple[str, ...], name: str
+    row: list[str], number: int, factors: tuple[float | None, ...], kinds: tuple[str, ...], name: str
 ) -> tuple[float, ...]:
     if len(row) != len(kinds):
         if kinds[0] == "time":
@@ -297,13 +335,20 @@ def _table_row(
         text = what.format(number=number, name=value_text(name), count=len(row), expected=len(kinds))
         raise Problem(text)
     try:
-        values = (si(cell.strip(), kind) for cell, kind in zip(row, kinds, strict=True))
-        return tuple(value * factor for value, factor in zip(values, factors, strict=True))
+        return tuple(_cell(*given) for given in zip(row, kinds, factors, strict=True))
     except Problem as problem:
         place = _("row {number} of {name}: {what}").format(
             number=number, name=value_text(name), what=problem.what
         )
         raise Problem(place, problem.repair) from None
+
+
+def _cell(text: str, kind: str, factor: float | None) -> float:
+    """Number [SI] of a cell, whose unit stands in the heading, or else in the cell."""
+    if factor is None:
+        return si(text.strip(), kind)
+    number = _bounded(text.strip(), kind) * factor
+    return Radians(number) if kind in ANGULAR and READING.get().bare_angles == "marked" else number
 
 
 def _count(count: int) -> None:

@@ -19,9 +19,9 @@ from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.motion_parameter import ANGLE
 from centrode.model.reading import nearest, value_text
 from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
+from centrode.model.units import read_quantity
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
 
@@ -99,8 +99,9 @@ def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> f
 
     Raises InputError, which names `where`, for a unit of another kind.
     """
-    known = description.motion_parameter.variable if isinstance(description, Mechanism) else ANGLE
-    return known.read(text, where)
+    if isinstance(description, Mechanism):
+        return description.motion_parameter.variable.read(text, where)
+    return read_quantity(text, "angle", where, refuses_bare=description.display.refuses_bare_angles)
 
 
 def _first(wish: Wished | None, other: Wished | None) -> Wished | None:

@@ -21,7 +21,7 @@ from centrode.locale import _
 from centrode.model.files import value_at
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
-from centrode.model.units import to_si
+from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 
@@ -123,7 +123,7 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
     ):
         raise InputError(path, _("a range stands where values are expected"), _("say ct.grid or ct.sample"))
     if isinstance(given, Sequence) and not isinstance(given, str) and any(isinstance(x, str) for x in given):
-        given = [_number(kind, path, value) for value in given]
+        given = [_number(mechanism, kind, path, value) for value in given]
     try:
         array = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
@@ -144,7 +144,7 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
 def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float, float]:
     """Both ends [SI] of a range; InputError at the path where it is reversed or has no extent."""
     kind = kind_of(mechanism, path)
-    low, high = (_number(kind, path, end) for end in (first, last))
+    low, high = (_number(mechanism, kind, path, end) for end in (first, last))
     if not low < high:
         what = _("the range from {first} to {last} does not rise").format(
             first=value_text(first), last=value_text(last)
@@ -159,12 +159,9 @@ def _refuse_negative(kind: str, path: str, least: float) -> None:
         raise InputError(path, _("{value:g} is negative").format(value=least), _("give 0 or more"))
 
 
-def _number(kind: str, path: str, given: Any) -> float:
+def _number(mechanism: Mechanism, kind: str, path: str, given: Any) -> float:
     value = given.item() if isinstance(given, np.generic) else given
-    try:
-        return to_si(value, kind)
-    except InputError as error:
-        raise InputError(path, error.what, error.repair) from None
+    return read_quantity(value, kind, path, refuses_bare=mechanism.display.refuses_bare_angles)
 
 
 def count_of(path: str, given: Any, most: int) -> int:

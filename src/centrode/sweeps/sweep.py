@@ -20,6 +20,7 @@ from centrode.model.examples.catalogue import load
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, read_file, value_text
 from centrode.model.toml import toml_tables
+from centrode.model.units import ANGULAR, bare_angle, is_bare
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps import designs
@@ -285,9 +286,12 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
         raise InputError(
             "samples", _("expected a whole number, got {value}").format(value=value_text(samples))
         )
+    mechanism = load(near if near.is_file() else name)
+    if mechanism.display.refuses_bare_angles:
+        _refuse_bare_angles(mechanism, tables)
     return SweepStudy(
         name,
-        load(near if near.is_file() else name),
+        mechanism,
         _vary(tables),
         _outputs(tables.get("outputs", [])),
         samples,
@@ -297,6 +301,32 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
         _switch("gradient", tables.get("gradient", False)),
         _text("executor", tables.get("executor", "auto")),
     )
+
+
+def _refuse_bare_angles(mechanism: Mechanism, tables: Mapping[str, Any]) -> None:
+    """InputError at the first angle without a unit in the tables of a study; texts are read later, with their paths."""
+    if mechanism.motion_parameter.instant.kind == "angle":
+        for key in ("from", "to"):
+            _refuse_bare(key, [tables.get(key)])
+    ranges = tables.get("sample")
+    varied: list[tuple[str, Any]] = []
+    for table in (
+        tables.get("vary"),
+        tables.get("grid"),
+        ranges.get("ranges") if isinstance(ranges, dict) else None,
+    ):
+        varied += _paths(table, RANGE[:2]) if isinstance(table, dict) else []
+    for path, value in varied:
+        values = [value.get(key) for key in RANGE[:2]] if isinstance(value, dict) else value
+        if designs.kind_of(mechanism, path) in ANGULAR:
+            _refuse_bare(path, values if isinstance(values, list) else [values])
+
+
+def _refuse_bare(where: str, values: Sequence[Any]) -> None:
+    for value in values:
+        if not isinstance(value, str) and is_bare(value, "angle"):
+            error = bare_angle(value)
+            raise InputError(where, error.what, error.repair)
 
 
 def _switch(key: str, value: Any) -> bool:

@@ -331,8 +331,12 @@ class _Turning:
             return
         else:
             size: Text = Sentence("stroke {stroke}", stroke=_number(stroke.stroke, stroke.unit))
-            if stroke.time_ratio is not None:
-                size = Joined((size, Sentence(", time ratio {ratio}", ratio=Number(stroke.time_ratio))), "")
+            if stroke.forward is not None and stroke.back is not None and stroke.time_ratio is not None:
+                forward, back = (Number(way, "rad") for way in (stroke.forward, stroke.back))
+                ways = Sentence(", forward {forward}, back {back}", forward=forward, back=back)
+                size = Joined(
+                    (size, Sentence(", time ratio {ratio}", ratio=Number(stroke.time_ratio)), ways), ""
+                )
             yield Fact(label, size)
             least, greatest = (self.extreme(one, stroke.unit) for one in (stroke.least, stroke.greatest))
             yield Fact(NOTHING, Sentence("least {extreme}", extreme=least))

@@ -27,7 +27,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.units import to_si
+from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.numerics.round_scales import round_scale
@@ -261,7 +261,8 @@ def diagrams(
             _("velocity and acceleration diagrams do not apply on the sphere"),
             _("take velocities from the motion"),
         )
-    board = DrawingBoard(_step(angle_step, "angle"), _step(length_step, "length"))
+    refuses_bare = mechanism.display.refuses_bare_angles
+    board = DrawingBoard(_step(angle_step, "angle", refuses_bare=refuses_bare), _step(length_step, "length"))
     prepared = ready(mechanism)
     span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
@@ -286,14 +287,9 @@ def diagrams(
     )
 
 
-def _step(step: float | str | None, kind: str) -> float | None:
+def _step(step: float | str | None, kind: str, *, refuses_bare: bool = False) -> float | None:
     """A reading step in SI."""
-    if step is None:
-        return None
-    try:
-        return to_si(step, kind)
-    except InputError as error:
-        raise InputError(f"{kind}_step", error.what, error.repair) from None
+    return None if step is None else read_quantity(step, kind, f"{kind}_step", refuses_bare=refuses_bare)
 
 
 def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:

@@ -21,7 +21,8 @@ from centrode.model.files import value_at, with_value
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
 from centrode.model.reading import FrozenMap
-from centrode.model.units import to_si
+from centrode.model.settings import Display
+from centrode.model.units import read_quantity
 from centrode.model.values import Placed
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
@@ -117,7 +118,9 @@ def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | Non
     scale = _scale(prepared, path, before, unit)
     unbounded = Varying(path, before, 0.0, 0.0, unit, scale)
     _check_varies(prepared, unbounded)
-    low, high = _default_bounds(unbounded) if bounds is None else _given_bounds(unbounded, bounds)
+    low, high = (
+        _default_bounds(unbounded) if bounds is None else _given_bounds(unbounded, bounds, mechanism.display)
+    )
     return Varying(path, before, low, high, unit, scale)
 
 
@@ -142,12 +145,10 @@ def _default_bounds(one: Varying) -> tuple[float, float]:
     return one.before - reach, one.before + reach
 
 
-def _given_bounds(one: Varying, bounds: tuple[Value, Value]) -> tuple[float, float]:
+def _given_bounds(one: Varying, bounds: tuple[Value, Value], display: Display) -> tuple[float, float]:
     kind = {"rad": "angle", "m": "length", "1": "ratio"}[one.unit]
-    try:
-        low, high = (to_si(value, kind) for value in bounds)
-    except InputError as error:
-        raise InputError(one.path, error.what, error.repair) from None
+    refuses_bare = display.refuses_bare_angles
+    low, high = (read_quantity(value, kind, one.path, refuses_bare=refuses_bare) for value in bounds)
     if low > high:
         raise InputError(one.path, _("its lower bound is above its upper one"), _("exchange them"))
     if not low <= one.before <= high:

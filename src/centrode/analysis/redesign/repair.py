@@ -30,7 +30,8 @@ from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoi
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.units import to_si
+from centrode.model.settings import Display
+from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, Newton
@@ -433,7 +434,7 @@ def repair(
     """
     prepared = ready(mechanism)
     _check_repairable(prepared)
-    least_angle = _angle(least_transmission_angle)
+    least_angle = _angle(least_transmission_angle, mechanism.display)
     varying = varyings(prepared, vary, bounds)
     before = rotatability(mechanism)
     asked = Repair(mechanism, None, False, 0.0, least_angle, None, 0, 0, 0, None, (), varying, before, None)
@@ -465,13 +466,12 @@ def _least_angle(found: Rotatability) -> float:
     return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
 
 
-def _angle(given: Value | None) -> float:
+def _angle(given: Value | None, display: Display) -> float:
     if given is None:
         return DEFAULT_ANGLE
-    try:
-        value = to_si(given, "angle")
-    except InputError as error:
-        raise InputError("least_transmission_angle", error.what, error.repair) from None
+    value = read_quantity(
+        given, "angle", "least_transmission_angle", refuses_bare=display.refuses_bare_angles
+    )
     if not 0.0 < value < pi / 2:
         raise InputError(
             "least_transmission_angle",

@@ -544,7 +544,7 @@ class LinkStroke:
     turns : net turns over the tour; None where the drive is limited
     least, greatest : StrokeExtreme or None
     stroke : greatest less least value; None where it turns, or where a limit leaves the value undetermined
-    time_ratio : time of the longer way over that of the shorter one at constant speed of the drive; None
+    forward, back : what the drive turns [rad] while the member goes from its least to its greatest value, and back; None
         unless it has two extreme positions in one turn of the drive
     extremes : all of them, in the drive's order
     """
@@ -557,9 +557,17 @@ class LinkStroke:
     least: StrokeExtreme | None
     greatest: StrokeExtreme | None
     stroke: float | None
-    time_ratio: float | None
+    forward: float | None
+    back: float | None
     extremes: tuple[StrokeExtreme, ...]
     dwells: tuple[Dwell, ...]
+
+    @property
+    def time_ratio(self) -> float | None:
+        """Time of the longer way over that of the shorter one at constant speed of the drive."""
+        if self.forward is None or self.back is None:
+            return None
+        return max(self.forward, self.back) / min(self.forward, self.back)
 
 
 def watched_members(tour: DriveSweep) -> list[tuple[Watched, Literal["link", "guide"]]]:
@@ -608,7 +616,9 @@ def _stroke_of(
     if tour.comes_round and watched.unit != "rad":
         turns = 0
     if moved <= STILL * scale:
-        return LinkStroke(watched.name, member, "still", watched.unit, turns, None, None, 0.0, None, (), ())
+        return LinkStroke(
+            watched.name, member, "still", watched.unit, turns, None, None, 0.0, None, None, (), ()
+        )
     extremes = [
         StrokeExtreme(float(value) + shift, float(place), pairs)
         for place, value, pairs in zip(*course.turned[k], lined, strict=True)
@@ -628,6 +638,7 @@ def _stroke_of(
             None,
             None,
             None,
+            None,
             tuple(extremes),
             (),
         )
@@ -642,7 +653,7 @@ def _stroke_of(
         least,
         greatest,
         stroke,
-        _time_ratio(tour, extremes),
+        *_ways(tour, least, greatest, len(extremes)),
         tuple(extremes),
         tuple(dwells_of(course, k, shift, stroke)),
     )
@@ -688,9 +699,13 @@ def _goes_to_infinity(tour: DriveSweep, limit: float) -> bool:
     return any(isinstance(group, Meet) and not group.signed for group in at_limit)
 
 
-def _time_ratio(tour: DriveSweep, extremes: Sequence[StrokeExtreme]) -> float | None:
+def _ways(
+    tour: DriveSweep, least: StrokeExtreme, greatest: StrokeExtreme, count: int
+) -> tuple[float | None, float | None]:
+    """What the drive turns while a member goes forward and back [rad], in the sense in which the drive runs."""
     # with other than two extremes in one turn there are no two ways to compare
-    if tour.turns != 1 or len(extremes) != 2:
-        return None
-    way = abs(extremes[1].at - extremes[0].at)
-    return max(way, tau - way) / min(way, tau - way)
+    if tour.turns != 1 or count != 2:
+        return None, None
+    way = abs(greatest.at - least.at)
+    rises = (greatest.at > least.at) == (tour.continuation.kinematics.path.forward > 0.0)
+    return (way, tau - way) if rises else (tau - way, way)

@@ -24,7 +24,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Link, Mechanism
 from centrode.model.reading import nearest, value_text
-from centrode.model.units import to_si
+from centrode.model.units import read_quantity
 
 # How counterweights are made: mass, radius and inertia that go with a product of mass and radius.
 
@@ -363,10 +363,7 @@ def asked_spots(
 
 def number(value: object, where: str, kind: str) -> float:
     """A number in SI of a number or a text with a unit; InputError about `where`."""
-    try:
-        return to_si(value, kind)
-    except InputError as error:
-        raise InputError(where, error.what, error.repair) from None
+    return read_quantity(value, kind, where)
 
 
 def positive(value: object, where: str, kind: str) -> float:
