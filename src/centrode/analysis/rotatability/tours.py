@@ -544,8 +544,8 @@ class LinkStroke:
     turns : net turns over the tour; None where the drive is limited
     least, greatest : StrokeExtreme or None
     stroke : greatest less least value; None where it turns, or where a limit leaves the value undetermined
-    forward, back : what the drive turns [rad] while the member goes from its least to its greatest value, and back; None
-        unless it has two extreme positions in one turn of the drive
+    forward, back : what the drive turns [rad] while the member goes from its least to its greatest value, and back;
+        None unless it has two extreme positions in one turn of the drive
     extremes : all of them, in the drive's order
     """
 
