@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Iterator
 from contextlib import nullcontext, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, settings
-from sybil import Example, Sybil
+from sybil import Document, Example, Region, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import centrode as ct
@@ -48,6 +49,10 @@ OWN_PROCESS = ("README.md",)
 FEW_FRAMES = {"FRAMES": 6, "FRAMES_OF_A_STEP": 6, "FRAMES_OF_A_TURN": 6}
 """What `--animate` writes here where it would write 36 to 60; `centrode animate` is typed with its own numbers."""
 FILE_NAME = re.compile(r"# ([\w-]+\.toml)\n")
+ROW = re.compile(r"^\|.*\|$", re.MULTILINE)
+COMMAND = re.compile(r"`(centrode [^`]+)`")
+COMPLETE_TABLES = ("paths.md", "start.md")
+"""Pages whose tables hold lines that can be typed as they are; in the tables of others FILE stands for a file."""
 
 
 def run_console(example: Example) -> None:
@@ -131,6 +136,33 @@ def read_toml(example: Example) -> None:
     ct.check(mechanism)
 
 
+def read_table_rows(document: Document) -> Iterator[Region]:
+    """The commands that stand in a table, each as a console block of its own."""
+    if Path(document.path).name in COMPLETE_TABLES:
+        for row in ROW.finditer(document.text):
+            for command in COMMAND.finditer(row.group()):
+                place = row.start() + command.start()
+                yield Region(place, place + len(command.group()), f"$ {command.group(1)}\n", run_console)
+
+
+def write_table(example: Example) -> None:
+    """Write a CSV block to the file that the text before it names last."""
+    named = re.findall(r"`([\w-]+\.csv)`", example.document.text[: example.region.start])
+    Path(named[-1]).write_text(example.parsed, encoding="utf-8")
+
+
+def write_wrong_file(example: Example) -> None:
+    """Write the wrong file of a block that says how it differs (-) from the right one (+), which is there."""
+    wrong, right, *lines = str(example.parsed).splitlines()
+    wrong, right = wrong.removeprefix("--- "), right.removeprefix("+++ ")
+    before, after = (
+        "".join(f"{line[1:]}\n" for line in lines if not line.startswith(sign)) for sign in ("+", "-")
+    )
+    text = Path(right).read_text(encoding="utf-8")
+    assert text.count(after) == 1, f"{right} has not the lines {after}"
+    Path(wrong).write_text(text.replace(after, before), encoding="utf-8")
+
+
 def enter_folder(namespace: dict[str, Any]) -> None:
     namespace["_home"], namespace["_folder"] = Path.cwd(), tempfile.mkdtemp()
     os.chdir(namespace["_folder"])
@@ -146,6 +178,9 @@ pytest_collect_file = Sybil(
         PythonCodeBlockParser(),
         CodeBlockParser("console", run_console),
         CodeBlockParser("toml", read_toml),
+        CodeBlockParser("csv", write_table),
+        CodeBlockParser("diff", write_wrong_file),
+        read_table_rows,
     ],
     patterns=["README.md", "docs/*.md", "docs/**/*.md"],
     setup=enter_folder,

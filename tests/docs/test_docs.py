@@ -27,6 +27,9 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 TREE = re.compile(r"^```\{toctree\}\n(?::.*\n)*((?:[\w/-]+\n|\n)*)```$", re.MULTILINE)
 BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 WIDTH = 140
+FIRST_PAGES = (ROOT / "README.md", *(ROOT / "docs" / language / "start.md" for language in ("ru", "uk")))
+"""What a newcomer reads first, in each language."""
+MOST_LINES = {ROOT / "README.md": 90, **{page: 400 for page in PAGES if page.parent == MADE}}
 
 
 def options(command: click.Command, path: str = "centrode") -> list[tuple[str, str]]:
@@ -162,3 +165,43 @@ def test_lines_are_not_too_long(page: Path) -> None:
     text = BLOCK.sub("", TEXTS[page])
     long = [line for line in text.splitlines() if len(line) > WIDTH and not line.startswith("|")]
     assert long == []
+
+
+@pytest.mark.parametrize("page", FIRST_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "line", [". .venv/bin/activate", r".venv\Scripts\activate", "pip install -e '.[all]'"]
+)
+def test_first_pages_put_the_command_on_the_path(page: Path, line: str) -> None:
+    assert line in TEXTS[page]
+
+
+@pytest.mark.parametrize("page", MOST_LINES, ids=lambda page: page.name)
+def test_pages_are_short_enough_to_be_read(page: Path) -> None:
+    assert len(TEXTS[page].splitlines()) <= MOST_LINES[page]
+
+
+def test_each_command_is_on_one_page_of_the_reference() -> None:
+    app = build_app()
+    assert isinstance(app, click.Group)
+    headings = [
+        line.removeprefix("## centrode ")
+        for page in MADE.glob("commands-*.md")
+        for line in TEXTS[page].splitlines()
+        if line.startswith("## centrode ")
+    ]
+    assert sorted(headings) == sorted(app.commands)
+
+
+def test_the_glossary_has_each_term_in_three_languages() -> None:
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in TEXTS[ROOT / "docs" / "glossary.md"].splitlines()
+        if line.startswith("| ") and not line.startswith("| English")
+    ]
+    assert len(rows) > 80
+    for english, russian, ukrainian, _place in rows:
+        assert re.fullmatch(r"[A-Za-z' ,()-]+", english), english
+        assert re.search(r"[а-яёА-Я]", russian) and not re.search(r"[іїєґ]", russian), russian
+        assert re.search(r"[а-яіїєґА-Я]", ukrainian) and not re.search(r"[ыэъё]", ukrainian), ukrainian
+    terms = [row[0] for row in rows]
+    assert len(set(terms)) == len(terms)
