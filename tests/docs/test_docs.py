@@ -29,7 +29,15 @@ BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 WIDTH = 140
 FIRST_PAGES = (ROOT / "README.md", *(ROOT / "docs" / language / "start.md" for language in ("ru", "uk")))
 """What a newcomer reads first, in each language."""
-MOST_LINES = {ROOT / "README.md": 90, **{page: 400 for page in PAGES if page.parent == MADE}}
+DESCRIPTION, RESULTS = (
+    "\n".join(text for page, text in TEXTS.items() if page.stem.partition("-")[0] == name)
+    for name in ("description", "results")
+)
+"""The pages of each, `description.md` and `description-drives.md` and so on."""
+REFERENCE = [
+    page for page in PAGES if page.parent == MADE or page.stem.partition("-")[0] in ("description", "results")
+]
+MOST_LINES = {ROOT / "README.md": 90, **{page: 400 for page in REFERENCE}}
 
 
 def options(command: click.Command, path: str = "centrode") -> list[tuple[str, str]]:
@@ -82,24 +90,24 @@ def test_public_names_are_told(name: str) -> None:
 
 @pytest.mark.parametrize(("part", "key"), keys(ct.mechanism_schema()))
 def test_keys_are_told(part: str, key: str) -> None:
-    page = BLOCK.sub("", TEXTS[ROOT / "docs" / "description.md"])
+    page = BLOCK.sub("", DESCRIPTION)
     assert re.search(rf"`(?:\[*(?:\w+\.)?)?{key}(?:\.\w+)?\]*`", page), f"{key} of {part or 'the file'}"
 
 
 @pytest.mark.parametrize("name", sorted(ct.QUANTITIES))
 def test_variables_are_told(name: str) -> None:
-    assert f"`{name}`" in TEXTS[ROOT / "docs" / "results.md"]
+    assert f"`{name}`" in RESULTS
 
 
 @pytest.mark.parametrize("status", ct.Status)
 def test_statuses_are_told(status: ct.Status) -> None:
     row = f"| {status.value} | `{status.name}` | {status.word} |"
-    assert row in TEXTS[ROOT / "docs" / "results.md"]
+    assert row in RESULTS
 
 
 @pytest.mark.parametrize("name", ["slider-between-cranks-locked", "wiper", "parallelogram"])
 def test_scalars_are_told(name: str) -> None:
-    page = TEXTS[ROOT / "docs" / "results.md"]
+    page = RESULTS
     study = ct.study(ct.example(name), samples=2)
     assert [scalar for scalar in ct.sheet_of(study).scalars if f"`{scalar}`" not in page] == []
 
