@@ -27,7 +27,10 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 TREE = re.compile(r"^```\{toctree\}\n(?::.*\n)*((?:[\w/-]+\n|\n)*)```$", re.MULTILINE)
 BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 WIDTH = 140
-FIRST_PAGES = (ROOT / "README.md", *(ROOT / "docs" / language / "start.md" for language in ("ru", "uk")))
+FIRST_PAGES = (
+    ROOT / "README.md",
+    *(ROOT / "docs" / page for page in ("tutorial.md", "ru/start.md", "uk/start.md")),
+)
 """What a newcomer reads first, in each language."""
 DESCRIPTION, RESULTS = (
     "\n".join(text for page, text in TEXTS.items() if page.stem.partition("-")[0] == name)
