@@ -29,6 +29,7 @@ from centrode.cli.main import main
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
 from centrode.present.animations import animate
+from centrode.sweeps.sweep import read_sweep
 
 settings.register_profile(
     "house", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
@@ -121,7 +122,7 @@ def read_toml(example: Example) -> None:
         Path(named.group(1)).write_text(text, encoding="utf-8")
     tables = tomllib.loads(text)
     if named and "mechanism" in tables:
-        ct.read_sweep(named.group(1))
+        read_sweep(named.group(1))
         return
     if tables.get("kind") == "cam":
         cam = ct.parse_cam(text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import centrode as ct
 from burdened import burdened
+from centrode.dynamics.force_polygons.polygons import ForcePolygons
 from centrode.kinematics.preparation import ready
 from centrode.structure.dimensions import dimensions_of
 from mechanisms import EPS, parts_of
@@ -43,7 +44,7 @@ def an_instant(mechanism: ct.Mechanism) -> float:
     return path.initial + path.forward * path.unit * (0.3 if mechanism.drives[0].kind == "angle" else 0.06)
 
 
-def size_of(found: ct.ForcePolygons) -> tuple[float, float]:
+def size_of(found: ForcePolygons) -> tuple[float, float]:
     """What rounding of forces [N] and of moments [N m] is measured by."""
     outer = sum(abs(one.force) for one in found.outer)
     forces = outer + sum(map(abs, found.reactions.values()))
@@ -53,7 +54,7 @@ def size_of(found: ct.ForcePolygons) -> tuple[float, float]:
     return forces, forces * reach + turning
 
 
-def assert_routes_agree(found: ct.ForcePolygons) -> None:
+def assert_routes_agree(found: ForcePolygons) -> None:
     forces, moments = size_of(found)
     for drive in found.mechanism.drives:
         size = moments if drive.kind == "angle" else moments / float(dimensions_of(found.mechanism).scale)
@@ -63,7 +64,7 @@ def assert_routes_agree(found: ct.ForcePolygons) -> None:
             assert abs(value - found.balancing[drive.id]) <= OPERATIONS * EPS * max(size, forces)
 
 
-def assert_closed(found: ct.ForcePolygons) -> None:
+def assert_closed(found: ForcePolygons) -> None:
     forces, _moments = size_of(found)
     for group in found.groups:
         for polygon in (group.polygon, *group.link_polygons):

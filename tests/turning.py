@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
-import centrode as ct
+from centrode.analysis.redesign.repair import Repair
+from centrode.analysis.rotatability.rotatability import Rotatability
 from centrode.render.files import write_record
 from centrode.topics.presentation import sheet_of
 
 
-def assert_swings(found: ct.Rotatability) -> None:
+def assert_swings(found: Rotatability) -> None:
     """Extremes of swings are numbers, and strokes are not negative."""
     for turning in found.drives:
         for swing in turning.swings:
@@ -22,7 +23,7 @@ def assert_swings(found: ct.Rotatability) -> None:
             assert np.isfinite(values).all()
 
 
-def recorded(found: ct.Rotatability | ct.Repair, folder: Path) -> Any:
+def recorded(found: Rotatability | Repair, folder: Path) -> Any:
     """What is found, as it is read back from its JSON file."""
     record = sheet_of(found).record
     assert record is not None

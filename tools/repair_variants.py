@@ -14,6 +14,7 @@ import tomllib
 from pathlib import Path
 
 import centrode as ct
+from centrode.model.examples import example_text
 from centrode.render.terminal import plain_text
 from centrode.views.rotatability import impossibility_text
 
@@ -23,7 +24,7 @@ LINKS = ("AC", "CB", "BD")
 
 def variant(row: dict[str, str]) -> ct.Mechanism:
     """The worked mechanism with a row's lengths and initial angles."""
-    parts = tomllib.loads(ct.example_text("slider-between-cranks"))
+    parts = tomllib.loads(example_text("slider-between-cranks"))
     for k, link in enumerate(LINKS, start=2):
         parts["links"][link] |= {"length": float(row[f"l{k}_m"]), "angle": float(row[f"phi{k}_0_rad"])}
     return ct.Mechanism(**parts)

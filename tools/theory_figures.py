@@ -15,8 +15,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import centrode as ct
+from centrode.cams.cam import cam_routes
+from centrode.cams.path_series import path_of
 from centrode.geometry import sphere
 from centrode.geometry.on_sphere import SPHERE, SphereCircle
+from centrode.model.cam import vary_cam
 from centrode.numerics.arrays import ARRAYS
 from centrode.present.style import INK, MUTED, PALETTE, house_style
 
@@ -93,7 +96,7 @@ def _roller(axes: Axes, centre: Array, radius: float, colour: str) -> None:
 def _convergence(axes: Axes) -> None:
     """The plane of complex angles of the paper's cam."""
     cam = ct.example("cam-from-curvature")
-    facts = ct.cam_routes(cam, samples=2).attrs
+    facts = cam_routes(cam, samples=2).attrs
     x, y = np.degrees(facts["singularity"])
     radius = math.degrees(facts["radius_of_convergence"])
     turn = np.linspace(0.0, math.tau, 361)
@@ -101,7 +104,7 @@ def _convergence(axes: Axes) -> None:
     axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=PALETTE[0], linewidth=1.0)
     axes.plot([0.0, 90.0], [0.0, 0.0], color=INK, linewidth=2.4, solid_capstyle="butt")
     axes.plot([x, x], [y, -y], "x", color=PALETTE[1], markersize=7, markeredgewidth=2)
-    stall = math.degrees(float(ct.path_of(ct.vary_cam(cam, {"range.to": 2.3})).stall or math.nan))
+    stall = math.degrees(float(path_of(vary_cam(cam, {"range.to": 2.3})).stall or math.nan))
     axes.plot([stall], [0.0], "D", color=PALETTE[1], markersize=4)
     axes.annotate("cos γ = 0", (x, y), (x + 8, y + 4), color=PALETTE[1])
     axes.annotate("stall", (stall, 0.0), (stall - 9, 7), color=PALETTE[1])

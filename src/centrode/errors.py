@@ -17,6 +17,15 @@ class CentrodeError(Exception):
         What is wrong, and what to do about it, already in the user's language.
     exit_code : int
         What the command line returns: 2 for wrong input, 3 for a mechanism that cannot do what was asked.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> try:
+    ...     ct.motion(ct.example("crank-rocker"), 0)
+    ... except ct.CentrodeError as failure:
+    ...     failure.exit_code
+    2
     """
 
     exit_code = 2
@@ -37,15 +46,45 @@ class CentrodeError(Exception):
 
 
 class InputError(CentrodeError):
-    """The input is wrong: nothing was computed and nothing was written."""
+    """The input is wrong: nothing was computed and nothing was written.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> try:
+    ...     ct.example("crank")
+    ... except ct.InputError as failure:
+    ...     failure.repair
+    'list them with: centrode examples'
+    """
 
 
 class NotComputedYet(InputError):
-    """The input is right, but names something this version does not compute."""
+    """The input is right, but names something this version does not compute.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> try:
+    ...     ct.curvature(ct.example("spherical-four-bar"), "BC", [0.1])
+    ... except ct.NotComputedYet as failure:
+    ...     failure.what
+    'curvature is not computed on the sphere'
+    """
 
 
 class MotionError(CentrodeError):
-    """The mechanism cannot do what was asked: what could be computed stands beside the message."""
+    """The mechanism cannot do what was asked: what could be computed stands beside the message.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> try:
+    ...     ct.graphic_analysis(ct.example("slider-between-cranks-locked"), instants=[3.0])
+    ... except ct.MotionError as failure:
+    ...     failure.what
+    'at 3 the mechanism is open: there is nothing to construct'
+    """
 
     exit_code = 3
 
@@ -55,7 +94,14 @@ class DamageWarning(RuntimeWarning):
 
 
 class Status(IntEnum):
-    """What a sample of a motion is worth; every motion carries one per sample."""
+    """What a sample of a motion is worth; every motion carries one per sample.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Status(0).name, ct.Status.OPEN.word
+    ('OK', 'open')
+    """
 
     OK = 0
     OPEN = 1

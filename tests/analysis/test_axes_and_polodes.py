@@ -11,6 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
+from centrode.analysis.instant_centres.bodies import body_names
+from centrode.analysis.instant_centres.centres import Case
+from centrode.analysis.instant_centres.kennedy import construct_centres
+from centrode.kinematics.motion import initial_place
 from growing import mechanism_of
 from growing_sphere import KINDS, grown
 from mechanisms import EPS, four_bar
@@ -42,7 +46,7 @@ def test_axes_of_a_four_bar_lie_on_its_great_circles() -> None:
             assert along(centre(found, pair, sample), truth) <= 64 * EPS * loss * reach
         for pair, hinge in {"AB,frame": a, "DC,frame": d, "BC,AB": b, "DC,BC": c}.items():
             assert along(centre(found, pair, sample), hinge) <= 64 * EPS / 0.1
-    assert set(found.centre_case.values.ravel().tolist()) == {ct.Case.HINGE, ct.Case.DIRECTIONS}
+    assert set(found.centre_case.values.ravel().tolist()) == {Case.HINGE, Case.DIRECTIONS}
 
 
 def test_speed_about_the_axis_is_that_of_the_joint() -> None:
@@ -93,11 +97,11 @@ def test_axes_of_three_bodies_lie_on_one_great_circle(kinds: list[str], seed: in
     """Kennedy's theorem on random mechanisms, and the construction from places against the velocities."""
     mechanism = mechanism_of(grown(kinds, seed).parts())
     # with several drives values are given in time: the initial position is at 0
-    motion = ct.motion(mechanism, at=[ct.initial_place(mechanism)])
+    motion = ct.motion(mechanism, at=[initial_place(mechanism)])
     if not np.isfinite(motion.angular_velocity.to_numpy()).all():
         return
     found = ct.instant_centres(motion)
-    names = ct.body_names(mechanism)
+    names = body_names(mechanism)
     ends = {}
     for column, label in enumerate(found.pair.values):
         ends[frozenset(label.split(","))] = (
@@ -113,7 +117,7 @@ def test_axes_of_three_bodies_lie_on_one_great_circle(kinds: list[str], seed: in
             # the relative velocities add up to nothing: rounding of the greatest over the smallest of them
             slowest = min(speed for _end, speed in three)
             assert volume <= 64 * EPS * rate / slowest
-    made = ct.construct_centres(motion)
+    made = construct_centres(motion)
     for step in made.steps:
         assert made.mismatch[step.pair] <= 4.0 * step.error * max(1.0, 1.0 / 0.05) + 1e3 * (EPS + residual)
 
@@ -136,7 +140,7 @@ def test_bevel_wheels_roll_on_their_pitch_cones() -> None:
     mesh = ct.instant_centres(motion, [("BF", "AE")])
     axis = np.array([2.0, 1.0, 0.0]) / np.sqrt(5.0)
     assert np.linalg.norm(np.cross(mesh.centre.to_numpy()[:, 0], axis), axis=1).max() <= 64 * EPS
-    assert (mesh.centre_case == ct.Case.ROLLING).all()
+    assert (mesh.centre_case == Case.ROLLING).all()
     assert np.abs(mesh.relative_speed.to_numpy() - np.sqrt(1.25)).max() <= 64 * EPS
 
 
@@ -186,7 +190,7 @@ def test_where_a_rocker_turns_back() -> None:
     """At 90 and 270 deg the rocker stands still: no axis there, and a piece of the polode ends."""
     mechanism = ct.example("spherical-four-bar")
     found = ct.instant_centres(ct.motion(mechanism, at=[np.pi / 2]), [("DC", "frame")])
-    assert found.centre_case.item() == ct.Case.REST
+    assert found.centre_case.item() == Case.REST
     assert np.isnan(found.centre).all()
     assert abs(found.relative_speed.item()) <= 64 * EPS
     rolled = ct.centrodes(ct.motion(mechanism, samples=100), "DC")
@@ -201,7 +205,7 @@ def test_bodies_that_move_alike_have_no_axis() -> None:
     found = ct.instant_centres(motion)
     moving = {str(label) for label in found.pair.values if label.endswith(",frame")}
     for column, label in enumerate(map(str, found.pair.values)):
-        still = found.centre_case.to_numpy()[0, column] == ct.Case.REST
+        still = found.centre_case.to_numpy()[0, column] == Case.REST
         assert still == (label not in moving)
     assert np.allclose(found.relative_speed.sel(pair=sorted(moving)), 1.0, rtol=0, atol=64 * EPS)
 
@@ -215,7 +219,7 @@ def test_a_batch_is_its_mechanisms() -> None:
         one = batch.isel(mechanism=k)
         assert np.array_equal(axes.centre[k], ct.instant_centres(one).centre, equal_nan=True)
         assert np.array_equal(rolled.moving_arc[k], ct.centrodes(one, "slider C", "AB").moving_arc)
-    made = ct.construct_centres(batch.isel(mechanism=1), 3)
+    made = construct_centres(batch.isel(mechanism=1), 3)
     assert max(made.mismatch.values()) <= 64 * EPS / 0.1
 
 
@@ -242,7 +246,7 @@ speed = 1.0
 sides = {{ C = "left" }}
 """
     motion = ct.motion(ct.parse_mechanism(text), at=[1.0])
-    made = ct.construct_centres(motion)
+    made = construct_centres(motion)
     assert {step.how for step in made.steps} == {"hinge", "kennedy"}
     planar = ct.motion(four_bar(1.0, 3.5, 3.0, 4.0), at=[1.0])
     for pair, same in ((("BC", "frame"), ("AB", "frame")), (("DC", "AB"), ("DB", "OA"))):

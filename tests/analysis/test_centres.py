@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from centrode.analysis.instant_centres.bodies import ROUNDED, bodies_of
+from centrode.analysis.instant_centres.centres import Case
+from centrode.analysis.instant_centres.kennedy import construct_centres
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import grown_higher, higher_descriptions
 from mechanisms import EPS, conditioning, moved, point, solved_at
@@ -43,7 +45,7 @@ def places(centres: Any, sample: int = 0) -> dict[tuple[str, str], complex]:
 @given(descriptions())
 def test_the_constructed_centres_have_no_relative_velocity(parts: dict[str, Any]) -> None:
     motion, rounding = at_start(parts)
-    made = ct.construct_centres(motion)
+    made = construct_centres(motion)
     assert len(made.steps) == len(made.bodies) * (len(made.bodies) - 1) // 2
     for step in made.steps:
         assert made.mismatch[step.pair] <= step.error + rounding, step
@@ -58,7 +60,7 @@ def test_groups_of_higher_class_too(parts: dict[str, Any]) -> None:
     except ct.InputError:
         assume(False)  # a plate on the frame alone: nothing drives it
     assume(motion.status[0] == ct.Status.OK)
-    made = ct.construct_centres(motion)
+    made = construct_centres(motion)
     residual = float(motion.residual[0])
     for step in made.steps:
         # positions that close to the residual: so do the velocities, over the conditioning that the step knows
@@ -119,7 +121,7 @@ def test_four_bar_by_its_lines() -> None:
         expected, worse = meeting(*lines)
         allowed = 64 * EPS * worse**2 * np.maximum(np.abs(expected), 4.0)
         assert (np.abs(found[:, 0] + 1j * found[:, 1] - expected) <= allowed).all()
-    assert (centres["centre_case"] == ct.Case.DIRECTIONS).all()
+    assert (centres["centre_case"] == Case.DIRECTIONS).all()
 
 
 def test_the_worked_mechanism_translates_at_a_quarter_turn() -> None:
@@ -127,7 +129,7 @@ def test_the_worked_mechanism_translates_at_a_quarter_turn() -> None:
     motion = ct.motion(ct.example("slider-between-cranks"), at=[np.pi / 2])
     centres = ct.instant_centres(motion, [("AC", "frame"), ("CB", "frame")])
     second, third = (centres.isel(sample=0, pair=k) for k in (0, 1))
-    assert int(second.centre_case) == ct.Case.TRANSLATION
+    assert int(second.centre_case) == Case.TRANSLATION
     assert np.isnan(second.centre).all()
     np.testing.assert_allclose(second.centre_direction, [0.0, 1.0], atol=4 * EPS)
     # A stands at (0, 0.5), C on the line y = sin 0.5 with AC = 1; D closes the chain of the initial angles
@@ -140,7 +142,7 @@ def test_the_worked_mechanism_translates_at_a_quarter_turn() -> None:
     assert abs(float(motion.velocity.sel(point="C", axis="x")[0]) / distance) == pytest.approx(
         0.411, abs=5e-4
     )
-    made = ct.construct_centres(motion)
+    made = construct_centres(motion)
     assert made.step("AC", "frame").direction == pytest.approx((0.0, 1.0), abs=1e-13)
     np.testing.assert_allclose(made.step("CB", "frame").place, third.centre, rtol=1e-12)
 
@@ -158,8 +160,8 @@ def test_a_rolling_wheel_turns_about_its_contact(name: str) -> None:
         motion["contact"].to_numpy()[moving, 0],
         atol=64 * EPS * scale,
     )
-    assert (centres["centre_case"][moving] == ct.Case.ROLLING).all()
-    step = ct.construct_centres(motion, 2).step(wheel.link, wheel.on)
+    assert (centres["centre_case"][moving] == Case.ROLLING).all()
+    step = construct_centres(motion, 2).step(wheel.link, wheel.on)
     assert (step.how, step.name) == ("rolling", wheel.id)
     np.testing.assert_allclose(step.place, motion["contact"].to_numpy()[2, 0], atol=64 * EPS * scale)
 
@@ -172,8 +174,8 @@ def test_gears_meet_in_their_pitch_point() -> None:
     for column, radius in enumerate((0.024, 0.060)):
         found = centres["centre"].to_numpy()[:, column]
         np.testing.assert_allclose(found[:, 0] + 1j * found[:, 1], radius * arm, atol=64 * EPS * 0.06)
-    assert (centres["centre_case"] == ct.Case.ROLLING).all()
-    step = ct.construct_centres(motion, 3).step("planet", "sun")
+    assert (centres["centre_case"] == Case.ROLLING).all()
+    step = construct_centres(motion, 3).step("planet", "sun")
     assert (step.how, step.name) == ("gear", "sun-planet")
     assert complex(*step.place) == pytest.approx(0.024 * arm[3], abs=64 * EPS)
 
@@ -206,32 +208,32 @@ speed = SUN
 @pytest.mark.parametrize(
     ("planet", "case"),
     [
-        (1.0, ct.Case.SAME_SENSE),
-        (-4.0, ct.Case.OPPOSITE_SENSE),
-        (0.0, ct.Case.TRANSLATION),
-        (-42 / 18, ct.Case.STANDSTILL),
+        (1.0, Case.SAME_SENSE),
+        (-4.0, Case.OPPOSITE_SENSE),
+        (0.0, Case.TRANSLATION),
+        (-42 / 18, Case.STANDSTILL),
     ],
 )
-def test_parallel_velocities_are_told_apart(planet: float, case: ct.Case) -> None:
+def test_parallel_velocities_are_told_apart(planet: float, case: Case) -> None:
     """A planet that turns at `planet`: its points A and M on the line of the arm move upright to it."""
     sun = 1.0 + (1.0 - planet) * 18 / 24
     motion = ct.motion(ct.parse_mechanism(TRAIN.replace("SUN", repr(sun))), at=[0.0])
     centre = ct.instant_centres(motion, [("planet", "frame")]).isel(sample=0, pair=0)
     assert int(centre.centre_case) == case
-    if case is ct.Case.TRANSLATION:
+    if case is Case.TRANSLATION:
         np.testing.assert_allclose(centre.centre_direction, [1.0, 0.0], atol=4 * EPS)
     else:
         np.testing.assert_allclose(centre.centre, [42 - 42 / planet, 0.0], atol=64 * EPS * 60)
-    made = ct.construct_centres(motion)  # two drives: the theorem is not enough, and it says so
+    made = construct_centres(motion)  # two drives: the theorem is not enough, and it says so
     assert [step.how for step in made.steps] == ["hinge"] * 4 + ["gear", "field"]
     assert max(made.mismatch.values()) <= 64 * EPS
 
 
 def test_every_case_has_its_word() -> None:
-    assert len({case.word for case in ct.Case}) == len(ct.Case) == len({case.sentence for case in ct.Case})
+    assert len({case.word for case in Case}) == len(Case) == len({case.sentence for case in Case})
     motion = ct.motion(ct.example("slider-between-cranks"), at=[np.pi / 2])
     flags = ct.instant_centres(motion)["centre_case"].attrs
-    assert flags["flag_meanings"].split() == [case.name.lower() for case in ct.Case]
+    assert flags["flag_meanings"].split() == [case.name.lower() for case in Case]
 
 
 def test_a_point_that_slides_has_a_body_of_its_own() -> None:
@@ -239,7 +241,7 @@ def test_a_point_that_slides_has_a_body_of_its_own() -> None:
     centres = ct.instant_centres(motion)
     assert centres.sizes["pair"] == 15  # frame, four links and the slider
     found = centres.sel(pair="slider C,frame")
-    assert int(found.centre_case[0]) == ct.Case.TRANSLATION
+    assert int(found.centre_case[0]) == Case.TRANSLATION
     np.testing.assert_allclose(found.centre_direction[0], [0.0, 1.0], atol=4 * EPS)
     np.testing.assert_allclose(places(centres)["slider C", "CB"], point(motion, "C")[0], rtol=16 * EPS)
 
@@ -258,8 +260,8 @@ def test_bodies_at_rest_against_each_other_have_no_centre() -> None:
         "assembly": {"sides": {"B": "left"}},
     }
     motion = ct.motion(ct.Mechanism(**parts), at=[1.0])
-    assert int(ct.instant_centres(motion, [("bar", "AB")]).centre_case[0, 0]) == ct.Case.REST
-    made = ct.construct_centres(motion)
+    assert int(ct.instant_centres(motion, [("bar", "AB")]).centre_case[0, 0]) == Case.REST
+    made = construct_centres(motion)
     assert made.step("bar", "AB").how == "rest"
     assert max(made.mismatch.values()) <= 1e-13
 
@@ -276,7 +278,7 @@ def test_a_triangle_of_links_is_rigid() -> None:
         "drives": [{"link": "crank", "start": 0.3, "speed": 1}],
         "assembly": {"sides": {"C": "left"}},
     }
-    made = ct.construct_centres(ct.motion(ct.Mechanism(**parts), at=[0.3]))
+    made = construct_centres(ct.motion(ct.Mechanism(**parts), at=[0.3]))
     for pair in (("AC", "crank"), ("BC", "crank"), ("BC", "AC")):
         assert made.step(*pair).how == "rest"
     for link in ("AC", "BC"):
@@ -289,7 +291,7 @@ def test_where_no_two_lines_tell_one_centre_comes_from_the_velocities(group: str
     """Groups of the third and the fourth class on moving bodies: the theorem alone stops, and the step says so."""
     parts = grown_higher([group], 3)
     motion = ct.motion(mechanism_of(parts), at=[parts["drives"][0]["start"]])
-    made = ct.construct_centres(motion)
+    made = construct_centres(motion)
     assert [step.how for step in made.steps].count("field") == 1
     assert all(made.mismatch[step.pair] <= step.error for step in made.steps)
 

@@ -10,8 +10,15 @@ import pytest
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.analysis.graphic.checks import STEPS
-from centrode.analysis.graphic.diagrams import diagrams, drawing_of, driven_rates
+from centrode.analysis.graphic.checks import STEPS, graphic_check
+from centrode.analysis.graphic.diagrams import (
+    Diagram,
+    acceleration_diagram,
+    diagrams,
+    drawing_of,
+    driven_rates,
+    velocity_diagram,
+)
 from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet, round_scale
 from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.path import grid_at
@@ -70,7 +77,7 @@ def test_random_groups_of_higher_class(parts: dict[str, Any]) -> None:
     assert (found[0] <= found[1]).all()
 
 
-def edges(diagram: ct.Diagram, kind: str) -> list[Edge]:
+def edges(diagram: Diagram, kind: str) -> list[Edge]:
     return [edge for edge in diagram.edges if edge.kind == kind]
 
 
@@ -83,7 +90,7 @@ def test_coriolis_in_a_moving_guide() -> None:
     velocity = 1j * crank * float(data.angular_velocity.sel(link="OA")[0])
     along = e / abs(e)
     turn, slide = cross(along, velocity) / abs(e), (along.conjugate() * velocity).real
-    (found,) = edges(ct.acceleration_diagram(lever, 0.9), "coriolis")
+    (found,) = edges(acceleration_diagram(lever, 0.9), "coriolis")
     # the place of the lever under A has less of it than A
     wanted = -2j * turn * slide * along
     assert abs(found.vector - wanted) <= 16 * EPS * abs(wanted) * (1 + abs(velocity) / abs(slide))
@@ -91,7 +98,7 @@ def test_coriolis_in_a_moving_guide() -> None:
 
 def test_normal_parts_point_to_the_centre_of_the_circle() -> None:
     four_bar = ct.four_bar(crank=1, coupler=3.5, rocker=3, ground=4)
-    diagram = ct.acceleration_diagram(four_bar, 1.0)
+    diagram = acceleration_diagram(four_bar, 1.0)
     data = ct.motion(four_bar, at=[1.0])
     normal = {edge.link: edge.vector for edge in edges(diagram, "normal")}
     for link, length in {"crank": 1.0, "coupler": 3.5, "rocker": 3.0}.items():
@@ -100,7 +107,7 @@ def test_normal_parts_point_to_the_centre_of_the_circle() -> None:
 
 
 def test_the_frame_stands_at_the_pole() -> None:
-    diagram = ct.velocity_diagram(ct.example("six-bar-press"), 0.5)
+    diagram = velocity_diagram(ct.example("six-bar-press"), 0.5)
     assert [diagram.images[name] for name in ("O", "C")] == [0, 0]
 
 
@@ -119,7 +126,7 @@ def test_images_of_plates_are_similar_to_them() -> None:
 
 @pytest.mark.parametrize("name", ["third-class-triad", "fourth-class-group", "stephenson-driven-at-rocker"])
 def test_false_positions_are_told(name: str) -> None:
-    diagram = ct.velocity_diagram(ct.example(name), an_instant(name))
+    diagram = velocity_diagram(ct.example(name), an_instant(name))
     (trial,) = [step.trial for step in diagram.steps if step.trial is not None]
     assert len(trial.values) == len(trial.links) + 1
     # linear in the trial: what is found lies where the misfit vanishes
@@ -133,7 +140,7 @@ def test_triangles_keep_the_law_of_sines() -> None:
     triangles = [
         step.triangle
         for name in ("jansen-leg", "six-bar-press", "whitworth-quick-return")
-        for step in ct.velocity_diagram(ct.example(name), an_instant(name)).steps
+        for step in velocity_diagram(ct.example(name), an_instant(name)).steps
         if step.triangle is not None
     ]
     assert len(triangles) >= 6
@@ -171,7 +178,7 @@ def test_reading_errors_shrink_with_the_step(step: float) -> None:
     exact = dataset_of(solve(prepared, span))
     driven = driven_rates(prepared, span)
     condition = answers(prepared, drawing_of(prepared, exact, DrawingBoard()), driven, tries=8)
-    true, read = (ct.velocity_diagram(press, 0.5, angle_step=one) for one in (None, step))
+    true, read = (velocity_diagram(press, 0.5, angle_step=one) for one in (None, step))
     apart = max(abs(read.images[name] - true.images[name]) for name in true.images)
     # random directions may miss the worst case, once in each group
     assert 0 < apart <= len(prepared.structure.groups) * condition[0] * step
@@ -179,7 +186,7 @@ def test_reading_errors_shrink_with_the_step(step: float) -> None:
 
 def test_lengths_on_paper_are_read_to_a_step() -> None:
     press = ct.example("six-bar-press")
-    found = ct.graphic_check(press, 0.5, length_step=5e-4)
+    found = graphic_check(press, 0.5, length_step=5e-4)
     grain = 0.5 * found.diagrams.velocity.scale
     for row in found.rows:
         if row.quantity == "velocity":
@@ -202,27 +209,27 @@ def test_lines_that_are_parallel_do_not_meet() -> None:
 
 def test_the_sphere_has_no_such_diagrams() -> None:
     with pytest.raises(ct.InputError, match="do not apply on the sphere"):
-        ct.velocity_diagram(ct.example("spherical-four-bar"), 0.5)
+        velocity_diagram(ct.example("spherical-four-bar"), 0.5)
 
 
 def test_where_the_mechanism_is_not() -> None:
     locked = ct.example("slider-between-cranks-locked")
     with pytest.raises(ct.MotionError, match="is open: there is nothing to construct"):
-        ct.acceleration_diagram(locked, 2.5)
+        acceleration_diagram(locked, 2.5)
     (limit, *_rest) = ct.motion(locked).event_value.values
     with pytest.raises(ct.MotionError, match=r"singular|open"):
-        ct.acceleration_diagram(locked, float(limit))
+        acceleration_diagram(locked, float(limit))
 
 
 def test_a_change_point_is_a_dead_point_of_the_drawing() -> None:
     with pytest.raises(ct.MotionError, match="dead point"):
-        ct.velocity_diagram(ct.example("parallelogram"), math.pi)
+        velocity_diagram(ct.example("parallelogram"), math.pi)
 
 
 @pytest.mark.parametrize("at", [math.nan, math.inf, 1e9])
 def test_instants_have_to_be_within_reach(at: float) -> None:
     with pytest.raises(ct.InputError):
-        ct.velocity_diagram(ct.example("crank-rocker"), at)
+        velocity_diagram(ct.example("crank-rocker"), at)
 
 
 @pytest.mark.parametrize("step", [0.0, -1.0, 1.0, math.nan])
@@ -236,7 +243,7 @@ def test_steps_out_of_range(step: float) -> None:
 def test_integrated_velocities_stand_beside_them() -> None:
     """To what every adaptive step may add."""
     pytest.importorskip("centrode.equations.integration", reason="equations are not integrated here")
-    check = ct.graphic_check(ct.example("slider-between-cranks"), 1.0)
+    check = graphic_check(ct.example("slider-between-cranks"), 1.0)
     for row in check.rows:
         assert (row.integrated is None) == (row.quantity in ("angular_acceleration", "acceleration"))
         if row.integrated is not None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.analysis.transmission import transmission_results
 
 EPS = 2.0**-52
 A, B, C, D = 1.0, 3.5, 3.0, 4.0
@@ -181,9 +182,7 @@ def test_where_it_locks_the_least_is_nothing_and_the_pressure_is_square() -> Non
     assert least == told.least
     # the range begins at 0: the stationary value at 18.6 deg, folded, lies in it
     assert greatest == pytest.approx(acute(told.extremes[0][1]), abs=1e-12)
-    rows = {
-        row[0]: row[1:] for row in map(str.split, ct.summary(ct.transmission_results(locked)).splitlines())
-    }
+    rows = {row[0]: row[1:] for row in map(str.split, ct.summary(transmission_results(locked)).splitlines())}
     assert rows["CB-BD"] == ["0.0000", f"{math.degrees(greatest):.4f}", "90.0000"]
 
 

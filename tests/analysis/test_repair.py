@@ -16,6 +16,7 @@ import centrode as ct
 from centrode.analysis.redesign.candidates import Candidates, impossible, varyings
 from centrode.analysis.redesign.repair import DEFAULT_ANGLE, ENOUGH, Repair
 from centrode.kinematics.preparation import ready
+from centrode.model.examples import example_text
 from centrode.render.terminal import plain_text
 from centrode.views.rotatability import impossibility_text
 from mechanisms import four_bar
@@ -62,7 +63,7 @@ def variant(number: int) -> ct.Mechanism:
     """A row of the source on the worked topology."""
     with VARIANTS.open(encoding="utf-8", newline="") as stream:
         row = next(row for row in csv.DictReader(stream) if int(row["variant"]) == number)
-    parts: dict[str, Any] = tomllib.loads(ct.example_text("slider-between-cranks"))
+    parts: dict[str, Any] = tomllib.loads(example_text("slider-between-cranks"))
     for k, link in enumerate(("AC", "CB", "BD"), start=2):
         parts["links"][link] |= {"length": float(row[f"l{k}_m"]), "angle": float(row[f"phi{k}_0_rad"])}
     return ct.Mechanism(**parts)
@@ -176,7 +177,7 @@ def test_spherical_four_bars_are_repaired() -> None:
 def test_impossible_is_said_with_an_inequality(
     crank: float, vary: list[str], angle: str, inequality: str
 ) -> None:
-    parts: dict[str, Any] = tomllib.loads(ct.example_text("slider-between-cranks-locked"))
+    parts: dict[str, Any] = tomllib.loads(example_text("slider-between-cranks-locked"))
     parts["links"]["OA"]["length"] = crank
     mechanism = ct.Mechanism(**parts)
     found = ct.repair(mechanism, vary, least_transmission_angle=angle)
@@ -185,7 +186,7 @@ def test_impossible_is_said_with_an_inequality(
 
 
 def test_the_stroke_of_the_slider_is_too_long_for_short_rods() -> None:
-    parts: dict[str, Any] = tomllib.loads(ct.example_text("slider-between-cranks-locked"))
+    parts: dict[str, Any] = tomllib.loads(example_text("slider-between-cranks-locked"))
     parts["links"]["CB"]["length"] = parts["links"]["BD"]["length"] = 0.2
     mechanism = ct.Mechanism(**parts)
     found = ct.repair(mechanism, ["links.AC.angle", *ANGLES])
@@ -200,7 +201,7 @@ def test_impossible_is_never_said_of_what_turns() -> None:
     excluded = turned = 0
     for _k in range(20):
         lengths = tuple(float(x) for x in (0.4 + 0.8 * random.random(), *(0.1 + 0.7 * random.random(2))))
-        parts: dict[str, Any] = tomllib.loads(ct.example_text("slider-between-cranks-locked"))
+        parts: dict[str, Any] = tomllib.loads(example_text("slider-between-cranks-locked"))
         for link, length in zip(("AC", "CB", "BD"), lengths, strict=True):
             parts["links"][link]["length"] = length
         parts["links"]["OA"]["length"] = 0.5

@@ -11,13 +11,14 @@ import pytest
 
 import centrode as ct
 from centrode.analysis.rotatability.causes import CauseKind, Tracer
+from centrode.analysis.rotatability.rotatability import Rotatability
 from centrode.analysis.rotatability.tours import DWELL_BAND, LinkStroke
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS, four_bar
 from turning import assert_swings, recorded
 
 
-def swing_of(found: ct.Rotatability, name: str) -> LinkStroke:
+def swing_of(found: Rotatability, name: str) -> LinkStroke:
     return next(swing for swing in found.one.swings if swing.name == name)
 
 

@@ -7,6 +7,7 @@ import re
 import pytest
 
 import centrode as ct
+from centrode.analysis.graphic.checks import GraphicCheck
 from centrode.kinematics.preparation import ready
 from centrode.structure.groups import Aim, Meet, Touch
 from drawn import errors
@@ -159,7 +160,7 @@ def test_a_link_that_is_found_before_its_points() -> None:
     found = errors(mechanism, 0.5)
     assert found is not None
     assert (found[0] <= found[1]).all()
-    figures = ct.figures(ct.graphic_results(mechanism, instants=[0.5]))
+    figures = ct.figures(ct.graphic_analysis(mechanism, instants=[0.5]))
     assert len(figures) == 3
 
 
@@ -176,9 +177,9 @@ def test_a_link_that_is_found_before_its_points() -> None:
     ],
 )
 def test_equations_of_wheels_are_written_and_hold(name: str, at: float, equations: list[str]) -> None:
-    results = ct.graphic_results(ct.example(name), instants=[at])
+    results = ct.graphic_analysis(ct.example(name), instants=[at])
     (check,) = results.checks
-    assert isinstance(check, ct.GraphicCheck)
+    assert isinstance(check, GraphicCheck)
     found = ct.summary(results).splitlines()
     for letter, diagram in (("ω", check.diagrams.velocity), ("ε", check.diagrams.acceleration)):
         for equation in equations:

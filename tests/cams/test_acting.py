@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.cams.followers.force_results import follower_force_results
 from centrode.cams.followers.forces import follower_forces, meeting_of
+from centrode.cams.followers.motion import follower_motion
 from centrode.render import plain_text
 from centrode.topics.presentation import sheet_of
 
@@ -41,7 +43,7 @@ def plate(name, turn="counter-clockwise", body=(), **more):
 
 def failure(cam):
     """What the cam cannot do, as a command says it; an empty text where it does all."""
-    failed = sheet_of(ct.follower_force_results(cam)).failure
+    failed = sheet_of(follower_force_results(cam)).failure
     return "" if failed is None else plain_text(failed.what, cam.display)
 
 
@@ -118,7 +120,7 @@ def test_a_cam_that_leads_both_ways_keeps_the_sign_of_its_force():
     found = ct.cam_forces(cam, 361)
     assert found.attrs["led"] and (found["contact_force"].to_numpy() < 0).any()
     assert not np.isnan(found["contact_force"].to_numpy()).any()
-    assert "led both ways" in ct.summary(ct.follower_force_results(cam))
+    assert "led both ways" in ct.summary(follower_force_results(cam))
 
 
 def test_friction_of_an_edge_locks():
@@ -141,7 +143,7 @@ def test_what_locks_between_the_samples_is_told_and_has_no_greatest_force():
         assert math.isinf(found.attrs["greatest_torque"]) == locks
         assert ("friction locks" in failure(cam)) == locks
         assert (
-            "greatest contact force       without bound" in ct.summary(ct.follower_force_results(cam))
+            "greatest contact force       without bound" in ct.summary(follower_force_results(cam))
         ) == locks
 
 
@@ -177,7 +179,7 @@ def test_no_greatest_stress_is_told_of_a_profile_that_is_undercut():
 def test_without_speed_forces_are_those_at_rest():
     cam = plate("face", body={"speed": None})
     found = ct.cam_forces(cam, 73)
-    lift = ct.follower_motion(cam).lift(found["cam_angle"].to_numpy())[0]
+    lift = follower_motion(cam).lift(found["cam_angle"].to_numpy())[0]
     assert np.all(np.abs(found["follower_push"].to_numpy() - 90.0 - 4e3 * lift) <= 4 * EPS * 200.0)
 
 

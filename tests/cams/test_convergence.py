@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.cams.cam import foretold_error, routes_of
+from centrode.cams.cam import cam_routes, foretold_error, path_routes_results, routes_of
 from centrode.cams.curvature_laws import (
     ConstantCurvature,
     ExponentialCurvature,
@@ -79,16 +79,16 @@ def test_foretold_errors_cover_the_true_ones(law: dict[str, object], terms: int)
 def test_formulas_15_and_16_part_where_the_series_is_cut() -> None:
     example = ct.example("cam-from-curvature")
     at = np.radians([30.0, 60.0, 80.0])
-    parts = [np.abs(ct.cam_routes(example, at=at, terms=n).parting.to_numpy()) for n in (10, 20, 40)]
+    parts = [np.abs(cam_routes(example, at=at, terms=n).parting.to_numpy()) for n in (10, 20, 40)]
     assert np.all(parts[0] > 3 * parts[1])
     assert np.all(parts[1] > 3 * parts[2])
-    errors = np.abs(ct.cam_routes(example, at=at, terms=20).series_error.to_numpy())
+    errors = np.abs(cam_routes(example, at=at, terms=20).series_error.to_numpy())
     assert np.all(parts[1] > errors)  # without knowing the path, it tells that the series is off
 
 
 def test_where_the_curvature_is_constant_formula_16_says_nothing() -> None:
     cam = ct.Cam(kind="cam", curvature={"law": "constant", "k0": 12}, start={"radius": 0.05}, range={"to": 1})
-    found = ct.cam_routes(cam, samples=5)
+    found = cam_routes(cam, samples=5)
     assert np.isnan(found.radius_by_slope).all()
     assert np.isfinite(found.series_error).all()
 
@@ -123,14 +123,14 @@ def test_where_the_curvature_does_not_change_formula_16_has_no_meaning(turns: fl
     law = {"law": "formula", "formula": "12+2*cos(phi)"}
     cam = ct.Cam(kind="cam", curvature=law, start={"radius": 0.07}, range={"to": 4.0})
     flat = turns * math.pi
-    found = ct.cam_routes(cam, at=[flat, flat + 1e-3, flat + 0.1])
+    found = cam_routes(cam, at=[flat, flat + 1e-3, flat + 0.1])
     assert np.isnan(found.parting.values).tolist() == [True, False, False]
 
 
 def test_the_places_without_a_meaning_are_told() -> None:
     law = {"law": "formula", "formula": "12+2*cos(phi)"}
     cam = ct.Cam(kind="cam", curvature=law, start={"radius": 0.07}, range={"to": math.pi})
-    results = ct.path_routes_results(cam, 361)
+    results = path_routes_results(cam, 361)
     rows = fact_rows(sheet_of(results).facts, cam.display)
     (said,) = [text for _label, text in rows if "(15)" in text]
     assert said.endswith("the comparison has no meaning: φ = 0 rad (0 deg), 3.14159 rad (180 deg)")

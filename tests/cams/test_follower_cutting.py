@@ -22,6 +22,7 @@ from centrode.cams.followers.geometry import (
 from centrode.cams.followers.manufacture import cam_points, follower_outlines, join_outlines
 from centrode.errors import InputError
 from centrode.laws.segments import LawSegment, SegmentedLaw
+from centrode.model.examples.catalogue import load_cam
 from centrode.render.outlines import write_outlines_dxf, write_outlines_svg
 from follower_motions import Array, Lift, lift_of, rise_dwell_fall_dwell
 
@@ -213,7 +214,7 @@ def test_files_of_outlines(tmp_path: Path) -> None:
 
 
 def test_points_of_a_description_have_normals_square_to_their_way() -> None:
-    cam = ct.load_cam("indexing-cam")
+    cam = load_cam("indexing-cam")
     points = cam_points(cam)
     here = points["curve"].to_numpy() == "path"
     place, normal = points["curve_point"].to_numpy()[here], points["curve_normal"].to_numpy()[here]

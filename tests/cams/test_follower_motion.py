@@ -10,14 +10,19 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.cams.cam import cam_routes
 from centrode.cams.followers.motion import (
     FollowerMotion,
+    cam_laws,
     compare_laws,
     first_jump,
     follower_motion,
     joints_of,
     peaks_of,
 )
+from centrode.cams.followers.motion_results import follower_motion_results
+from centrode.cams.path_series import path_of
+from centrode.cams.profiles import cam_body
 from centrode.errors import InputError
 from centrode.laws import CURVES, LawSegment, SegmentedLaw
 
@@ -285,7 +290,7 @@ def test_laws_of_a_cam_hold_its_own() -> None:
             {"angle": "180 deg", "to": 0, "curve": "cycloidal"},
         ]
     )
-    found = ct.cam_laws(own)
+    found = cam_laws(own)
     assert found.law.values.tolist() == [*CURVES, "its own"]
     assert found.attrs["segment"] == 1
     # The polynomial by these conditions is the 3-4-5.
@@ -313,13 +318,13 @@ def test_bad_comparisons_are_refused(arguments: dict[str, object], message: str)
 
 def test_other_kinds_of_cams_are_told_apart() -> None:
     curvature, plate = ct.example("cam-from-curvature"), rise_and_fall("3-4-5")
-    for call in (ct.follower_motion, ct.cam_laws):
+    for call in (follower_motion, cam_laws):
         with pytest.raises(InputError, match="given by a curvature law"):
             call(curvature)
     for call in (
-        ct.path_of,
-        ct.cam_routes,
-        ct.cam_body,
+        path_of,
+        cam_routes,
+        cam_body,
         ct.cam_contact,
         ct.choose_cam,
         ct.walking_wheel,
@@ -355,7 +360,7 @@ def test_what_is_drawn_does_not_depend_on_samples() -> None:
 
 def test_jumps_are_drawn_as_such() -> None:
     plate = narrow()
-    figure = ct.figures(ct.follower_motion_results(plate, samples=3))["cam-motion"]
+    figure = ct.figures(follower_motion_results(plate, samples=3))["cam-motion"]
     dashed = [[line for line in axes.lines if line.get_linestyle() == "--"] for axes in figure.axes]
     # Of the lift none; of the velocity two, at both ends of the turn and at 150 deg.
     assert [len(lines) for lines in dashed][:2] == [0, 3]

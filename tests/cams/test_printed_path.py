@@ -13,6 +13,7 @@ from tools.validation import cams as validation
 from tools.validation.rows import Row
 
 import centrode as ct
+from centrode.cams.cam import cam_routes
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.path_series import SeriesPath, series_path
 
@@ -72,7 +73,7 @@ def test_true_values_at_ninety_degrees(row: Row) -> None:
 
 
 def test_routes_agree_to_a_trillionth() -> None:
-    found = ct.cam_routes(ct.example("cam-from-curvature"), at=[math.pi / 2]).isel(sample=0)
+    found = cam_routes(ct.example("cam-from-curvature"), at=[math.pi / 2]).isel(sample=0)
     for name in ("path_radius", "pressure_sine", "pressure_sine_slope"):
         steps, integrated = (float(found[name].sel(route=route)) for route in ("steps", "integrated"))
         assert abs(integrated - steps) <= 1e-12 * abs(steps)
@@ -104,7 +105,7 @@ def test_the_series_does_not_even_converge_at_ninety_degrees() -> None:
     true = ct.cam(example, at=at).path_radius.to_numpy()
     law = ExponentialCurvature(10.0, 0.75)
     errors = {n: np.abs(series_path(law, 0.05, terms=n).radius(at)[0] - true) for n in (100, 200, 500)}
-    radius = ct.cam_routes(example, at=at).attrs["radius_of_convergence"]
+    radius = cam_routes(example, at=at).attrs["radius_of_convergence"]
     assert math.radians(87.2) < radius < math.radians(87.4)
     assert errors[100][0] > 1e3 * errors[200][0] > 0
     assert not errors[500][1] < 100 * errors[100][1]  # NaN: beyond |eta| = 1

@@ -13,6 +13,8 @@ import pytest
 
 import centrode as ct
 from cam_shapes import exchanged
+from centrode.cams.profiles import cam_body, cam_outlines, shoe_outlines
+from centrode.cams.results import cam_profile_results, walking_wheel_results
 from centrode.errors import InputError
 from centrode.model.settings import Display
 from centrode.present import dxf_files
@@ -33,7 +35,7 @@ def cam() -> ct.Cam:
 def test_csv_reads_back_bit_for_bit(cam: ct.Cam, tmp_path: Path) -> None:
     data = ct.cam_profile(cam, 91, groove=True)
     write_table(
-        ct.tables(ct.cam_profile_results(cam, 91, groove=True))["cam-profile"],
+        ct.tables(cam_profile_results(cam, 91, groove=True))["cam-profile"],
         tmp_path / "cam.csv",
         Display(),
     )
@@ -52,9 +54,7 @@ def test_csv_reads_back_bit_for_bit(cam: ct.Cam, tmp_path: Path) -> None:
 
 
 def test_display_units_stand_in_the_header(cam: ct.Cam, tmp_path: Path) -> None:
-    write_table(
-        ct.tables(ct.walking_wheel_results(cam, 5))["shoe-profile"], tmp_path / "shoe.csv", cam.display
-    )
+    write_table(ct.tables(walking_wheel_results(cam, 5))["shoe-profile"], tmp_path / "shoe.csv", cam.display)
     header = (tmp_path / "shoe.csv").read_text(encoding="utf-8").splitlines()[0]
     assert header == (
         "carrier_angle [deg],shoe_radius [mm],shoe_angle [deg],shoe_bend [mm],shoe_along [mm],"
@@ -63,8 +63,8 @@ def test_display_units_stand_in_the_header(cam: ct.Cam, tmp_path: Path) -> None:
 
 
 def test_svg_is_in_millimetres_and_its_curves_are_the_profile(cam: ct.Cam, tmp_path: Path) -> None:
-    body = ct.cam_body(cam)
-    outlines = ct.cam_outlines(body, 360, groove=True)
+    body = cam_body(cam)
+    outlines = cam_outlines(body, 360, groove=True)
     write_outlines_svg(outlines, tmp_path / "cam.svg", "Cam <4> & Кулачок")
     root = ElementTree.parse(tmp_path / "cam.svg").getroot()
     assert root.find(f"{NAME}title").text == "Cam <4> & Кулачок"  # type: ignore[union-attr]
@@ -93,8 +93,8 @@ def test_svg_is_in_millimetres_and_its_curves_are_the_profile(cam: ct.Cam, tmp_p
 
 
 def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct.Cam, tmp_path: Path) -> None:
-    body, wheel = ct.cam_body(cam), ct.walking_wheel(cam)
-    outlines = [*ct.cam_outlines(body, 360, groove=True), *ct.shoe_outlines(wheel.shoe, 90)]
+    body, wheel = cam_body(cam), ct.walking_wheel(cam)
+    outlines = [*cam_outlines(body, 360, groove=True), *shoe_outlines(wheel.shoe, 90)]
     write_outlines_dxf(outlines, tmp_path / "cam.dxf", "Кулачок")
     document = ezdxf.readfile(tmp_path / "cam.dxf")
     audit = document.audit()
@@ -112,8 +112,7 @@ def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct
             found = np.array([list(curve.point(one))[:2] for one in phi - piece.phi[0]])
             exact = {
                 "path": lambda at: (
-                    ct.cam_body(cam).closed.radius(at)[0][:, None]
-                    * np.stack([np.sin(at), np.cos(at)], axis=-1)
+                    cam_body(cam).closed.radius(at)[0][:, None] * np.stack([np.sin(at), np.cos(at)], axis=-1)
                 ),
                 "shoe": wheel.shoe.place,
             }.get(
@@ -130,7 +129,7 @@ def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct
 def test_files_have_the_same_bytes_each_time(cam: ct.Cam, tmp_path: Path) -> None:
     before = ezdxf.options.write_fixed_meta_data_for_testing
     for name in ("one", "two"):
-        outlines = ct.cam_outlines(ct.cam_body(cam), 90)
+        outlines = cam_outlines(cam_body(cam), 90)
         write_outlines_dxf(outlines, tmp_path / f"{name}.dxf", "T")
         write_outlines_svg(outlines, tmp_path / f"{name}.svg", "T")
     for kind in ("dxf", "svg"):
@@ -143,12 +142,12 @@ def test_without_ezdxf_the_extra_is_named(
 ) -> None:
     monkeypatch.setattr(dxf_files, "find_spec", lambda _name: None)
     with pytest.raises(InputError, match=r'pip install "centrode\[drawings\]"'):
-        write_outlines_dxf(ct.cam_outlines(ct.cam_body(cam), 90), tmp_path / "cam.dxf")
+        write_outlines_dxf(cam_outlines(cam_body(cam), 90), tmp_path / "cam.dxf")
     assert not list(tmp_path.iterdir())
 
 
 def test_outlines_of_neighbouring_pieces_meet(cam: ct.Cam) -> None:
-    outlines = [one for one in ct.cam_outlines(ct.cam_body(cam), 100) if one.layer.startswith("profile")]
+    outlines = [one for one in cam_outlines(cam_body(cam), 100) if one.layer.startswith("profile")]
     ends = np.array([[one.places[0], one.places[-1]] for one in outlines])
     np.testing.assert_allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=1e-15)
 
@@ -158,9 +157,9 @@ def test_at_corners_the_rollers_arc_joins_the_walls(k1: float) -> None:
     """Mirror images have outward corners where the path rises to its end, inward ones where it falls."""
     more = '[return]\nkind = "mirrored"\n'
     law = ('k0 = "0.01 1/mm"\nk1 = 0.75', f"k0 = 30\nk1 = {k1}" if k1 < 0 else f"k0 = 10\nk1 = {k1}")
-    body = ct.cam_body(exchanged(law, ('"15 mm"', '"5 mm"'), more=more))
+    body = cam_body(exchanged(law, ('"15 mm"', '"5 mm"'), more=more))
     assert len(body.kinks) == 4 and (body.kinks[0].kink < 0) == (k1 > 0)
-    outlines = ct.cam_outlines(body, 180, groove=True)
+    outlines = cam_outlines(body, 180, groove=True)
     wall = "groove" if k1 > 0 else "profile"
     pieces = [one for one in outlines if one.layer.startswith(wall)]
     ends = np.array([[one.places[0], one.places[-1]] for one in pieces])

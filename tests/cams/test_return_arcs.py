@@ -10,6 +10,7 @@ import pytest
 
 import centrode as ct
 from cam_shapes import EPS, exchanged, paper_path
+from centrode.cams.profiles import cam_body
 from centrode.cams.return_arc import (
     ArcBounds,
     ClosedPath,
@@ -220,14 +221,14 @@ def test_derivatives_are_those_of_the_radius() -> None:
 def test_a_whole_turn_has_to_close() -> None:
     turn = '[range]\nto = "180 deg"\nfrom = "-180 deg"\n'
     text = 'kind = "cam"\n[start]\nradius = "50 mm"\n[roller]\nradius = "10 mm"\n' + turn + "[curvature]\n"
-    circle = ct.cam_body(ct.parse_cam(text + 'law = "constant"\nk0 = "0.018 1/mm"\n'))
+    circle = cam_body(ct.parse_cam(text + 'law = "constant"\nk0 = "0.018 1/mm"\n'))
     assert circle.closed.whole and not circle.kinks and not circle.undercuts
     with pytest.raises(InputError, match="does not close: after a turn the radius is off by"):
-        ct.cam_body(ct.parse_cam(text + 'law = "exponential"\nk0 = "0.02 1/mm"\nk1 = 0.01\n'))
+        cam_body(ct.parse_cam(text + 'law = "exponential"\nk0 = "0.02 1/mm"\nk1 = 0.01\n'))
 
 
 def test_an_outward_corner_is_undercut_where_the_profiles_cross() -> None:
-    body = ct.cam_body(exchanged(more='[return]\nkind = "mirrored"\n'))
+    body = cam_body(exchanged(more='[return]\nkind = "mirrored"\n'))
     assert len(body.undercuts) == 4
     for one in body.undercuts:
         off = body.profile(np.array([one.start, one.stop]))
@@ -245,7 +246,7 @@ def test_an_outward_corner_is_undercut_where_the_profiles_cross() -> None:
 
 def test_without_return_or_mover_the_profile_stays_open() -> None:
     cam = exchanged(('[mover]\nlegs = 4\npost = "120 mm"\n', ""))
-    body = ct.cam_body(cam)
+    body = cam_body(cam)
     assert not body.closed.whole and body.closed.joints == ()
     assert np.isnan(body.closed.radius(np.array([2.0]))).all()
     assert float(ct.cam_profile(cam)["carrier_angle"][-1]) == pytest.approx(math.pi / 2)

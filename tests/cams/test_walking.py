@@ -14,6 +14,7 @@ import centrode as ct
 from cam_shapes import EPS, exchanged, paper_path, three_point_curvature
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.path_series import expanded_path
+from centrode.cams.profiles import cam_body
 from centrode.cams.return_arc import working_arc
 from centrode.cams.roller_path import SymmetricPath
 from centrode.cams.walking_wheel import Shoe, WheelMover, profile_by_parts, rolling, shoe
@@ -181,7 +182,7 @@ def test_poses_go_on_from_leg_to_leg(four: WheelMover) -> None:
 
 def test_rollers_stay_on_the_cam(four: WheelMover) -> None:
     phi = np.linspace(0.0, math.tau, 4001)
-    profile = ct.cam_body(exchanged()).profile(phi).place
+    profile = cam_body(exchanged()).profile(phi).place
     for turned in (0.0, 0.4, 1.0, 2.5):
         pose = four.pose(turned)
         places = pose.of_cam(profile)

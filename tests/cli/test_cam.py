@@ -13,6 +13,8 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.model.examples import example_text
+from centrode.model.schema import cam_schema, mechanism_schema
 
 Centrode = Callable[..., Any]
 PICTURES = sorted(
@@ -208,14 +210,14 @@ def test_cams_and_linkages_are_not_mixed_up(centrode: Centrode, folder: Path) ->
 
 
 def test_the_schema_of_cams(centrode: Centrode, folder: Path) -> None:
-    assert json.loads(centrode("schema", "--cam").out) == ct.cam_schema()
-    assert json.loads(centrode("schema").out) == ct.mechanism_schema()
+    assert json.loads(centrode("schema", "--cam").out) == cam_schema()
+    assert json.loads(centrode("schema").out) == mechanism_schema()
 
 
 def test_cams_are_listed_and_printed(centrode: Centrode, folder: Path) -> None:
     listed = centrode("examples")
     assert "cam-from-curvature" in listed.out
     assert "centrode cam NAME" in listed.out
-    assert centrode("examples", "cam-from-curvature").out == ct.example_text("cam-from-curvature")
+    assert centrode("examples", "cam-from-curvature").out == example_text("cam-from-curvature")
     assert centrode("examples", "cam-from-curvature", "--out", "mine.toml").code == 0
     assert centrode("cam", "mine.toml", "--samples", "3").code == 0

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
+from centrode.model.schema import mechanism_schema
 
 Centrode = Callable[..., Any]
 
@@ -85,7 +86,7 @@ def test_an_unknown_example(centrode: Centrode) -> None:
 def test_the_schema_is_json(centrode: Centrode) -> None:
     done = centrode("schema")
     assert done.code == 0
-    assert json.loads(done.out) == ct.mechanism_schema()
+    assert json.loads(done.out) == mechanism_schema()
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.analysis.graphic.checks import graphic_check
 
 Centrode = Callable[..., Any]
 
@@ -36,7 +37,7 @@ def test_the_worked_check(centrode: Centrode, folder: Path) -> None:
     names = sorted(file.name for file in (folder / "d").iterdir())
     pages = ("acceleration", "mechanism", "velocity")
     assert names == sorted(["check.csv", *(f"{page}.{kind}" for page in pages for kind in ("png", "svg"))])
-    check = ct.graphic_check(ct.example("slider-between-cranks"), math.pi / 2, math.radians(1))
+    check = graphic_check(ct.example("slider-between-cranks"), math.pi / 2, math.radians(1))
     for written, row in zip(rows(folder / "d" / "check.csv"), check.rows, strict=True):
         assert (written["quantity"], written["name"], written["unit"]) == (row.quantity, row.name, row.unit)
         assert float(written["drawing"]) == row.graphic

@@ -15,6 +15,9 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.dynamics.steady_motion.machine import machine_results
+from centrode.model.examples import example_text
+from centrode.topics.presentation import sheet_of
 from machines import ENGINE
 
 Centrode = Callable[..., Any]
@@ -66,7 +69,7 @@ def test_files_of_others_in_the_folder_are_not_counted(centrode: Centrode, compr
 
 def test_a_spherical_machine(centrode: Centrode, folder: Path) -> None:
     machine = "\n[machine]\nmean_speed = 2.94\nfluctuation = 0.05\n"
-    (folder / "s.toml").write_text(ct.example_text("spherical-crank-rocker-rigid") + machine)
+    (folder / "s.toml").write_text(example_text("spherical-crank-rocker-rigid") + machine)
     said = centrode("flywheel", "s.toml").rows
     assert said["work of the loads"].startswith("-11.7352 J a cycle")
     done = centrode("flywheel", "spherical-four-bar")
@@ -104,7 +107,7 @@ def test_files_of_a_flywheel(centrode: Centrode, compressor: Path) -> None:
     assert found.rim is not None
     assert summary["flywheel_rim_outer"] == {"value": found.rim.outer, "unit": "m"}
     assert {
-        name: one.as_dict() for name, one in ct.sheet_of(ct.machine_results(mechanism)).scalars.items()
+        name: one.as_dict() for name, one in sheet_of(machine_results(mechanism)).scalars.items()
     } == summary
 
 
@@ -138,7 +141,7 @@ def test_a_run_without_a_fluctuation(centrode: Centrode, compressor: Path) -> No
     assert done.rows["inertia present"] == "30 kg m²"
     assert "inertia needed" not in done.rows
     mechanism = ct.read_mechanism("compressor.toml")
-    drawn = ct.figures(ct.machine_results(mechanism, 5))
+    drawn = ct.figures(machine_results(mechanism, 5))
     assert sorted(drawn) == [name for name in FIGURES if name != "wittenbauer"]
     summary = json.loads((compressor / "r" / "summary.json").read_text())
     assert 0.03 < summary["machine_obtained"]["value"] < 0.04

@@ -13,6 +13,8 @@ import pytest
 import centrode as ct
 from centrode.cli import main as command_line
 from centrode.cli import output
+from centrode.model.examples import example_text
+from centrode.model.examples.catalogue import load
 
 Centrode = Callable[..., Any]
 
@@ -56,7 +58,7 @@ WRITE_NO_FILE = {"check"}
 
 def described(command: str) -> str:
     """The description that a command is tried on."""
-    return ct.example_text(EXAMPLES.get(command, "six-bar-press"))
+    return example_text(EXAMPLES.get(command, "six-bar-press"))
 
 
 def linked(here: Path, there: Path) -> None:
@@ -167,7 +169,7 @@ VARIANTS = "variant,links.OA.length\n1,0.5\n2,0.51\n"
 )
 def test_variants_over_their_topology(centrode: Centrode, folder: Path, name: str, jobs: str) -> None:
     (folder / "t.csv").write_text(VARIANTS)
-    text = ct.example_text("slider-between-cranks")
+    text = example_text("slider-between-cranks")
     (folder / name).parent.mkdir(parents=True)
     (folder / name).write_text(text, encoding="utf-8")
     done = centrode("variants", "t.csv", "--topology", name, "--out", ".", "--jobs", jobs)
@@ -195,7 +197,7 @@ reduce = "max"
 
 def test_a_sweep_over_its_study_and_its_mechanism(centrode: Centrode, folder: Path) -> None:
     (folder / "study.csv").write_text(STUDY)
-    (folder / "mine.toml").write_text(ct.example_text("crank-rocker"), encoding="utf-8")
+    (folder / "mine.toml").write_text(example_text("crank-rocker"), encoding="utf-8")
     kept(centrode, folder, STUDY, "sweep", "study.csv", "--out", "study.csv", "--force")
     (folder / "r.csv").symlink_to("mine.toml")
     kept(centrode, folder, STUDY, "sweep", "study.csv", "--out", "r.csv", "--force")
@@ -207,7 +209,7 @@ def test_a_sweep_into_a_store_with_its_mechanism_in_it(centrode: Centrode, folde
     (folder / "r.zarr" / "angle.DB").mkdir(parents=True)
     (folder / "r.zarr" / "progress").mkdir()
     (folder / "r.zarr" / "progress" / "lock").touch()
-    text = ct.example_text("crank-rocker")
+    text = example_text("crank-rocker")
     (folder / "r.zarr" / "angle.DB" / "mine.toml").write_text(text, encoding="utf-8")
     (folder / "study.toml").write_text(STUDY.replace("mine.toml", "r.zarr/angle.DB/mine.toml"))
     kept(centrode, folder, text, "sweep", "study.toml", "--out", "r.zarr")
@@ -256,7 +258,7 @@ def test_a_command_made_elsewhere_is_guarded_too(
     """The rule is that of what reads and what writes, not of the commands."""
 
     def work() -> None:
-        ct.load("summary.json")
+        load("summary.json")
         with output.output_folder(Path()) as draft:
             (draft / "summary.json").write_text("new")
 

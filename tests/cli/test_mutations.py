@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from centrode.cli.main import main
+from centrode.model.examples import example_text
 
 SECONDS = 60.0
 """A guard against hanging, of processor time: a triad over a hundred turns takes a fifth of it."""
@@ -104,7 +105,7 @@ def spoilt(draw: st.DrawFn, text: str) -> str:
 
 @st.composite
 def spoilt_examples(draw: st.DrawFn) -> str:
-    text = ct.example_text(draw(st.sampled_from(ct.example_names())))
+    text = example_text(draw(st.sampled_from(ct.example_names())))
     for _ in range(draw(st.integers(1, 3))):
         text = spoilt(draw, text)
     return text

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
+from centrode.model.examples import example_text
 
 Centrode = Callable[..., Any]
 
@@ -97,7 +98,7 @@ value = 3
 def test_where_there_are_no_forces(
     centrode: Centrode, folder: Path, name: str, link: str, at: str, told: str
 ) -> None:
-    text = ct.example_text(name) + LOADED.format(link=link)
+    text = example_text(name) + LOADED.format(link=link)
     (folder / "loaded.toml").write_text(text, encoding="utf-8")
     done = centrode("polygons", "loaded.toml", "--at", at)
     assert done.code == 3, done
@@ -106,7 +107,7 @@ def test_where_there_are_no_forces(
 
 
 def test_constraints_that_repeat_each_other_are_named(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("three-crank-parallelogram") + LOADED.format(link="FE")
+    text = example_text("three-crank-parallelogram") + LOADED.format(link="FE")
     (folder / "loaded.toml").write_text(text, encoding="utf-8")
     done = centrode("polygons", "loaded.toml", "--at", "1 rad")
     assert done.code == 2, done

@@ -15,6 +15,8 @@ import xarray as xr
 
 import centrode as ct
 from centrode.dynamics.bearings.joint_table import JointKind, tabled_joints
+from centrode.dynamics.bearings.results import reaction_results
+from centrode.model.examples import example_text
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.sheet import Table
 from centrode.topics.presentation import sheet_of
@@ -57,7 +59,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 def extremes_of(mechanism: ct.Mechanism, samples: int) -> dict[str, list[str]]:
     """The printed table of extremes: name -> unit, least, at, greatest, at."""
-    table = sheet_of(ct.reaction_results(mechanism, samples, complete=False)).printed[1]
+    table = sheet_of(reaction_results(mechanism, samples, complete=False)).printed[1]
     assert isinstance(table, Table)
     spelling = PlainSpelling(mechanism.display)
     cells = [[spelling.text(text) for text in column.values] for column in table.columns]
@@ -146,7 +148,7 @@ def test_instants(centrode: Centrode, folder: Path) -> None:
 
 
 def test_a_dead_point_is_told_in_words(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("parallelogram") + '\n[[loads]]\nkind = "force"\npoint = "B"\nvector = [1, 2]\n'
+    text = example_text("parallelogram") + '\n[[loads]]\nkind = "force"\npoint = "B"\nvector = [1, 2]\n'
     (folder / "p.toml").write_text(text)
     done = centrode("reactions", "p.toml", "--at", "0 deg")
     assert (done.code, done.err) == (0, "")
@@ -162,7 +164,7 @@ def test_a_dead_point_is_told_in_words(centrode: Centrode, folder: Path) -> None
 
 @pytest.mark.drawn
 def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("rolling-wheel-rod") + '\n[[loads]]\nkind = "torque"\nlink = "wheel"\nvalue = 3\n'
+    text = example_text("rolling-wheel-rod") + '\n[[loads]]\nkind = "torque"\nlink = "wheel"\nvalue = 3\n'
     (folder / "w.toml").write_text(text)
     done = centrode("reactions", "w.toml", "--samples", 5, "--out", "result")
     assert done.code == 0, done
@@ -183,7 +185,7 @@ def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> No
 
 def test_what_is_rounding_is_shown_as_zero(centrode: Centrode, folder: Path) -> None:
     """A torque between a rocker and the frame, and the drive's moment: nothing is left for the frame as a whole."""
-    text = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "torque"\nlink = "DB"\nvalue = 3\n'
+    text = example_text("crank-rocker") + '\n[[loads]]\nkind = "torque"\nlink = "DB"\nvalue = 3\n'
     (folder / "w.toml").write_text(text)
     mechanism = ct.read_mechanism(folder / "w.toml")
     found = ct.reactions(mechanism, samples=361)
@@ -206,7 +208,7 @@ def test_of_values_alike_the_first_is_named() -> None:
 
 def test_extremes_of_a_drive_by_a_law_are_told_by_their_time(centrode: Centrode, folder: Path) -> None:
     """A drive that turns back passes its values more than once; --at takes a time too."""
-    text = ct.example_text("in-line-four-bar").replace('speed = "500 rpm"', 'law = "sin(2*t)"')
+    text = example_text("in-line-four-bar").replace('speed = "500 rpm"', 'law = "sin(2*t)"')
     (folder / "l.toml").write_text(text + "\n[study]\nto = 3\n")
     done = centrode("reactions", "l.toml", "--samples", 31)
     assert done.code == 0, done
@@ -229,7 +231,7 @@ def test_the_real_speed_of_a_machine(centrode: Centrode) -> None:
 
 
 def test_several_drives_have_a_row_each(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("two-link-arm").replace("[links.OA]", "[links.OA]\nmass = 2\nshape = 'rod'")
+    text = example_text("two-link-arm").replace("[links.OA]", "[links.OA]\nmass = 2\nshape = 'rod'")
     (folder / "arm.toml").write_text(text)
     done = centrode("reactions", "arm.toml", "--samples", 5)
     assert done.code == 0, done
@@ -298,7 +300,7 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
 
 
 def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Path) -> None:
-    example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
+    example = example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
     link = list(ct.example("crank-rocker").links)[-1]
     for keys, message in (
         ("coefficient = 0.1", "friction by a coefficient in a hinge needs the point"),
@@ -311,7 +313,7 @@ def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Pat
 
 
 def test_instants_beyond_a_lock_name_the_limits(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("slider-between-cranks-locked")
+    text = example_text("slider-between-cranks-locked")
     (folder / "m.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
     done = centrode("reactions", "m.toml", "--at", "1 rad", "--at", "150 deg")
     assert done.code == 3

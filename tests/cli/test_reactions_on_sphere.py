@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.model.examples import example_text
 
 Centrode = Callable[..., Any]
 
@@ -48,7 +49,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 
 def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("slider-between-cranks-locked")
+    text = example_text("slider-between-cranks-locked")
     (folder / "locked.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
     done = centrode("reactions", "locked.toml", "--out", "result", "--no-figures")
     assert done.code == 3

@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.model.examples import example_text
 
 Centrode = Callable[..., Any]
 
@@ -103,7 +104,7 @@ def test_the_mean_of_a_drive_that_turns_back_is_over_time(centrode: Centrode, fo
 
 
 def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("slider-between-cranks-locked")
+    text = example_text("slider-between-cranks-locked")
     (folder / "locked.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
     done = centrode("reduce", "locked.toml", "--out", "result", "--no-figures")
     assert done.code == 3
@@ -174,7 +175,7 @@ def test_the_sphere(centrode: Centrode, folder: Path) -> None:
 
 
 def test_a_tensor_of_no_body_ends_with_2(centrode: Centrode, folder: Path) -> None:
-    text = ct.example_text("spherical-crank-rocker-rigid").replace(
+    text = example_text("spherical-crank-rocker-rigid").replace(
         'shape = "arc"', "inertia = [1, 1, 3]\ncentre = 'C'"
     )
     (folder / "s.toml").write_text(text)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-import centrode as ct
+from centrode.model.examples import example_text
 
 Refused = Callable[..., str]
 
@@ -351,7 +351,7 @@ def test_wrong_ranges(refused: Refused, four_bar: str, arguments: list[str], mes
 
 
 def test_pivots_of_a_group_on_one_place(refused: Refused) -> None:
-    lift = ct.example_text("scissor-lift").replace('start = "600 mm"', "start = 0")
+    lift = example_text("scissor-lift").replace('start = "600 mm"', "start = 0")
     assert "\nstart = 0\n" in lift
     assert refused(lift) == in_file(
         "group OC-AB (point M): the initial position is undetermined there: two of its points coincide, or its"

@@ -18,6 +18,7 @@ import pytest
 from PIL import Image
 
 import centrode as ct
+from centrode.model.examples import example_text
 from centrode.quantities import display_unit
 from samples import examples_at_hand
 
@@ -131,7 +132,7 @@ def test_what_the_message_offers_is_reached(centrode: Centrode, folder: Path) ->
     )
     assert done.code == 0, done.err
     assert done.rows["samples"] == "101: ok 101"
-    text = ct.example_text("slider-between-cranks-locked")
+    text = example_text("slider-between-cranks-locked")
     assert "\n[study]\n" in text
     (folder / "m.toml").write_text(
         text.replace("[study]\n", '[study]\nrange = "reachable"\n'), encoding="utf-8"

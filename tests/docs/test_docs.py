@@ -11,6 +11,10 @@ import pytest
 
 import centrode as ct
 from centrode.cli.main import build_app
+from centrode.dynamics import motion_results
+from centrode.model.schema import cam_schema, mechanism_schema
+from centrode.quantities import QUANTITIES
+from centrode.topics.presentation import sheet_of
 from centrode.topics.registry import TOPICS
 
 ROOT = Path(__file__).parents[2]
@@ -91,13 +95,13 @@ def test_public_names_are_told(name: str) -> None:
     assert re.search(rf"\bct\.{name}\b", EVERYTHING)
 
 
-@pytest.mark.parametrize(("part", "key"), keys(ct.mechanism_schema()))
+@pytest.mark.parametrize(("part", "key"), keys(mechanism_schema()))
 def test_keys_are_told(part: str, key: str) -> None:
     page = BLOCK.sub("", DESCRIPTION)
     assert re.search(rf"`(?:\[*(?:\w+\.)?)?{key}(?:\.\w+)?\]*`", page), f"{key} of {part or 'the file'}"
 
 
-@pytest.mark.parametrize("name", sorted(ct.QUANTITIES))
+@pytest.mark.parametrize("name", sorted(QUANTITIES))
 def test_variables_are_told(name: str) -> None:
     assert f"`{name}`" in RESULTS
 
@@ -111,8 +115,8 @@ def test_statuses_are_told(status: ct.Status) -> None:
 @pytest.mark.parametrize("name", ["slider-between-cranks-locked", "wiper", "parallelogram"])
 def test_scalars_are_told(name: str) -> None:
     page = RESULTS
-    study = ct.study(ct.example(name), samples=2)
-    assert [scalar for scalar in ct.sheet_of(study).scalars if f"`{scalar}`" not in page] == []
+    study = motion_results.study(ct.example(name), samples=2)
+    assert [scalar for scalar in sheet_of(study).scalars if f"`{scalar}`" not in page] == []
 
 
 @pytest.mark.parametrize("name", ct.example_names("cam"))
@@ -132,7 +136,7 @@ def test_scalars_of_cams_are_told(name: str) -> None:
     assert [one for one in scalars if not one.startswith("chosen.") and f"`{one}`" not in EVERYTHING] == []
 
 
-CAM_KEYS = [(part, key) for part, key in keys(ct.cam_schema()) if part != "Display"]
+CAM_KEYS = [(part, key) for part, key in keys(cam_schema()) if part != "Display"]
 
 
 @pytest.mark.parametrize(("part", "key"), CAM_KEYS)

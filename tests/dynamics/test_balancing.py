@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import centrode as ct
 from balanced import four_bar, rest_of
 from centrode.kinematics.preparation import ready
+from centrode.model.examples import example_text
 from mechanisms import EPS, rounding, solve_evenly
 from samples import few
 
@@ -162,7 +163,7 @@ def test_a_massless_mechanism_but_for_its_slider() -> None:
 
 def test_scotch_yokes_are_not_to_be_balanced() -> None:
     """Counterweights turn, a yoke moves to and fro: the crank balances at best half of it at every instant."""
-    text = ct.example_text("scotch-yoke")
+    text = example_text("scotch-yoke")
     yoke = ct.parse_mechanism(text)
     slid = next(guide.link for guide in yoke.guides if guide.link is not None)
     heavy = yoke.model_copy(
@@ -214,7 +215,7 @@ def test_wrong_mechanisms_are_refused() -> None:
         ct.balance(ct.example("crank-rocker"))
     with pytest.raises(ct.NotComputedYet, match="sphere"):
         ct.balance(ct.example("spherical-four-bar"))
-    text = ct.example_text("double-rocker").replace("length", 'mass = 1\nshape = "rod"\nlength')
+    text = example_text("double-rocker").replace("length", 'mass = 1\nshape = "rod"\nlength')
     with pytest.raises(ct.MotionError, match="does not turn fully"):
         ct.balance(ct.parse_mechanism(text))
     with pytest.raises(ct.InputError, match="one drive, the mechanism has 2"):

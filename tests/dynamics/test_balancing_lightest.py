@@ -9,6 +9,7 @@ import numpy as np
 
 import centrode as ct
 from balanced import four_bar, rest_of
+from centrode.dynamics.balancing.balance import Balance
 from centrode.dynamics.balancing.counterweights import Counterweight, with_counterweights
 from centrode.dynamics.masses import masses_of
 from mechanisms import EPS
@@ -92,7 +93,7 @@ def test_weights_trade_force_for_moment() -> None:
     both = ct.balance(mechanism, to="least", weights=(1, 1, 0))
     assert force.bound is not None and both.bound is None and both.proved
 
-    def sum_of(found: ct.Balance) -> float:
+    def sum_of(found: Balance) -> float:
         return sum(
             found.after.attrs[name] / found.before.attrs[name]
             for name in ("greatest_shaking_force", "greatest_shaking_moment")

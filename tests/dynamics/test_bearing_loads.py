@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.dynamics.bearings.extremes import BearingLoad, bearing_loads
 from centrode.dynamics.bearings.reaction_series import reaction_series
 from centrode.dynamics.bearings.results import with_bearings
+from centrode.dynamics.bearings.wear import bearings
+from centrode.dynamics.motion_results import study
 from centrode.render.spelling import PlainSpelling
 from centrode.topics.presentation import sheet_of
 from centrode.views.reactions import loads_table
@@ -29,7 +32,7 @@ def turning(gravity: float = 0.0, speed: float = 3.0) -> ct.Mechanism:
     )
 
 
-def found(loads: tuple[ct.BearingLoad, ...], key: str) -> ct.BearingLoad:
+def found(loads: tuple[BearingLoad, ...], key: str) -> BearingLoad:
     return next(one for one in loads if one.key == key)
 
 
@@ -37,7 +40,7 @@ def found(loads: tuple[ct.BearingLoad, ...], key: str) -> ct.BearingLoad:
 def test_extremes_lie_between_the_samples(name: str) -> None:
     """Above what twenty times as many samples see, by no more than a parabola over a step can be."""
     mechanism = ct.example(name)
-    loads = ct.bearing_loads(mechanism, ct.reactions(mechanism, 73))
+    loads = bearing_loads(mechanism, ct.reactions(mechanism, 73))
     dense = ct.reactions(mechanism, 72 * 20 + 1)
     sizes = {
         one.key: np.hypot(*one.values.T) if one.values.ndim == 2 else one.values
@@ -56,7 +59,7 @@ def test_extremes_lie_between_the_samples(name: str) -> None:
 
 def test_a_place_and_its_direction() -> None:
     engine = ct.example("single-cylinder-engine")
-    for one in ct.bearing_loads(engine, ct.reactions(engine, 73)):
+    for one in bearing_loads(engine, ct.reactions(engine, 73)):
         there = ct.reactions(engine, at=[one.at_greatest])
         values = {other.key: other.values[0] for other in reaction_series(engine, there)}
         # the same at another sample of another call: positions are rounded alike, forces by the condition number
@@ -75,7 +78,7 @@ def test_at_a_jump_the_greater_side_counts() -> None:
     """The load of the press begins at a dead point; a force right behind it is greater than at any sample."""
     press = ct.example("six-bar-press")
     samples = ct.reactions(press, 361)
-    one = found(ct.bearing_loads(press, samples), "joint_force_O/OA")
+    one = found(bearing_loads(press, samples), "joint_force_O/OA")
     jumps = ct.reduce(press, 3).jumps.to_numpy()
     step = math.tau / 360
     at = float(jumps[np.argmin(np.abs(np.remainder(jumps - one.at_greatest + math.pi, math.tau) - math.pi))])
@@ -92,12 +95,12 @@ def test_at_a_jump_the_greater_side_counts() -> None:
 
 def test_closed_forms_of_a_turning_mass() -> None:
     """5 kg at 0.5 m: 2.5 w^2 outwards, and with weight greatest at the bottom."""
-    still = found(ct.bearing_loads(turning(), ct.reactions(turning(), 37)), "joint_force_O/OA")
+    still = found(bearing_loads(turning(), ct.reactions(turning(), 37)), "joint_force_O/OA")
     force = 5 * 0.5 * 9.0
     for value in (still.greatest, still.least, still.mean, still.rms):
         assert abs(value - force) <= 100 * EPSILON * force
     heavy = turning(gravity=2.0)
-    one = found(ct.bearing_loads(heavy, ct.reactions(heavy, 38)), "joint_force_O/OA")
+    one = found(bearing_loads(heavy, ct.reactions(heavy, 38)), "joint_force_O/OA")
     step = math.tau / 37 * 1e-4
     # at angle p the pin pulls the link with F^2 = f^2 + w^2 + 2 f w cos(p + 90 deg) about the bottom
     weight = 10.0
@@ -127,9 +130,7 @@ def test_words_and_numbers() -> None:
     scalars = sheet_of(results).scalars
     assert scalars["greatest_joint_force_O/crank"].unit == "N"
     assert scalars["greatest_joint_force_O/crank_at"].unit == "rad"
-    assert (
-        sheet_of(ct.study(engine, 37)).scalars["mean_joint_force_B/rod"] == scalars["mean_joint_force_B/rod"]
-    )
+    assert sheet_of(study(engine, 37)).scalars["mean_joint_force_B/rod"] == scalars["mean_joint_force_B/rod"]
 
 
 def test_samples_that_are_not_reached_are_left_out() -> None:
@@ -138,12 +139,12 @@ def test_samples_that_are_not_reached_are_left_out() -> None:
     loaded = ct.Mechanism(**{**parts_of(locked), "loads": [load]})
     reactions = ct.reactions(loaded, 61)
     assert (reactions.status == ct.Status.OPEN).any()
-    loads = ct.bearing_loads(loaded, reactions)
+    loads = bearing_loads(loaded, reactions)
     assert all(math.isfinite(x) for one in loads for x in (one.greatest, one.least, one.mean, one.rms))
 
 
 def test_one_sample() -> None:
-    one = found(ct.bearing_loads(turning(), ct.reactions(turning(), at=[1.0])), "joint_force_O/OA")
+    one = found(bearing_loads(turning(), ct.reactions(turning(), at=[1.0])), "joint_force_O/OA")
     assert one.greatest == one.least == one.mean == one.rms
     assert one.at_greatest == 1.0
 
@@ -153,13 +154,13 @@ def test_with_friction_and_without() -> None:
     parts = parts_of(ct.example("single-cylinder-engine"))
     rubbing = {"kind": "friction", "guide": "B", "coefficient": 0.1}
     engine = ct.Mechanism(**{**parts, "loads": [rubbing]})
-    smooth = ct.bearing_loads(ct.Mechanism(**parts), ct.reactions(ct.Mechanism(**parts), 37))
-    without = ct.bearing_loads(engine, ct.reactions(engine, 37, friction=False))
+    smooth = bearing_loads(ct.Mechanism(**parts), ct.reactions(ct.Mechanism(**parts), 37))
+    without = bearing_loads(engine, ct.reactions(engine, 37, friction=False))
     assert [one.key for one in without] == [one.key for one in smooth]
     for one, other in zip(without, smooth, strict=True):
         assert abs(one.greatest - other.greatest) <= 1e4 * EPSILON * abs(other.greatest)
     reactions = ct.reactions(engine, 37)
-    rubbed = found(ct.bearing_loads(engine, reactions), "joint_force_B/rod")
+    rubbed = found(bearing_loads(engine, reactions), "joint_force_B/rod")
     there = ct.reactions(engine, at=[rubbed.at_greatest]).joint_force.sel(side="B/rod").to_numpy()[0]
     assert abs(math.hypot(*there) - rubbed.greatest) <= 1e-9 * rubbed.greatest
 
@@ -168,10 +169,10 @@ def test_on_the_sphere() -> None:
     """Magnitudes of vectors in space; they have no direction in a plane."""
     linkage = ct.example("spherical-crank-rocker-rigid")
     reactions = ct.reactions(linkage, 37)
-    one = found(ct.bearing_loads(linkage, reactions), "joint_force_A/AB")
+    one = found(bearing_loads(linkage, reactions), "joint_force_A/AB")
     dense = ct.reactions(linkage, 36 * 20 + 1).joint_force.sel(side="A/AB").to_numpy()
     size = np.sqrt((dense**2).sum(axis=-1))
     assert one.direction is None
     assert -1e-6 <= (one.greatest - size.max()) / np.abs(np.diff(size, 2)).max() <= 1.0
     with pytest.raises(ct.NotComputedYet, match="sphere"):
-        ct.bearings(linkage, reactions)
+        bearings(linkage, reactions)

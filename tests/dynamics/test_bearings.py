@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.dynamics.bearings.wear import bearings
 from mechanisms import parts_of
 
 EPSILON = 2.0**-52
@@ -27,7 +28,7 @@ def test_a_turning_mass() -> None:
     """Its shaft is loaded, and wears, always at the same place; the bush evenly all around."""
     crank = turning()
     reactions = ct.reactions(crank, 361)
-    data = ct.bearings(crank, reactions)
+    data = bearings(crank, reactions)
     assert data.bearing.to_numpy().tolist() == ["O: OA, frame"]
     bound = 1e3 * EPSILON * FORCE
     assert abs(data.load_on_journal[:, 0] - [-FORCE, 0]).max() <= bound
@@ -45,7 +46,7 @@ def test_a_turning_mass() -> None:
 @pytest.mark.parametrize(("sectors", "arc"), [(1, 1.0), (7, 0.01), (36, math.tau), (360, 2.0)])
 def test_shares_add_up(sectors: int, arc: float) -> None:
     press = ct.example("six-bar-press")
-    data = ct.bearings(press, ct.reactions(press, 73), sectors=sectors, arc=arc)
+    data = bearings(press, ct.reactions(press, 73), sectors=sectors, arc=arc)
     assert data.wear.shape == (6, 2, sectors)
     assert np.abs(data.wear.sum("sector") - 1).max() <= 100 * sectors * EPSILON
     assert (data.wear >= 0).all()
@@ -57,7 +58,7 @@ def test_axes_of_the_links() -> None:
     """The two loads are action and reaction, seen by each link."""
     press = ct.example("six-bar-press")
     reactions, motion = ct.reactions(press, 37), ct.motion(press, 37)
-    data = ct.bearings(press, reactions, motion)
+    data = bearings(press, reactions, motion)
     assert data.bearing_journal.to_numpy().tolist() == ["OA", "OA", "AB", "CD", "CD", "DH"]
     assert data.bearing_bush.to_numpy().tolist() == ["frame", "AB", "CD", "frame", "DH", "slider"]
     for k, bush in enumerate(data.bearing_bush.to_numpy()):
@@ -82,7 +83,7 @@ def test_wear_follows_finer_samples() -> None:
     """The path of a smooth load: the trapezoid rule is off by the step's square; a jump by the step."""
     engine = ct.example("single-cylinder-engine")
     coarse, middle, fine = (
-        ct.bearings(engine, ct.reactions(engine, 360 * k + 1)).load_path.to_numpy() for k in (1, 2, 4)
+        bearings(engine, ct.reactions(engine, 360 * k + 1)).load_path.to_numpy() for k in (1, 2, 4)
     )
     assert np.all(np.abs(fine - middle) <= 0.6 * np.abs(middle - coarse) + 1e-9 * fine)
 
@@ -92,7 +93,7 @@ def test_a_hinge_of_three_links_has_two_bearings() -> None:
     jansen = ct.example("jansen-leg")
     load = {"kind": "force", "point": "G", "vector": [0.0, 10.0]}
     loaded = ct.Mechanism(**{**parts_of(jansen), "loads": [load]})
-    data = ct.bearings(loaded, ct.reactions(loaded, 13))
+    data = bearings(loaded, ct.reactions(loaded, 13))
     points = data.bearing_point.to_numpy().tolist()
     for point in set(points):
         here = [k for k, name in enumerate(points) if name == point]
@@ -104,7 +105,7 @@ def test_what_is_not_determined_wears_nobody_knows_how() -> None:
     load = {"kind": "torque", "link": "wheel", "value": 3.0}
     loaded = ct.Mechanism(**{**parts_of(ct.example("rolling-wheel-rod")), "loads": [load]})
     reactions = ct.reactions(loaded, 9)
-    data = ct.bearings(loaded, reactions)
+    data = bearings(loaded, reactions)
     lost = np.isnan(data.bearing_load.to_numpy()).all(axis=(0, 2))
     assert np.array_equal(np.isnan(data.wear.to_numpy()).all(axis=(1, 2)) >= lost, np.ones(len(lost), bool))
 
@@ -121,11 +122,11 @@ def test_what_is_not_determined_wears_nobody_knows_how() -> None:
 def test_refused(options: dict[str, float], where: str) -> None:
     crank = turning()
     with pytest.raises(ct.InputError) as refused:
-        ct.bearings(crank, ct.reactions(crank, 5), **options)
+        bearings(crank, ct.reactions(crank, 5), **options)
     assert refused.value.where == where
 
 
 def test_a_motion_of_other_samples_is_refused() -> None:
     crank = turning()
     with pytest.raises(ct.InputError, match="other samples"):
-        ct.bearings(crank, ct.reactions(crank, 5), ct.motion(crank, 6))
+        bearings(crank, ct.reactions(crank, 5), ct.motion(crank, 6))

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.force_polygons import polygons
-from centrode.dynamics.force_polygons.polygons import PAPERS, ROOM, round_scale
+from centrode.dynamics.force_polygons.polygons import PAPERS, ROOM, ForcePolygons, round_scale
 from centrode.dynamics.force_polygons.steps import Step
 from centrode.render.terminal import plain_text
 from centrode.views.force_polygons import step_text
@@ -92,7 +92,7 @@ def test_the_inner_reaction_is_a_chord_of_the_polygon() -> None:
         assert found.reactions[chord.name] == chord.force
 
 
-def printed(found: ct.ForcePolygons, step: Step) -> str:
+def printed(found: ForcePolygons, step: Step) -> str:
     """A step as a terminal prints it."""
     return plain_text(step_text(step), found.mechanism.display)
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened
+from centrode.dynamics.force_polygons.polygons import ForcePolygons
 from centrode.dynamics.force_polygons.statics import FreeBodies
 from centrode.kinematics.preparation import ready
 from growing import KINDS, grown, mechanism_of
@@ -21,7 +22,7 @@ pytest.importorskip("centrode.dynamics.kinetostatics")
 OPERATIONS = 64
 
 
-def by_pins(found: ct.ForcePolygons) -> dict[str, complex]:
+def by_pins(found: ForcePolygons) -> dict[str, complex]:
     """Force of the pin on a body ("A/AB"), where the pin belongs to another and nothing else acts there on it.
 
     A guide's force and that of a wheel's contact act on the link here, on the pin in the list of constraints.
@@ -40,7 +41,7 @@ def by_pins(found: ct.ForcePolygons) -> dict[str, complex]:
     return forces
 
 
-def along_guides(found: ct.ForcePolygons) -> dict[str, tuple[complex, float]]:
+def along_guides(found: ForcePolygons) -> dict[str, tuple[complex, float]]:
     """Force and moment of each guide on what slides on it."""
     mechanism = found.mechanism
     bodies = FreeBodies.of(ready(mechanism).structure)
@@ -52,7 +53,7 @@ def along_guides(found: ct.ForcePolygons) -> dict[str, tuple[complex, float]]:
     return forces
 
 
-def conditioning(found: ct.ForcePolygons) -> float:
+def conditioning(found: ForcePolygons) -> float:
     """By how much the reactions answer to the outer forces: how many digits the least sine takes."""
     outer = sum(abs(one.force) for one in found.outer) + sum(abs(one.moment) for one in found.outer)
     return max(1.0, sum(map(abs, found.reactions.values())) / outer)

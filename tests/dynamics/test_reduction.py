@@ -15,6 +15,7 @@ from centrode.dynamics.masses import masses_of
 from centrode.dynamics.reduction import Reducer
 from centrode.kinematics.path import JETS
 from centrode.kinematics.preparation import ready
+from centrode.model.examples import example_text
 from centrode.numerics.jets import Jet
 from mechanisms import EPS, OPERATIONS, conditioning, on_branch, solve_evenly
 
@@ -89,7 +90,7 @@ def test_the_press_stops_where_crank_and_coupler_are_in_line() -> None:
 def test_a_load_on_both_sides_of_its_jump() -> None:
     """The force is not along its gate, so its moment jumps where B turns round in its height."""
     press = ct.parse_mechanism(
-        ct.example_text("six-bar-press")
+        example_text("six-bar-press")
         .replace("while_moving = [1, 0]", "while_moving = [0, 1]")
         .replace('point = "H"\nvector', 'point = "B"\nvector')
     )
@@ -190,7 +191,7 @@ def test_a_displacement_drive_gives_masses_and_forces() -> None:
 
 
 def test_what_is_not_reached_is_absent() -> None:
-    parts = ct.example_text("slider-between-cranks-locked").replace(
+    parts = example_text("slider-between-cranks-locked").replace(
         "[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"
     )
     data = ct.reduce(ct.parse_mechanism(parts))
@@ -205,7 +206,7 @@ def test_the_machine_gives_the_speed_and_the_drive_its_sense() -> None:
     data = ct.reduce(ct.example("six-bar-press"), samples=3)
     assert data.drive_rate.values.tolist() == [-65 * TURN / 60] * 3
     assert data.attrs["rate_from"] == "machine"
-    text = ct.example_text("six-bar-press")
+    text = example_text("six-bar-press")
     alone = ct.parse_mechanism(text[: text.index("[machine]")] + text[text.index("[study]") :])
     data = ct.reduce(alone, samples=3)
     assert data.drive_rate.values.tolist() == [-1.0] * 3
@@ -232,7 +233,7 @@ def test_samples_do_not_matter() -> None:
 
 def test_what_never_moves_never_turns_round() -> None:
     """H moves along its line only, and the slider does not turn: neither foretells a jump."""
-    text = ct.example_text("six-bar-press").replace("while_moving = [1, 0]", "while_moving = [0, 1]")
+    text = example_text("six-bar-press").replace("while_moving = [1, 0]", "while_moving = [0, 1]")
     load = '[[loads]]\nkind = "torque"\nlink = "slider"\nvalue = "-3*abs(v)"\n'
     still = ct.parse_mechanism(text.replace("[machine]", f"{load}[machine]"))
     assert Reducer.of(still).jumps(-TURN, TURN).size == 0

@@ -10,6 +10,7 @@ import pytest
 import centrode as ct
 from burdened import burdened, kinetic_energy, powers
 from centrode.kinematics.path import JETS
+from centrode.model.examples import example_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from mechanisms import EPS, parts_of
@@ -114,7 +115,7 @@ def rates_of(mechanism: ct.Mechanism, times: Any) -> Any:
 
 
 def test_the_drive_has_no_single_value() -> None:
-    parts = ct.example_text("two-link-arm") + '\n[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = "3*q"\n'
+    parts = example_text("two-link-arm") + '\n[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = "3*q"\n'
     with pytest.raises(ct.InputError, match="several drives"):
         ct.reduce(ct.parse_mechanism(parts))
 

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 import centrode as ct
 from burdened import burdened, velocity_of_centre
 from centrode.kinematics.preparation import ready
+from centrode.model.examples import example_text
 from growing import DYADS, grown
 from mechanisms import EPS, OPERATIONS, link, point, rounding, solve_evenly
 from samples import few
@@ -231,7 +232,7 @@ def test_cycles_of_several_turns_have_fractions_of_orders() -> None:
 
 
 def test_no_whole_turn_no_harmonics() -> None:
-    text = ct.example_text("double-rocker").replace("length", 'mass = 1\nshape = "rod"\nlength')
+    text = example_text("double-rocker").replace("length", 'mass = 1\nshape = "rod"\nlength')
     heavy = ct.parse_mechanism(text)
     found = ct.shaking(heavy, samples=5)
     assert "does not turn fully" in found.attrs["no_harmonics"]
@@ -257,7 +258,7 @@ def test_several_drives_are_shaken_too() -> None:
 
 
 def test_absence_stays_absence() -> None:
-    text = ct.example_text("slider-between-cranks-locked")
+    text = example_text("slider-between-cranks-locked")
     locked = ct.parse_mechanism(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
     found = ct.shaking(locked)
     assert np.array_equal(np.isnan(found.shaking_force_size), found.status.to_numpy() == ct.Status.OPEN)

@@ -13,6 +13,8 @@ import scipy.special
 import centrode as ct
 from burdened import burdened
 from centrode.dynamics.reduction import Reducer
+from centrode.dynamics.simulation.steady_state import steady_regime
+from centrode.model.simulation import Motor
 from growing import KINDS, mechanism_of
 from growing import grown as grown_parts
 from simulated import crank_rocker, pendulum, rotor, spherical
@@ -169,7 +171,7 @@ def test_the_steady_motion_by_the_energy_equation() -> None:
 def test_the_regime_of_the_run_up() -> None:
     """The regime found by the return map is the one that a long run-up comes to, and balances the source's works."""
     press = ct.example("six-bar-press-run-up")
-    regime = ct.steady_regime(press)
+    regime = steady_regime(press)
     assert press.simulation is not None
     # six periods after the multiplier 0.276 has worn off the start
     later = ct.simulate(press, press.simulation.model_copy(update={"duration": 25.0, "samples": 20001}))
@@ -289,21 +291,21 @@ def test_an_interruption_keeps_what_is_done() -> None:
 def test_motors() -> None:
     """Kloss: the breakdown moment at the breakdown slip, nothing at the synchronous speed; both through their gear."""
     speeds = {"0.8": 157.0 * 0.8 / 3, "1": 157.0 / 3}
-    kloss = ct.Motor(kind="asynchronous", idle_speed=157, breakdown_moment=40, breakdown_slip=0.2, ratio=3)
+    kloss = Motor(kind="asynchronous", idle_speed=157, breakdown_moment=40, breakdown_slip=0.2, ratio=3)
     moments = {}
     for name, speed in speeds.items():
         found = ct.simulate(rotor(), ct.Simulation(motor=kloss, speed=speed, duration=1e-3), at=[0.0])
         moments[name] = float(found.driving_moment[0])
     assert moments["0.8"] == pytest.approx(3 * 40, rel=1e-12)
     assert moments["1"] == pytest.approx(0.0, abs=1e-10)
-    line = ct.Motor(kind="linear", idle_speed=100, starting_moment=20, ratio=2)
+    line = Motor(kind="linear", idle_speed=100, starting_moment=20, ratio=2)
     found = ct.simulate(rotor(), ct.Simulation(motor=line, speed=10, duration=1e-3), at=[0.0])
     assert float(found.driving_moment[0]) == pytest.approx(2 * 20 * (1 - 20 / 100), rel=1e-12)
 
 
 def test_a_regime_that_any_speed_is() -> None:
     """Without loads and drive every speed comes back."""
-    regime = ct.steady_regime(rotor(), ct.Simulation(speed=5))
+    regime = steady_regime(rotor(), ct.Simulation(speed=5))
     assert regime.multiplier == 1.0
     assert regime.indifferent
     assert regime.fluctuation == pytest.approx(0.0, abs=1e-12)
@@ -313,7 +315,7 @@ def test_a_regime_that_any_speed_is() -> None:
 def test_a_pendulum_that_turns_over_has_no_regime_of_its_own(bottom: float) -> None:
     """It turns in 2 k K(k) / w at any speed; barely over the top (7.48713 rad/s) deviations grow by rounding alone."""
     length = 0.7
-    regime = ct.steady_regime(pendulum(), ct.Simulation(speed=math.sqrt(bottom**2 - 2 * 9.81 / length)))
+    regime = steady_regime(pendulum(), ct.Simulation(speed=math.sqrt(bottom**2 - 2 * 9.81 / length)))
     w = math.sqrt(9.81 / length)
     k = 2 * w / bottom
     assert regime.indifferent
@@ -324,8 +326,8 @@ def test_a_pendulum_that_turns_over_has_no_regime_of_its_own(bottom: float) -> N
 def test_a_moment_that_balances_the_loads_at_any_speed() -> None:
     """Not conservative, and yet any speed comes back: 3 N m against a load of 3 N m."""
     load = '[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = -3\n'
-    assert ct.steady_regime(rotor(load), ct.Simulation(driving="3", speed=5)).indifferent
-    assert not ct.steady_regime(ct.example("six-bar-press-run-up")).indifferent
+    assert steady_regime(rotor(load), ct.Simulation(driving="3", speed=5)).indifferent
+    assert not steady_regime(ct.example("six-bar-press-run-up")).indifferent
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
+from centrode.dynamics.simulation.steady_state import steady_regime
 from mechanisms import parts_of
 from redriven import redriven
 
@@ -157,4 +158,4 @@ def test_smooth_ones_run_on() -> None:
 
 def test_no_steady_regime_across_change_points() -> None:
     with pytest.raises(ct.MotionError, match="turns all the way round"):
-        ct.steady_regime(parallelogram(), ct.Simulation(driving="1 - v", speed=1))
+        steady_regime(parallelogram(), ct.Simulation(driving="1 - v", speed=1))

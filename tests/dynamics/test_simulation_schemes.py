@@ -11,6 +11,7 @@ import pytest
 import centrode as ct
 from centrode.dynamics.simulation.integrator import compile_scan
 from centrode.dynamics.simulation.simulate import setting_of
+from centrode.dynamics.simulation.steady_state import steady_regime
 from centrode.numerics.machine_code import PRESENT
 from simulated import PENDULUM, crank_rocker, pendulum, rotor, sledge, spherical
 
@@ -238,7 +239,7 @@ def test_instants_that_are_refused(at: Any) -> None:
 )
 def test_regimes_that_are_not_there(mechanism: ct.Mechanism, given: ct.Simulation, message: str) -> None:
     with pytest.raises(ct.CentrodeError, match=message):
-        ct.steady_regime(mechanism, given)
+        steady_regime(mechanism, given)
 
 
 def test_settings_are_written_back() -> None:

@@ -12,6 +12,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.reduction import Reducer
+from centrode.model.examples import example_text
 from mechanisms import EPS
 from spherical_bodies import Cloud, dot, place, rotation
 
@@ -188,7 +189,7 @@ def test_hookes_joint(bend: float) -> None:
 
 def test_steady_motion_of_a_spherical_machine() -> None:
     """J eps + J' w^2/2 is the moment of drive and loads at the real speed, friction included; a turn takes its work."""
-    text = ct.example_text("spherical-crank-rocker-rigid")
+    text = example_text("spherical-crank-rocker-rigid")
     machine = ct.parse_mechanism(text + "\n[machine]\nmean_speed = 2.94\nfluctuation = 0.1\n")
     steady = ct.steady_motion(machine, samples=37)
     q, speed = steady.drive_value.isel(drive=0).to_numpy(), steady.drive_speed.to_numpy()

@@ -13,6 +13,8 @@ import centrode as ct
 from centrode.equations.derivation import Equations
 from centrode.equations.instants import instant_of, rates_compared
 from centrode.errors import Status
+from centrode.model.examples import example_text
+from centrode.model.examples.catalogue import load
 from samples import examples_at_hand
 
 EPS = float(np.finfo(float).eps)
@@ -22,7 +24,7 @@ def planar() -> list[str]:
     """Names of the planar mechanisms with unknowns."""
     found = []
     for name in examples_at_hand(ct.example_names()):
-        described = ct.load(name) if "kind" not in ct.example_text(name) else None
+        described = load(name) if "kind" not in example_text(name) else None
         if isinstance(described, ct.Mechanism) and described.space == "plane":
             found.append(name)
     return found

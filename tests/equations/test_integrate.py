@@ -16,6 +16,7 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.equations.integration import NUDGE, STRIDE, Scaled, adaptive_steps, cauchy_form
 from centrode.kinematics.preparation import ready
+from centrode.render.netcdf import write_dataset
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, four_bar
 from samples import few
@@ -286,7 +287,7 @@ def test_words_and_units() -> None:
 
 def test_it_is_kept_as_netcdf(tmp_path: Path) -> None:
     data = ct.integrate(ct.example("slider-between-cranks-locked"), steps=30)
-    ct.write_motion_netcdf(data, tmp_path / "i.nc")
+    write_dataset(data, tmp_path / "i.nc")
     with xr.open_dataset(tmp_path / "i.nc", engine="scipy") as read:
         assert np.array_equal(read["angle"], data["angle"], equal_nan=True)
         assert read.attrs["stop_time"] == data.attrs["stop_time"]

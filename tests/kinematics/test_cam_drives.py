@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.cams.followers.motion import follower_motion
+from centrode.model.examples import example_text
 from centrode.present.cams.driving_cam_drawing import driving_cams
 
 EPS = np.finfo(float).eps
@@ -111,7 +113,7 @@ def test_the_drive_follows_the_lift(read):
     time, speed = motion["time"].to_numpy(), 4 * math.pi
     # A turn of the cam is what is asked for if nothing is said.
     assert abs(time[-1] - time[0] - 0.5) <= 4 * EPS
-    lift = ct.follower_motion(mechanism.drives[0].cam).lift(math.radians(20) + speed * time, 2)
+    lift = follower_motion(mechanism.drives[0].cam).lift(math.radians(20) + speed * time, 2)
     place = motion["position"].sel(point="A", axis="y").to_numpy()
     assert np.abs(place - 0.003 - lift[0]).max() <= 16 * EPS * 0.07
     for order, name in ((1, "velocity"), (2, "acceleration")):
@@ -138,7 +140,7 @@ def test_lowering_turns_the_lift_round(read):
     up, down = read(ROCKER, SWING), read(ROCKER.replace("[assembly]", "lowers = true\n[assembly]"), SWING)
     for mechanism, sign in ((up, 1.0), (down, -1.0)):
         motion = ct.motion(mechanism, 37)
-        lift = ct.follower_motion(mechanism.drives[0].cam).lift(4 * math.pi * motion["time"].to_numpy())[0]
+        lift = follower_motion(mechanism.drives[0].cam).lift(4 * math.pi * motion["time"].to_numpy())[0]
         angle = motion["angle"].sel(link="lever").to_numpy()
         assert np.abs(angle - math.radians(15) - sign * lift).max() <= 8 * EPS
 
@@ -221,7 +223,7 @@ def test_wrong_drives_are_refused(read, linkage, cam, old, new, message):
 
 
 def test_no_cam_drives_on_the_sphere():
-    text = ct.example_text("spherical-four-bar")
+    text = example_text("spherical-four-bar")
     with pytest.raises(ct.InputError, match="plate cams are for the plane"):
         ct.parse_mechanism(_driven_by_cam(text))
 

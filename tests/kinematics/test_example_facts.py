@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.dynamics.motion_results import MotionResults
+from centrode.dynamics.motion_results import MotionResults, study
 from centrode.kinematics.preparation import ready
 from mechanisms import EPS, events, link, point, slide, statuses
 
@@ -28,7 +28,7 @@ INTERPOLATED = 1e-11
 
 @cache
 def studied(name: str) -> MotionResults:
-    return ct.study(ct.example(name))
+    return study(ct.example(name))
 
 
 def run(name: str) -> xr.Dataset:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.model.schema import mechanism_schema
 from mechanisms import EPS
 
 A, B, C, D = 1.0, 3.5, 3.0, 4.0
@@ -89,7 +90,7 @@ def test_the_word_is_read_and_written_back() -> None:
     text = ct.mechanism_text(mechanism)
     assert 'range = "reachable"' in text
     assert ct.parse_mechanism(text) == mechanism
-    assert ct.mechanism_schema()["$defs"]["Study"]["properties"]["range"]["enum"] == ["reachable"]
+    assert mechanism_schema()["$defs"]["Study"]["properties"]["range"]["enum"] == ["reachable"]
     own = rocker_driven(2.0).model_copy(update={"study": ct.Study(start=1.9, stop=2.0, samples=7)})
     other = own.with_range("reachable")
     assert (other.study.range, other.study.start, other.study.samples) == ("reachable", None, 7)

@@ -9,6 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode import render
+from centrode.topics.presentation import sheet_of
 
 EPS = 2.0**-52
 LOWER, UPPER, WIDTH = 1.0, 1.2, 2.0
@@ -37,7 +38,7 @@ def test_two_parallelograms_move_by_two_drives() -> None:
     checked = ct.check(double_parallelogram())
     assert checked.mobility == 2
     # Chebyshev counts the two cranks in the middle as constraints of their own: 2 less
-    rows = dict(render.fact_rows(ct.sheet_of(checked).facts, checked.mechanism.display))
+    rows = dict(render.fact_rows(sheet_of(checked).facts, checked.mechanism.display))
     assert rows["mobility"].endswith("= 0")
     assert rows["redundant constraints"] != "none"
 

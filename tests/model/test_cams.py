@@ -11,8 +11,11 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
+from centrode.model.cam import vary_cam
 from centrode.model.cam_files import cam_text, parse_cam, read_cam
-from centrode.model.schema import CAM_PROPERTIES
+from centrode.model.examples import example_text
+from centrode.model.examples.catalogue import load, load_cam
+from centrode.model.schema import CAM_PROPERTIES, cam_schema
 
 from .test_schema import fits
 
@@ -99,8 +102,8 @@ def test_written_and_read_again_it_is_the_same(text: str) -> None:
 def test_examples_are_cams_and_say_where_they_are_from(name: str) -> None:
     cam = ct.example(name)
     assert isinstance(cam, ct.Cam | ct.PlateCam)
-    assert ct.load_cam(name) == cam == parse_cam(cam_text(cam))
-    assert ct.example_text(name).startswith("# ")
+    assert load_cam(name) == cam == parse_cam(cam_text(cam))
+    assert example_text(name).startswith("# ")
 
 
 def test_laws_have_the_keys_they_need(tmp_path: Path) -> None:
@@ -117,13 +120,13 @@ def test_laws_have_the_keys_they_need(tmp_path: Path) -> None:
 
 def test_numbers_are_changed_by_their_path() -> None:
     cam = parse_cam(FULL)
-    other = ct.vary_cam(cam, {"curvature.k0": 11.0, "roller.radius": 0.009})
+    other = vary_cam(cam, {"curvature.k0": 11.0, "roller.radius": 0.009})
     assert (other.curvature.k0, cam.curvature.k0) == (11.0, 10.0)
     assert other.roller is not None and other.roller.radius == 0.009
     with pytest.raises(InputError, match="the cam has no"):
-        ct.vary_cam(cam, {"curve.k0": 1.0})
+        vary_cam(cam, {"curve.k0": 1.0})
     with pytest.raises(InputError, match="must be positive"):
-        ct.vary_cam(cam, {"curvature.k0": -1.0})
+        vary_cam(cam, {"curvature.k0": -1.0})
 
 
 WRONG = [
@@ -177,9 +180,9 @@ def test_what_is_wrong_is_told_with_its_place(old: str, new: str, said: str) -> 
 def test_the_schema_knows_the_keys_of_the_parts_and_accepts_what_is_read() -> None:
     for part, properties in CAM_PROPERTIES.items():
         assert list(properties) == list(part.keys()), part
-    schema = ct.cam_schema()
+    schema = cam_schema()
     assert json.loads(json.dumps(schema)) == schema
-    texts = [FULL, LEAST, *(ct.example_text(name) for name in ct.example_names("cam"))]
+    texts = [FULL, LEAST, *(example_text(name) for name in ct.example_names("cam"))]
     for text in texts:
         assert fits(tomllib.loads(text), schema, schema)
     for old, new in (
@@ -207,13 +210,13 @@ def test_symmetric_paths_start_level() -> None:
 
 def test_every_door_says_which_one_is_right(tmp_path: Path) -> None:
     (tmp_path / "cam.toml").write_text(LEAST)
-    for reading in (lambda: ct.load("cam-from-curvature"), lambda: ct.read_mechanism(tmp_path / "cam.toml")):
+    for reading in (lambda: load("cam-from-curvature"), lambda: ct.read_mechanism(tmp_path / "cam.toml")):
         with pytest.raises(InputError, match=r"this describes a cam, not a linkage.*centrode cam.*read_cam"):
             reading()
-    for reading in (lambda: ct.load_cam("crank-rocker"), lambda: parse_cam(ct.example_text("crank-rocker"))):
+    for reading in (lambda: load_cam("crank-rocker"), lambda: parse_cam(example_text("crank-rocker"))):
         with pytest.raises(InputError, match="this describes a linkage, not a cam"):
             reading()
     with pytest.raises(InputError, match='did you mean "cam-from-curvature"'):
-        ct.load_cam("cam-from-curvatur")
+        load_cam("cam-from-curvatur")
     with pytest.raises(InputError, match="no built-in mechanisms of kind"):
         ct.example_names("gear")

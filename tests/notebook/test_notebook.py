@@ -14,6 +14,7 @@ from tools.notebook import CELLS, TARGET, executed
 
 import centrode as ct
 from centrode import notebook, render
+from centrode.topics.presentation import sheet_of
 from centrode.topics.registry import TOPICS
 
 HOSTILE = '<script>alert("x")</script>'
@@ -57,7 +58,7 @@ def test_hostile_text_is_shown_as_text() -> None:
 def test_a_structure_is_a_table() -> None:
     checked = ct.check(ct.example("slider-between-cranks"))
     rows = [[cell.text or "" for cell in row] for row in page(notebook.result_html(checked)).iter("tr")]
-    facts = render.fact_rows(ct.sheet_of(checked).facts, checked.mechanism.display)
+    facts = render.fact_rows(sheet_of(checked).facts, checked.mechanism.display)
     assert rows == [list(row) for row in facts]
 
 

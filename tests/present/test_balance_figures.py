@@ -9,14 +9,16 @@ import pytest
 from matplotlib.patches import Circle
 
 import centrode as ct
+from centrode.dynamics.balancing.balance import Balance
+from centrode.present.style import darkened
 
 
 @pytest.fixture(scope="module")
-def balance() -> ct.Balance:
+def balance() -> Balance:
     return ct.balance(ct.example("single-cylinder-engine"), to="least", thickness="20 mm")
 
 
-def test_what_is_drawn(balance: ct.Balance) -> None:
+def test_what_is_drawn(balance: Balance) -> None:
     figures = ct.figures(balance)
     assert list(figures) == ["shaking-hodograph", "shaking-cycle", "shaking-harmonics", "counterweights"]
     curves = {line.get_label(): line for line in figures["shaking-hodograph"].axes[0].lines}
@@ -39,16 +41,16 @@ def test_what_is_drawn(balance: ct.Balance) -> None:
     assert np.hypot(*disc.center) == pytest.approx(1000 * one.radius, rel=1e-12)
 
 
-def test_a_balanced_mechanism_and_dark_ground(balance: ct.Balance) -> None:
+def test_a_balanced_mechanism_and_dark_ground(balance: Balance) -> None:
     """Nothing to draw is no failure."""
     still = ct.balance(ct.balance(ct.example("in-line-four-bar")).balanced)
     assert still.counterweights == ()
     for found in (balance, still):
         for figure in ct.figures(found).values():
-            ct.darkened(figure).draw_without_rendering()
+            darkened(figure).draw_without_rendering()
 
 
-def test_fewer_orders_with_counterweights(balance: ct.Balance) -> None:
+def test_fewer_orders_with_counterweights(balance: Balance) -> None:
     """A cycle that counterweights shorten has fewer orders: fields without a number are empty."""
     fewer = replace(balance, after=balance.after.isel(order=slice(0, 5)))
     columns = {column.name: column.values for column in ct.tables(fewer)["harmonics"].columns}

@@ -10,6 +10,7 @@ from matplotlib.patches import FancyArrowPatch
 
 import centrode as ct
 from centrode import render
+from centrode.dynamics.bearings import wear
 from centrode.dynamics.bearings.results import with_bearings
 from centrode.sheets.plots import Plot
 from centrode.topics.presentation import sheet_of
@@ -32,7 +33,7 @@ def texts(figure: Figure, panel: int = 0) -> list[str]:
 def test_hodographs_of_the_press() -> None:
     press = ct.example("six-bar-press")
     reactions = ct.reactions(press, 361)
-    data = ct.bearings(press, reactions)
+    data = wear.bearings(press, reactions)
     figures = figures_of(press, reactions)
     assert list(figures) == NAMES
     for name, variable in (

@@ -12,8 +12,10 @@ from matplotlib.patches import Circle
 
 import centrode as ct
 from cam_shapes import exchanged
+from centrode.cams.results import cam_profile_results, walking_wheel_results
 from centrode.cams.walking_wheel import WheelMover
 from centrode.present.cams.walking_wheel import draw_wheel
+from centrode.present.figure_files import save_figures
 
 
 @pytest.fixture(scope="module")
@@ -22,11 +24,11 @@ def wheel() -> WheelMover:
 
 
 def drawn(cam: ct.Cam, *, groove: bool = False) -> Figure:
-    return ct.figures(ct.cam_profile_results(cam, 5, groove=groove))["cam-body"]
+    return ct.figures(cam_profile_results(cam, 5, groove=groove))["cam-body"]
 
 
 def positions(turned: list[float]) -> Figure:
-    return ct.figures(ct.walking_wheel_results(exchanged(), 5, instants=turned))["walking-wheel"]
+    return ct.figures(walking_wheel_results(exchanged(), 5, instants=turned))["walking-wheel"]
 
 
 def entries(figure: Figure) -> list[str]:
@@ -88,6 +90,6 @@ def test_each_instant_has_its_panel(tmp_path: Path) -> None:
     assert shown[0].get_xlabel() == "x, mm"
     many = positions(np.linspace(0.0, math.tau, 30).tolist())
     assert len([axes for axes in many.axes if axes.get_visible()]) == 12
-    paths = ct.save_figures({"wheel": figure}, tmp_path)
-    again = ct.save_figures({"again": positions([-0.1, 0.0, 0.2, 0.3])}, tmp_path)
+    paths = save_figures({"wheel": figure}, tmp_path)
+    again = save_figures({"again": positions([-0.1, 0.0, 0.2, 0.3])}, tmp_path)
     assert [a.read_bytes() == b.read_bytes() for a, b in zip(paths, again, strict=True)] == [True, True]

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.cams.parameter_choice.search import CamChoice
+from centrode.cams.results import cam_contact_results
 from centrode.sheets.texts import Symbol
 from centrode.views.cam_choice import parameter_symbol, parameter_unit
 
@@ -18,11 +20,11 @@ def cam() -> ct.Cam:
 
 
 @pytest.fixture(scope="module")
-def found(cam: ct.Cam) -> ct.CamChoice:
+def found(cam: ct.Cam) -> CamChoice:
     return ct.choose_cam(cam, points=4)
 
 
-def test_the_front_and_its_parameters(found: ct.CamChoice) -> None:
+def test_the_front_and_its_parameters(found: CamChoice) -> None:
     figure = ct.figures(found)["cam-choice"]
     assert found.front is not None
     upper, *lower = figure.axes
@@ -43,7 +45,7 @@ def test_without_a_front_there_is_no_figure(cam: ct.Cam) -> None:
     assert ct.figures(ct.choose_cam(cam, front=False)) == {}
 
 
-def test_the_chosen_design_lies_on_the_front(found: ct.CamChoice) -> None:
+def test_the_chosen_design_lies_on_the_front(found: CamChoice) -> None:
     """Between its neighbours, below their chord: the front is convex here."""
     assert found.front is not None
     stress, size = found.front.values("stress"), found.front.values("size")
@@ -53,7 +55,7 @@ def test_the_chosen_design_lies_on_the_front(found: ct.CamChoice) -> None:
 
 def test_contact(cam: ct.Cam) -> None:
     data = ct.cam_contact(cam, 9)
-    figure = ct.figures(ct.cam_contact_results(cam, 9))["cam-contact"]
+    figure = ct.figures(cam_contact_results(cam, 9))["cam-contact"]
     upper, lower = figure.axes
     np.testing.assert_allclose(upper.get_lines()[0].get_ydata(), 1e-6 * data["contact_stress"], rtol=1e-15)
     np.testing.assert_allclose(lower.get_lines()[0].get_ydata(), 1e3 * data["contact_half_width"], rtol=1e-15)

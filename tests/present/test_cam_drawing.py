@@ -9,6 +9,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import centrode as ct
+from centrode.cams.cam import cam_routes, path_routes_results, roller_path_results
+from centrode.present.style import darkened
 
 EXAMPLE = ct.example("cam-from-curvature")
 
@@ -34,7 +36,7 @@ def cam(**changed: object) -> ct.Cam:
 
 def test_the_path_is_drawn_with_rays_and_normals() -> None:
     data = ct.cam(EXAMPLE, samples=91)
-    figure = ct.figures(ct.roller_path_results(EXAMPLE, 91))["cam-path"]
+    figure = ct.figures(roller_path_results(EXAMPLE, 91))["cam-path"]
     drawn = lines(figure)
     path = next(line for line in drawn if len(line) == 91)
     assert np.array_equal(path, data.roller_centre.to_numpy() * 1e3)
@@ -53,7 +55,7 @@ def test_the_path_is_drawn_with_rays_and_normals() -> None:
 def test_curves_are_those_of_the_dataset_and_the_stall_is_marked() -> None:
     long = cam(range={"to": math.pi})
     data = ct.cam(long, samples=61)
-    figure = ct.figures(ct.roller_path_results(long, 61))["cam-curves"]
+    figure = ct.figures(roller_path_results(long, 61))["cam-curves"]
     assert [axes.get_ylabel().partition(", ")[2] for axes in figure.axes] == ["mm", "deg", "1/mm"]
     curves = [line for line in lines(figure) if len(line) == 61]
     for curve, name, factor in zip(
@@ -70,8 +72,8 @@ def test_curves_are_those_of_the_dataset_and_the_stall_is_marked() -> None:
 
 
 def test_differences_are_drawn_with_the_circle_of_convergence() -> None:
-    data = ct.cam_routes(EXAMPLE, samples=91)
-    figure = ct.figures(ct.path_routes_results(EXAMPLE, 91))["cam-routes"]
+    data = cam_routes(EXAMPLE, samples=91)
+    figure = ct.figures(path_routes_results(EXAMPLE, 91))["cam-routes"]
     axes = figure.axes[0]
     assert axes.get_yscale() == "log"
     error = next(line for line in axes.get_lines() if line.get_color() == "#009E73")
@@ -79,14 +81,14 @@ def test_differences_are_drawn_with_the_circle_of_convergence() -> None:
     known = np.isfinite(drawn)
     assert drawn[known] == pytest.approx(np.abs(data.series_error.to_numpy())[known] * 1e3)
     assert "circle of convergence" in texts(figure)
-    short = ct.path_routes_results(cam(range={"to": 1.0}), 21)
+    short = path_routes_results(cam(range={"to": 1.0}), 21)
     assert "circle of convergence" not in texts(ct.figures(short)["cam-routes"])
 
 
 def test_symmetric_paths_and_dark_ground() -> None:
     both = cam(curvature={"law": "exponential", "k0": 10, "k1": 0.75, "symmetric": True})
-    figures = ct.figures(ct.roller_path_results(both, 121))
+    figures = ct.figures(roller_path_results(both, 121))
     assert list(figures) == ["cam-path", "cam-curves"]
     assert texts(figures["cam-path"])[0] == "−90°"
-    dark = ct.darkened(figures["cam-path"])
+    dark = darkened(figures["cam-path"])
     assert dark.get_facecolor()[:3] < (0.2, 0.2, 0.2)

@@ -9,6 +9,8 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
+from centrode.cams.followers.force_results import follower_force_results
+from centrode.model.examples.catalogue import load_cam
 from centrode.present.animations.animate import animate_follower
 from centrode.present.cams.driving_cam_drawing import draw_cams
 from centrode.present.linkage_scene import scene_of
@@ -22,8 +24,8 @@ def scene():
 
 
 def test_every_curve_of_the_forces_is_drawn():
-    cam = ct.load_cam("valve-cam")
-    results = ct.follower_force_results(cam, 73)
+    cam = load_cam("valve-cam")
+    results = follower_force_results(cam, 73)
     found, figure = results.dataset, ct.figures(results)["cam-forces"]
     curves = [axes.lines[0].get_ydata() for axes in figure.axes]
     names = ("follower_push", "contact_force", "cam_torque", "contact_stress")
@@ -31,8 +33,8 @@ def test_every_curve_of_the_forces_is_drawn():
     for name, curve in zip(names, curves, strict=True):
         factor = 1e-6 if name == "contact_stress" else 1.0
         assert np.array_equal(curve, factor * found[name].to_numpy())
-    swinging = ct.load_cam("indexing-cam")
-    figure = ct.figures(ct.follower_force_results(swinging, 13))["cam-forces"]
+    swinging = load_cam("indexing-cam")
+    figure = ct.figures(follower_force_results(swinging, 13))["cam-forces"]
     assert "Q" in figure.axes[0].get_ylabel()
 
 
@@ -107,7 +109,7 @@ def test_faces_and_edges_lie_on_the_cam(name):
 @pytest.mark.parametrize("name", ["valve-cam", "indexing-cam"])
 def test_a_turn_is_written_frame_by_frame(name, tmp_path):
     told = []
-    body = ct.follower_cam(ct.load_cam(name))
+    body = ct.follower_cam(load_cam(name))
     for number in range(2):
         animate_follower(
             body, tmp_path / f"{number}.gif", name, frames=4, said=lambda *done: told.append(done)

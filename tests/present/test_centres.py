@@ -14,32 +14,40 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
+from centrode.analysis.instant_centres.kennedy import Construction
+from centrode.analysis.instant_centres.results import (
+    CentreResults,
+    CentrodeResults,
+    centre_results,
+    centrode_results,
+)
+from centrode.model.examples import example_text
+from centrode.present.animations.animate import animate_centrodes
+from centrode.present.style import darkened
 from centrode.present.tags import Tag, write_tags
 from centrode.render.figures import figure_of
 from centrode.sheets.scenes import Scene
 from centrode.topics.presentation import sheet_of
 from samples import examples_at_hand
 
-PLANAR = [name for name in examples_at_hand(ct.example_names()) if "space" not in ct.example_text(name)]
+PLANAR = [name for name in examples_at_hand(ct.example_names()) if "space" not in example_text(name)]
 A5 = (8.27, 5.83)
 
 
-def position(
-    name: str, share: float = 0.4, pairs: Any = None
-) -> tuple[ct.CentreResults, ct.Construction, Figure]:
+def position(name: str, share: float = 0.4, pairs: Any = None) -> tuple[CentreResults, Construction, Figure]:
     """A mechanism at one of its regular samples, with its construction and the figure of it."""
     mechanism = ct.example(name)
     motion = ct.motion(mechanism, samples=13)
     regular = np.flatnonzero(motion["status"].to_numpy() == ct.Status.OK)
     sample = int(regular[int(share * regular.size)])
     instant = float(mechanism.motion_parameter.instants(motion)[sample])
-    results = ct.centre_results(mechanism, pairs=pairs, instants=[instant])
+    results = centre_results(mechanism, pairs=pairs, instants=[instant])
     (made,) = results.constructions
     assert made is not None
     return results, made, ct.figures(results)["centres"]
 
 
-def drawn_at(results: ct.CentrodeResults, sample: int) -> Figure:
+def drawn_at(results: CentrodeResults, sample: int) -> Figure:
     """The centrodes as they lie at a sample."""
     scene = sheet_of(results).pictures["centrodes"]
     assert isinstance(scene, Scene)
@@ -105,7 +113,7 @@ def test_a_crowd_of_names_finds_room() -> None:
 
 
 def test_centrodes_are_drawn_piece_by_piece() -> None:
-    results = ct.centrode_results(ct.example("crank-rocker"), 91, link="AB")
+    results = centrode_results(ct.example("crank-rocker"), 91, link="AB")
     found, figure = results.centrodes, drawn_at(results, 20)
     pieces = found["centrode_piece"].to_numpy()
     curves = [line for line in figure.axes[0].get_lines() if line.get_zorder() == 7.2]
@@ -120,7 +128,7 @@ def test_centrodes_are_drawn_piece_by_piece() -> None:
 
 def test_against_a_moving_link_both_move() -> None:
     mechanism = ct.example("antiparallelogram")
-    results = ct.centrode_results(mechanism, 31, 0.4, 2.8, link="DB", against="OA")
+    results = centrode_results(mechanism, 31, 0.4, 2.8, link="DB", against="OA")
     for sample in (3, 20):
         figure = drawn_at(results, sample)
         first, second = (
@@ -139,19 +147,19 @@ def test_the_animation_rolls(tmp_path: Path) -> None:
     found = ct.centrodes(motion, "AB")
     for dark in (False, True):
         path = tmp_path / f"{dark}.gif"
-        ct.animate_centrodes(mechanism, motion, found, path, dark)
+        animate_centrodes(mechanism, motion, found, path, dark)
         with Image.open(path) as picture:
             assert picture.format == "GIF"
             assert picture.n_frames == 12  # there and back over seven samples
             corner = picture.convert("RGB").getpixel((2, 2))
         assert (max(corner) < 64) == dark
     with pytest.raises(ct.InputError, match="there is no centrode in this range"):
-        ct.animate_centrodes(mechanism, motion, ct.centrodes(motion, "slider A"), tmp_path / "none.gif")
+        animate_centrodes(mechanism, motion, ct.centrodes(motion, "slider A"), tmp_path / "none.gif")
     assert not (tmp_path / "none.gif").exists()
 
 
 def test_the_curvature_figure_shows_its_curves() -> None:
-    results = ct.centrode_results(ct.example("crank-rocker"), 9, link="AB", instants=[2.5])
+    results = centrode_results(ct.example("crank-rocker"), 9, link="AB", instants=[2.5])
     bent, figure = results.curvature, ct.figures(results)["curvature"]
     assert bent is not None
     circle, cubic = (
@@ -177,7 +185,7 @@ def test_the_curvature_figure_shows_its_curves() -> None:
 
 def test_dark_pictures_are_light_on_dark() -> None:
     _results, _made, figure = position("slider-between-cranks")
-    figure = ct.darkened(figure)
+    figure = darkened(figure)
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     picture = np.asarray(canvas.buffer_rgba())[..., :3].astype(float).mean(axis=-1)

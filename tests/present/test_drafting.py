@@ -17,7 +17,9 @@ from matplotlib.textpath import text_to_path
 
 import centrode as ct
 from centrode.present.drafting.board import BoardWords, Cover, Drawing, Ring, Stroke, visible
-from centrode.present.drafting.svg import MARGIN
+from centrode.present.drafting.dxf import write_drawing_dxf
+from centrode.present.drafting.sheet import mechanism_drawing
+from centrode.present.drafting.svg import MARGIN, drawing_svg, write_drawing_svg
 from centrode.present.drawing import NAME_POINTS
 from centrode.present.linkage_scene import scene_of
 
@@ -29,7 +31,7 @@ RINGS = 1e-9
 def drawing_of(name: str, **how: object) -> tuple[ct.Mechanism, object, Drawing]:
     mechanism = ct.example(name)
     motion = ct.motion(mechanism)
-    return mechanism, motion, ct.mechanism_drawing(mechanism, motion, 0, **how)
+    return mechanism, motion, mechanism_drawing(mechanism, motion, 0, **how)
 
 
 EVERY_SIGN = (
@@ -44,12 +46,12 @@ def test_every_planar_mechanism_is_drawn_clean(name: str, tmp_path: Path) -> Non
     mechanism = ct.example(name)
     if mechanism.space == "sphere":
         with pytest.raises(ct.NotComputedYet):
-            ct.mechanism_drawing(mechanism, ct.motion(mechanism, 3))
+            mechanism_drawing(mechanism, ct.motion(mechanism, 3))
         return
     motion = ct.motion(mechanism, 13)
-    drawing = ct.mechanism_drawing(mechanism, motion, 0, mechanism.moving_points)
+    drawing = mechanism_drawing(mechanism, motion, 0, mechanism.moving_points)
     file = tmp_path / "a.dxf"
-    ct.write_drawing_dxf(drawing, file)
+    write_drawing_dxf(drawing, file)
     document = ezdxf.readfile(file)
     audit = document.audit()
     assert not audit.errors
@@ -57,13 +59,13 @@ def test_every_planar_mechanism_is_drawn_clean(name: str, tmp_path: Path) -> Non
     assert document.units == 4
     layers = {entity.dxf.layer for entity in document.modelspace()}
     assert {"frame", "links", "title"} <= layers
-    ET.fromstring(ct.drawing_svg(drawing))
+    ET.fromstring(drawing_svg(drawing))
 
 
 @pytest.mark.parametrize("name", ["six-bar-press", "andrews-squeezer", "jansen-leg"])
 def test_hinges_are_as_far_apart_as_the_links_are_long(name: str, tmp_path: Path) -> None:
     mechanism, _motion, drawing = drawing_of(name)
-    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    write_drawing_dxf(drawing, tmp_path / "a.dxf")
     circles = [
         np.array([*one.dxf.center][:2])
         for one in ezdxf.readfile(tmp_path / "a.dxf").modelspace().query("CIRCLE")
@@ -126,7 +128,7 @@ def test_paths_and_centrodes_are_those_of_the_motion() -> None:
     motion = ct.motion(mechanism, 91)
     link = mechanism.link_names[0]
     pair = ct.centrodes(motion, link)
-    drawing = ct.mechanism_drawing(mechanism, motion, 10, ["P"], [pair])
+    drawing = mechanism_drawing(mechanism, motion, 10, ["P"], [pair])
     (path,) = [stroke for stroke in drawing.strokes if stroke.layer == "paths"]
     assert (
         np.abs(path.places - 1e3 * motion.position.sel(point="P")).max() <= 1e-12 * np.abs(path.places).max()
@@ -150,7 +152,7 @@ def test_a_driving_cam_stands_on_its_own_layer() -> None:
     """The roller of 12 mm at the arm's end touches the profile; the axis is 110 mm from the pivot; no line twice."""
     mechanism = ct.example("cam-driven-linkage")
     motion = ct.motion(mechanism, at=[0.1])
-    drawing = ct.mechanism_drawing(mechanism, motion, 0)
+    drawing = mechanism_drawing(mechanism, motion, 0)
     (roller,) = [ring for ring in drawing.rings if ring.layer == "cams"]
     arm = 1e3 * motion.position.sel(point="R").to_numpy()[0]
     assert roller.radius == pytest.approx(12.0, rel=1e-12)
@@ -182,7 +184,7 @@ def test_a_face_that_no_link_has_is_drawn() -> None:
         assembly={"sides": {"B": "left"}},
     )
     motion = ct.motion(linkage, at=[0.125])
-    drawing = ct.mechanism_drawing(linkage, motion, 0)
+    drawing = mechanism_drawing(linkage, motion, 0)
     lines = [one.places for one in drawing.strokes if one.layer == "cams" and len(one.places) == 2]
     (face,) = [line for line in lines if abs(line[0, 1] - line[1, 1]) <= RINGS]
     lift = 5.0 * (0.25 - math.sin(math.tau / 4) / math.tau)  # cycloidal, at a quarter of the rise
@@ -192,8 +194,8 @@ def test_a_face_that_no_link_has_is_drawn() -> None:
 def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:
     _mechanism, _motion, drawing = drawing_of("six-bar-press")
     for name in ("a", "b"):
-        ct.write_drawing_dxf(drawing, tmp_path / f"{name}.dxf")
-        ct.write_drawing_svg(drawing, tmp_path / f"{name}.svg")
+        write_drawing_dxf(drawing, tmp_path / f"{name}.dxf")
+        write_drawing_svg(drawing, tmp_path / f"{name}.svg")
     for kind in ("dxf", "svg"):
         assert (tmp_path / f"a.{kind}").read_bytes() == (tmp_path / f"b.{kind}").read_bytes()
 
@@ -202,9 +204,11 @@ def test_processes_that_hash_texts_differently_write_the_same_bytes(tmp_path: Pa
     program = """
 import centrode as ct
 from centrode.cams.followers.manufacture import follower_outlines
+from centrode.present.drafting.dxf import write_drawing_dxf
+from centrode.present.drafting.sheet import mechanism_drawing
 from centrode.render.outlines import write_outlines_dxf
 press = ct.example("six-bar-press")
-ct.write_drawing_dxf(ct.mechanism_drawing(press, ct.motion(press, at=[0.0])), "drawing.dxf")
+write_drawing_dxf(mechanism_drawing(press, ct.motion(press, at=[0.0])), "drawing.dxf")
 cam = ct.follower_cam(ct.example("valve-cam"))
 write_outlines_dxf(follower_outlines(cam), "profile.dxf")
 """
@@ -220,11 +224,11 @@ write_outlines_dxf(follower_outlines(cam), "profile.dxf")
 
 def test_hostile_text_is_text(tmp_path: Path) -> None:
     mechanism = ct.example("crank-rocker").model_copy(update={"title": "</text><script>x</script>%%c\\P{"})
-    drawing = ct.mechanism_drawing(mechanism, ct.motion(mechanism, 3))
-    root = ET.fromstring(ct.drawing_svg(drawing))
+    drawing = mechanism_drawing(mechanism, ct.motion(mechanism, 3))
+    root = ET.fromstring(drawing_svg(drawing))
     assert not list(root.iter(f"{SVG}script"))
     assert mechanism.title in ["".join(one.itertext()) for one in root.iter(f"{SVG}text")]
-    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    write_drawing_dxf(drawing, tmp_path / "a.dxf")
     assert not ezdxf.readfile(tmp_path / "a.dxf").audit().errors
 
 
@@ -262,7 +266,7 @@ def scaled(metres: float) -> ct.Mechanism:
 def test_drawings_of_any_size_are_as_exact(metres: float) -> None:
     mechanism = scaled(metres)
     motion = ct.motion(mechanism, 13)
-    root = ET.fromstring(ct.drawing_svg(ct.mechanism_drawing(mechanism, motion, 0)))
+    root = ET.fromstring(drawing_svg(mechanism_drawing(mechanism, motion, 0)))
     sheet = max(float(part) for part in root.attrib["viewBox"].split()[2:])
     hinges = [
         np.array([float(one.attrib["cx"]), float(one.attrib["cy"])]) for one in root.iter(f"{SVG}circle")
@@ -278,17 +282,17 @@ def test_points_of_one_link_are_dots_and_hinges_open(tmp_path: Path) -> None:
     traced = 1e3 * ct.motion(mechanism, 1)["position"].sel(point="P")[0].to_numpy()
     (dot,) = [ring for ring in drawing.rings if ring.filled]
     assert math.dist(dot.centre, traced) <= RINGS * 1e3
-    root = ET.fromstring(ct.drawing_svg(drawing))
+    root = ET.fromstring(drawing_svg(drawing))
     assert [one.get("fill") is not None for one in root.iter(f"{SVG}circle")].count(True) == 1
-    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    write_drawing_dxf(drawing, tmp_path / "a.dxf")
     (hatch,) = ezdxf.readfile(tmp_path / "a.dxf").modelspace().query("HATCH")
     assert hatch.dxf.solid_fill == 1
 
 
 def test_links_lie_on_paths_in_both_kinds_of_file(tmp_path: Path) -> None:
     mechanism = ct.example("scotch-yoke")  # H and T of one link go along the line that joins them
-    drawing = ct.mechanism_drawing(mechanism, ct.motion(mechanism, 13), 0, ["H", "T"])
-    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    drawing = mechanism_drawing(mechanism, ct.motion(mechanism, 13), 0, ["H", "T"])
+    write_drawing_dxf(drawing, tmp_path / "a.dxf")
     layers = [one.dxf.layer for one in ezdxf.readfile(tmp_path / "a.dxf").modelspace().query("LWPOLYLINE")]
     assert max(k for k, layer in enumerate(layers) if layer == "paths") < layers.index("links")
 
@@ -296,10 +300,10 @@ def test_links_lie_on_paths_in_both_kinds_of_file(tmp_path: Path) -> None:
 def test_names_are_as_large_as_their_places_are_made_for() -> None:
     mechanism = ct.example("crank-rocker")
     motion = ct.motion(mechanism, 61)
-    drawing = ct.mechanism_drawing(mechanism, motion, 0)
+    drawing = mechanism_drawing(mechanism, motion, 0)
     scene = scene_of(mechanism, motion)
     point = 1e3 / scene.factor * scene.extent / (72.0 * scene.inches)
-    svg = ET.fromstring(ct.drawing_svg(drawing))
+    svg = ET.fromstring(drawing_svg(drawing))
     sizes = {one.attrib["font-size"] for one in svg.iter(f"{SVG}text") if one.text in ("O", "A", "B", "D")}
     # the SVG tells six digits
     assert [float(size) for size in sizes] == [pytest.approx(NAME_POINTS * point, rel=1e-5)]

@@ -8,6 +8,7 @@ import matplotlib.mathtext
 import pytest
 
 import centrode as ct
+from centrode.model.examples import example_text
 from centrode.render.document.blocks import TableBlock
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -110,7 +111,7 @@ def test_velocities_are_told_in_rates_and_put_in() -> None:
 def test_names_come_out_character_by_character(hostile: str) -> None:
     """In plain text, Markdown, LaTeX and the chapter of a document."""
     coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
-    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
+    mechanism = ct.parse_mechanism(example_text("crank-rocker").replace("[links.AB]", coupler))
     found = ct.equations(mechanism)
     assert f"angle of link {hostile}\n" in ct.summary(found)
     assert f"| angle of link {hostile} |" in page(found, "md")

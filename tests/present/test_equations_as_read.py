@@ -11,6 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.equations.derivation import Equations
+from centrode.kinematics.motion import initial_place
 from equation_pages import rows
 from mechanisms import EPS
 
@@ -146,7 +147,7 @@ def test_what_is_printed_moves_as_the_mechanism_does(name: str) -> None:
     values["t"] = 0.0
     for letter, formula in formulas(every):
         values[letter] = read(formula, values)
-    motion = ct.motion(mechanism, at=[ct.initial_place(mechanism)])
+    motion = ct.motion(mechanism, at=[initial_place(mechanism)])
     worst = max(float(np.linalg.cond(np.array(matrix, dtype=float))) for matrix in matrices(found))
     fastest = float(np.max(np.abs(motion.angular_velocity.values)))
     # each of a group's numbers is off by its last digit, at most a dozen stand in a rate, and groups pass errors on

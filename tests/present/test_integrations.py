@@ -9,11 +9,13 @@ import pytest
 from matplotlib.figure import Figure
 
 import centrode as ct
+from centrode.equations.integration import integration_results
+from centrode.present.figure_files import save_figures
 
 
 def drawn(name: str, steps: int = 40) -> tuple[ct.Mechanism, dict[str, Figure]]:
     mechanism = ct.example(name)
-    return mechanism, ct.figures(ct.integration_results(mechanism, steps=steps))
+    return mechanism, ct.figures(integration_results(mechanism, steps=steps))
 
 
 def texts(figure: Figure, number: int = 0) -> list[str]:
@@ -73,7 +75,7 @@ def test_errors_are_those_of_the_dataset() -> None:
 )
 def test_motions_of_other_kinds_are_drawn(name: str, tmp_path: Path) -> None:
     _mechanism, figures = drawn(name, 8)
-    files = ct.save_figures(figures, tmp_path)
+    files = save_figures(figures, tmp_path)
     assert len(files) == 2 * len(figures)
     assert all(file.stat().st_size > 5000 for file in files)
 

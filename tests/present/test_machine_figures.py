@@ -9,6 +9,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import centrode as ct
+from centrode.dynamics.steady_motion.machine import machine_results
+from centrode.quantities import QUANTITIES
 from machines import engine
 
 SAMPLES = 721
@@ -17,7 +19,7 @@ SAMPLES = 721
 @pytest.fixture(scope="module")
 def press() -> tuple[Any, dict[str, Figure]]:
     mechanism = ct.example("six-bar-press")
-    results = ct.machine_results(mechanism, SAMPLES)
+    results = machine_results(mechanism, SAMPLES)
     return results.steady, ct.figures(results)
 
 
@@ -41,7 +43,7 @@ def test_every_curve_is_the_datasets(press: tuple[Any, dict[str, Figure]]) -> No
     for (name, panel), variables in shown.items():
         lines = {line.get_label(): line for line in figures[name].axes[panel].get_lines()}
         for variable, factor in variables:
-            line = lines[ct.QUANTITIES[variable].title]
+            line = lines[QUANTITIES[variable].title]
             np.testing.assert_allclose(line.get_ydata(), factor * data[variable], rtol=1e-15)
             np.testing.assert_allclose(line.get_xdata(), np.degrees(data["turned"]), rtol=1e-15)
     assert figures["drive-speed"].axes[1].get_xlabel() == r"angle turned in the cycle $\varphi$, deg"
@@ -74,7 +76,7 @@ def test_wittenbauers_tangents(press: tuple[Any, dict[str, Figure]]) -> None:
 
 def test_names_and_what_is_left_out() -> None:
     mechanism = engine("[[machine.shafts]]\ninertia = 30")
-    figures = ct.figures(ct.machine_results(mechanism, 9))
+    figures = ct.figures(machine_results(mechanism, 9))
     assert "wittenbauer" not in figures
     assert {"works", "energies", "moments", "drive-speed", "real-velocities", "real-accelerations"} <= set(
         figures

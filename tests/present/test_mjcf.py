@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.kinematics.motion import initial_place
+from centrode.model.examples import example_text
+from centrode.present.mjcf_model import mjcf_text
 
 mujoco = pytest.importorskip("mujoco", reason="models are tried in MuJoCo")
 
@@ -32,7 +35,7 @@ AMPLIFIED = 8
 
 def model_of(name: str) -> tuple[ct.Mechanism, str]:
     mechanism = ct.example(name)
-    return mechanism, ct.mjcf_text(mechanism, ct.motion(mechanism, at=[ct.initial_place(mechanism)]))
+    return mechanism, mjcf_text(mechanism, ct.motion(mechanism, at=[initial_place(mechanism)]))
 
 
 @pytest.mark.parametrize("name", FULL_TURN)
@@ -41,7 +44,7 @@ def test_the_driven_motion_is_ours(name: str) -> None:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    speed, start = mechanism.drives[0].speed, ct.initial_place(mechanism)
+    speed, start = mechanism.drives[0].speed, initial_place(mechanism)
     assert speed is not None
     steps = int(2 * math.pi / abs(speed) / model.opt.timestep / MOMENTS)
     values, places, left = [], [], 0.0
@@ -88,7 +91,7 @@ def test_masses_and_gravity_are_those_of_the_description() -> None:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    motion = ct.motion(mechanism, at=[ct.initial_place(mechanism)])
+    motion = ct.motion(mechanism, at=[initial_place(mechanism)])
     middle = data.body("DH").xipos[:2]
     assert np.allclose(middle, motion.position.sel(point="S4")[0], rtol=0, atol=1e-12)
     assert float(model.body("CD").inertia.max()) == pytest.approx(0.55, rel=1e-12)
@@ -105,7 +108,7 @@ def test_hostile_names_are_names() -> None:
         'title = "', 'title = "<a href=\\"x\\">& ', 1
     )
     mechanism = ct.parse_mechanism(text)
-    model = ct.mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
+    model = mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
     assert ET.fromstring(model).attrib["model"] == mechanism.title
     mujoco.MjModel.from_xml_string(model)
 
@@ -139,7 +142,7 @@ WEDGES = """
 
 def test_a_loop_of_prismatic_pairs_closes_in_a_carriage() -> None:
     mechanism = ct.parse_mechanism(WEDGES)
-    text = ct.mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
+    text = mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
     assert any(body.attrib["name"].startswith("carriage") for body in ET.fromstring(text).iter("body"))
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
@@ -158,12 +161,12 @@ def test_a_loop_of_prismatic_pairs_closes_in_a_carriage() -> None:
 def test_a_law_is_followed_as_told(name: str) -> None:
     """The drive lags by 2 tau: q + 2 tau q' + J q''/kp = v, J/kp <= tau^2; with v + 2 tau v' the lag is taken out."""
     if name == "relative":
-        text = ct.example_text("two-link-arm").replace("speed = -2.0", 'law = "sin(2*t)"')
+        text = example_text("two-link-arm").replace("speed = -2.0", 'law = "sin(2*t)"')
         mechanism = ct.parse_mechanism(text)
     else:
         mechanism = ct.example(name)
-    start = ct.initial_place(mechanism)
-    model = mujoco.MjModel.from_xml_string(ct.mjcf_text(mechanism, ct.motion(mechanism, at=[start])))
+    start = initial_place(mechanism)
+    model = mujoco.MjModel.from_xml_string(mjcf_text(mechanism, ct.motion(mechanism, at=[start])))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     step = float(model.opt.timestep)
@@ -195,4 +198,4 @@ def test_what_is_too_light_for_mujoco_is_refused() -> None:
         assembly.sides = {{ B = "left" }}
         """)
     with pytest.raises(ct.NotComputedYet, match="1e-15"):
-        ct.mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
+        mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))

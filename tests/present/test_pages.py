@@ -15,9 +15,12 @@ from matplotlib.text import Text
 
 import centrode as ct
 from boxes import outside, overlapping
+from centrode.analysis.graphic.checks import graphic_check
+from centrode.analysis.transmission import transmission_results
 from centrode.present.diagram_drawing import CORNER, SIZE, symbol, typeset
+from centrode.present.figure_files import save_figures
 from centrode.present.page import INCH, PageView, count_crossings, new_page
-from centrode.present.style import house_style
+from centrode.present.style import darkened, house_style
 from centrode.render.vector_diagrams import SHORT, TOGETHER
 
 INSTANTS = {
@@ -35,7 +38,8 @@ PLANS = ("six-bar-press", "slider-between-cranks", "jansen-leg", "elliptic-tramm
 @pytest.fixture(scope="module")
 def pages() -> dict[str, dict[str, Figure]]:
     return {
-        name: ct.figures(ct.graphic_results(ct.example(name), instants=[at])) for name, at in INSTANTS.items()
+        name: ct.figures(ct.graphic_analysis(ct.example(name), instants=[at]))
+        for name, at in INSTANTS.items()
     }
 
 
@@ -68,7 +72,7 @@ def arrows(figure: Figure) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("name", ["jansen-leg", "whitworth-quick-return"])
 def test_vectors_are_as_long_as_the_scale_says(pages: dict[str, dict[str, Figure]], name: str) -> None:
-    found = ct.graphic_check(ct.example(name), INSTANTS[name]).diagrams
+    found = graphic_check(ct.example(name), INSTANTS[name]).diagrams
     for page, diagram in (("velocity", found.velocity), ("acceleration", found.acceleration)):
         drawn = arrows(pages[name][page])
         (pole,) = [
@@ -91,9 +95,9 @@ def test_every_moving_point_has_its_image(pages: dict[str, dict[str, Figure]]) -
 
 
 def test_dark_pages_have_light_texts() -> None:
-    figures = ct.figures(ct.graphic_results(ct.example("crank-rocker"), instants=[1.0]))
+    figures = ct.figures(ct.graphic_analysis(ct.example("crank-rocker"), instants=[1.0]))
     for figure in figures.values():
-        dark = ct.darkened(figure)
+        dark = darkened(figure)
         assert lightness(dark.get_facecolor()) < 0.2
         for text in dark.findobj(Text):
             if text.get_text():
@@ -109,8 +113,8 @@ def test_pages_are_the_same_bytes_twice(tmp_path: Path) -> None:
     written = []
     for folder in (tmp_path / "one", tmp_path / "two"):
         folder.mkdir()
-        figures = ct.figures(ct.graphic_results(ct.example("crank-rocker"), instants=[1.0]))
-        written.append([file.read_bytes() for file in ct.save_figures(figures, folder)])
+        figures = ct.figures(ct.graphic_analysis(ct.example("crank-rocker"), instants=[1.0]))
+        written.append([file.read_bytes() for file in save_figures(figures, folder)])
     assert len(written[0]) == 6
     assert written[0] == written[1]
 
@@ -149,7 +153,7 @@ def test_symbols_are_typeset() -> None:
 
 def test_transmission_angles_are_drawn_in_degrees() -> None:
     mechanism = ct.four_bar(crank=1, coupler=3.5, rocker=3, ground=4)
-    results = ct.transmission_results(mechanism, samples=37)
+    results = transmission_results(mechanism, samples=37)
     angles = results.angles
     upper, lower = ct.figures(results)["transmission"].axes
     (curve,) = [line for line in upper.lines if line.get_label() == "coupler-rocker"]

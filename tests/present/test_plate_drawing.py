@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 import centrode as ct
+from centrode.cams.followers.profile_results import follower_profile_results
 from centrode.render.outline_drawings import PENS
 from centrode.sheets.outlines import LineUse
 
@@ -51,7 +52,7 @@ def cam() -> ct.PlateCam:
 
 @pytest.fixture(scope="module")
 def figures(cam: ct.PlateCam) -> dict[str, Figure]:
-    return ct.figures(ct.follower_profile_results(cam, 91))
+    return ct.figures(follower_profile_results(cam, 91))
 
 
 def test_profile_roller_and_undercut_are_drawn(cam: ct.PlateCam, figures: dict[str, Figure]) -> None:
@@ -92,6 +93,6 @@ def test_every_follower_is_drawn() -> None:
     ).replace("25 mm", "4 deg")
     arm = LIFTER.replace('offset = "-5 mm"', 'kind = "oscillating"\narm = "60 mm"\npivot_distance = "70 mm"')
     for text in (flat, swinging, arm.replace("25 mm", "12 deg")):
-        found = ct.figures(ct.follower_profile_results(ct.parse_cam(text)))["cam-body"]
+        found = ct.figures(follower_profile_results(ct.parse_cam(text)))["cam-body"]
         found.draw_without_rendering()
         assert found.axes[0].get_xlabel() == "x, mm"

@@ -13,8 +13,10 @@ from matplotlib.text import Text
 
 import centrode as ct
 from boxes import outside, overlapping
-from centrode.dynamics.force_polygons.polygons import PAPERS
+from centrode.dynamics.force_polygons.polygons import PAPERS, ForcePolygons
+from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
 from centrode.present.page import INCH
+from centrode.present.style import darkened
 from centrode.render.force_pages import SHORT
 from centrode.render.force_signs import force_name
 from mechanisms import parts_of
@@ -50,11 +52,11 @@ def heavy(name: str) -> ct.Mechanism:
 
 
 @pytest.fixture(scope="module")
-def results() -> dict[str, ct.ForcePolygonResults]:
-    return {name: ct.force_polygon_results(heavy(name), [at]) for name, at in INSTANTS.items()}
+def results() -> dict[str, ForcePolygonResults]:
+    return {name: force_polygon_results(heavy(name), [at]) for name, at in INSTANTS.items()}
 
 
-def forces_of(results: ct.ForcePolygonResults) -> ct.ForcePolygons:
+def forces_of(results: ForcePolygonResults) -> ForcePolygons:
     """The forces of the only instant."""
     (found,) = results.polygons
     assert found is not None
@@ -63,7 +65,7 @@ def forces_of(results: ct.ForcePolygonResults) -> ct.ForcePolygons:
 
 @pytest.mark.parametrize("name", INSTANTS)
 def test_no_text_covers_another_or_leaves_the_page(
-    results: dict[str, ct.ForcePolygonResults], name: str
+    results: dict[str, ForcePolygonResults], name: str
 ) -> None:
     figures, found = ct.figures(results[name]), forces_of(results[name])
     levers = ["lever"] if len(found.levers) == 1 else [f"lever-{one.drive}" for one in found.levers]
@@ -75,7 +77,7 @@ def test_no_text_covers_another_or_leaves_the_page(
 
 @pytest.mark.parametrize("paper", list(PAPERS))
 def test_pages_have_the_size_of_the_paper(paper: str) -> None:
-    for figure in ct.figures(ct.force_polygon_results(heavy("crank-rocker"), [0.9], paper)).values():
+    for figure in ct.figures(force_polygon_results(heavy("crank-rocker"), [0.9], paper)).values():
         assert INCH * np.array(figure.get_size_inches()) == pytest.approx(PAPERS[paper])
         assert outside(figure) == []
         assert overlapping(figure) == []
@@ -89,7 +91,7 @@ def arrows(figure: Figure) -> list[complex]:
 
 
 @pytest.mark.parametrize("name", ["six-bar-press", "whitworth-quick-return", "crank-rocker"])
-def test_vectors_are_as_long_as_the_scale_says(results: dict[str, ct.ForcePolygonResults], name: str) -> None:
+def test_vectors_are_as_long_as_the_scale_says(results: dict[str, ForcePolygonResults], name: str) -> None:
     figures = ct.figures(results[name])
     for number, group in enumerate(forces_of(results[name]).groups, start=1):
         drawn = arrows(figures[f"group-{number}"])
@@ -113,5 +115,5 @@ def test_names_of_forces() -> None:
 
 
 def test_dark_pages() -> None:
-    for figure in ct.figures(ct.force_polygon_results(heavy("crank-rocker"), [0.9])).values():
-        assert overlapping(ct.darkened(figure)) == []
+    for figure in ct.figures(force_polygon_results(heavy("crank-rocker"), [0.9])).values():
+        assert overlapping(darkened(figure)) == []

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 import centrode as ct
 from centrode import render
+from centrode.dynamics.bearings.results import reaction_results
 from centrode.sheets.plots import Plot
 from centrode.topics.presentation import sheet_of
 from mechanisms import parts_of
@@ -15,7 +16,7 @@ from mechanisms import parts_of
 
 def curves_of(mechanism: ct.Mechanism, samples: int) -> dict[str, Figure]:
     """The figures of curves over the motion."""
-    pictures = sheet_of(ct.reaction_results(mechanism, samples)).pictures
+    pictures = sheet_of(reaction_results(mechanism, samples)).pictures
     plots = {name: picture for name, picture in pictures.items() if isinstance(picture, Plot)}
     return render.figures_of(plots, mechanism.display)
 

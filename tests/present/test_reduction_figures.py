@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import centrode as ct
+from centrode.dynamics.reduction_results import reduction_results
 
 
 def names(figure: Figure, panel: int) -> list[str]:
@@ -17,7 +18,7 @@ def names(figure: Figure, panel: int) -> list[str]:
 
 def test_the_press() -> None:
     press = ct.example("six-bar-press")
-    results = ct.reduction_results(press, 37)
+    results = reduction_results(press, 37)
     data, figures = results.reduction, ct.figures(results)
     assert list(figures) == ["reduced-inertia", "reduced-moment"]
     assert names(figures["reduced-inertia"], 0) == ["AB", "CD", "DH", "slider", "sum"]
@@ -37,7 +38,7 @@ def test_names_of_drives_are_no_formulas(name: str) -> None:
         drives=[{"link": name, "speed": 1}, {"link": "AB", "speed": 2}],
         gravity=[0, -10],
     )  # fmt: skip
-    figures = ct.figures(ct.reduction_results(lifted, 5))
+    figures = ct.figures(reduction_results(lifted, 5))
     for figure in figures.values():
         figure.draw_without_rendering()
     assert name in figures["generalised-forces"].axes[0].get_ylabel()
@@ -50,4 +51,4 @@ def test_no_masses_no_picture_of_them() -> None:
         drives=[{"link": "OA", "speed": 1}],
         loads=[{"kind": "torque", "link": "OA", "value": "sin(x)"}],
     )
-    assert list(ct.figures(ct.reduction_results(loaded, 5))) == ["reduced-moment"]
+    assert list(ct.figures(reduction_results(loaded, 5))) == ["reduced-moment"]

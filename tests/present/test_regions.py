@@ -11,13 +11,14 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 
 import centrode as ct
+from centrode.kinematics.several_inputs.region import region_results
 from drives import apart, five_bar, least_and_greatest
 
 DEGREES = {"display": {"angle": "deg", "length": "mm"}}
 
 
 def drawn(mechanism: ct.Mechanism, samples: int = 61, **more: Any) -> tuple[Any, Figure]:
-    results = ct.region_results(mechanism, samples=samples, **more)
+    results = region_results(mechanism, samples=samples, **more)
     shown = replace(results, motion=ct.motion(mechanism, 2000, stop=6.0))
     return results.region, ct.figures(shown)["region"]
 
@@ -81,5 +82,5 @@ def test_what_is_cut_off_is_told_from_what_is_reached() -> None:
 
 def test_nothing_locks() -> None:
     arm = ct.example("two-link-arm")
-    figure = ct.figures(replace(ct.region_results(arm, samples=5), motion=None))["region"]
+    figure = ct.figures(replace(region_results(arm, samples=5), motion=None))["region"]
     assert texts(figure) == ["reached", "initial position"]

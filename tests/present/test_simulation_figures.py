@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 import centrode as ct
+from centrode.dynamics.simulation.results import simulation_results
+from centrode.quantities import QUANTITIES
 from simulated import pendulum, rotor
 
 
 def test_every_curve_is_the_datasets() -> None:
     mechanism = rotor()
-    results = ct.simulation_results(
-        mechanism, settings=ct.Simulation(driving="3 - v", duration=4, samples=81)
-    )
+    results = simulation_results(mechanism, settings=ct.Simulation(driving="3 - v", duration=4, samples=81))
     data = results.simulation
     figures = ct.figures(results)
     assert list(figures) == ["simulation-speed", "simulation-phase", "simulation-energies"]
@@ -27,16 +27,14 @@ def test_every_curve_is_the_datasets() -> None:
     for (name, panel), variables in shown.items():
         lines = {line.get_label(): line for line in figures[name].axes[panel].get_lines()}
         for variable in variables:
-            line = lines[ct.QUANTITIES[variable].title]
+            line = lines[QUANTITIES[variable].title]
             np.testing.assert_array_equal(line.get_ydata(), data[variable])
             np.testing.assert_array_equal(line.get_xdata(), data["time"])
 
 
 def test_turns_lie_one_upon_another() -> None:
     mechanism = rotor()
-    results = ct.simulation_results(
-        mechanism, settings=ct.Simulation(driving="3 - v", duration=8, samples=161)
-    )
+    results = simulation_results(mechanism, settings=ct.Simulation(driving="3 - v", duration=8, samples=161))
     data = results.simulation
     line = ct.figures(results)["simulation-phase"].axes[0].get_lines()[0]
     places = np.asarray(line.get_xdata(), dtype=float)
@@ -49,7 +47,7 @@ def test_turns_lie_one_upon_another() -> None:
 
 def test_a_swing_is_one_curve() -> None:
     mechanism = pendulum()
-    results = ct.simulation_results(mechanism, settings=ct.Simulation(duration=3, samples=61))
+    results = simulation_results(mechanism, settings=ct.Simulation(duration=3, samples=61))
     data = results.simulation
     line = ct.figures(results)["simulation-phase"].axes[0].get_lines()[0]
     np.testing.assert_array_equal(line.get_xdata(), data.drive_value[:, 0])

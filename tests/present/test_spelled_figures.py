@@ -11,8 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import centrode as ct
+from centrode.analysis.instant_centres.results import centre_results
+from centrode.dynamics.bearings.results import reaction_results
+from centrode.dynamics.reduction_results import reduction_results
+from centrode.equations.integration import integration_results
 from centrode.locale import speaking
 from centrode.present.animations.layers import turned_caption
+from centrode.present.figure_files import save_figures
 from centrode.present.spelled_figures import spell_decimals, with_decimal_mark
 
 UNITS = {"deg", "rad", "kg", "mm", "MPa", "max", "min"}
@@ -29,19 +34,19 @@ def texts(figure: Figure) -> Iterator[str]:
 
 
 def reactions(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    return ct.figures(ct.reaction_results(mechanism, 37))
+    return ct.figures(reaction_results(mechanism, 37))
 
 
 def reduction(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    return ct.figures(ct.reduction_results(mechanism, 37))
+    return ct.figures(reduction_results(mechanism, 37))
 
 
 def integration(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    return ct.figures(ct.integration_results(mechanism, steps=40))
+    return ct.figures(integration_results(mechanism, steps=40))
 
 
 def centres(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    return ct.figures(ct.centre_results(mechanism, instants=[0.2]))
+    return ct.figures(centre_results(mechanism, instants=[0.2]))
 
 
 @pytest.mark.parametrize("language", ["ru", "uk"])
@@ -62,7 +67,7 @@ def test_no_english_words_and_points(language: str, name: str, drawn: Drawn, tmp
     known = UNITS | {word for one in names for word in re.findall("[A-Za-z]{3,}", one)}
     with speaking(language):
         figures = drawn(mechanism)
-        ct.save_figures(figures, tmp_path)
+        save_figures(figures, tmp_path)
         found = [text for figure in figures.values() for text in texts(figure)]
     for text in found:
         assert not re.search(r"\d\.\d", text), text
@@ -76,7 +81,7 @@ def test_titles_of_users_keep_their_points(tmp_path: Path) -> None:
     assert mechanism.title == "Press 2.5"
     with speaking("ru"):
         figures = dict(reactions(mechanism))
-        ct.save_figures(figures, tmp_path)
+        save_figures(figures, tmp_path)
         assert any(re.search(r"\d,\d %", text) for text in texts(figures["bearing-wear"]))
         for figure in figures.values():
             assert any(text.split("\n")[-1] == "Press 2.5" for text in texts(figure))

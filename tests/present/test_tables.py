@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 import xarray
 
-import centrode as ct
 from centrode.errors import Status
-from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset
+from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset, write_dataset
 from centrode.views.columns import motion_table
 from shown_motion import columns_of, write_motion
 
@@ -125,7 +124,7 @@ def test_netcdf_reads_back_equal(make, tmp_path):
     for name, options in (("worked", {"locked": True}), ("slotted", {}), ("press", {"samples": 1})):
         _mechanism, dataset = make(name, **options)
         path = tmp_path / f"{name}.nc"
-        ct.write_motion_netcdf(dataset, path)
+        write_dataset(dataset, path)
         back = xarray.load_dataset(path, engine="scipy")
         kept = dataset.drop_dims([dim for dim, size in dataset.sizes.items() if size == 0])
         # variables without entries are in an attribute
@@ -144,7 +143,7 @@ def test_netcdf_reads_back_equal(make, tmp_path):
 def test_netcdf_repeats_its_bytes(make, tmp_path):
     _mechanism, dataset = make("worked")
     for path in ("a.nc", "b.nc"):
-        ct.write_motion_netcdf(dataset, tmp_path / path)
+        write_dataset(dataset, tmp_path / path)
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 

@@ -10,7 +10,7 @@ import openpyxl
 import pytest
 
 import centrode as ct
-from centrode.present.spelled_tables import TableSpelling
+from centrode.present.spelled_tables import TableSpelling, spell_with_comma
 from centrode.present.workbooks import MOST_COLUMNS, MOST_ROWS, workbook_of_csv, write_workbook
 from shown_motion import columns_of, write_motion
 
@@ -102,7 +102,7 @@ def test_what_no_sheet_holds_is_refused(rows: int, columns: int, tmp_path: Path)
 def test_decimal_commas(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text('name,x [m]\n"A, 1.5",0.25\nv1.2,-1e-09\n,3\n1.2.3,1.5e+20\n', encoding="utf-8")
-    ct.spell_with_comma(path)
+    spell_with_comma(path)
     assert path.read_bytes().startswith(b"\xef\xbb\xbf")
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.reader(file, delimiter=";"))

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 import centrode as ct
+from centrode.cams.cam import roller_path_results
+from centrode.model.examples.catalogue import load_cam
 from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBlock, Moving, TableBlock
 from centrode.render.document.chapters import document_chapter
 from centrode.report.chapters import CHAPTERS
@@ -20,7 +22,7 @@ CAM = ("data", "motion", "path", "routes", "profile", "walking", "contact")
 
 
 def study_of(name: str, **wishes: object) -> ReportStudy:
-    description = ct.load_cam(name)
+    description = load_cam(name)
     return ReportStudy(description, settle_options(description, ReportOptions(**wishes), CHAPTERS))  # type: ignore[arg-type]
 
 
@@ -63,7 +65,7 @@ def test_chapters_of_linkages_are_none_of_cams(wheel: ReportStudy) -> None:
 
 def test_a_wrong_path_is_found(wheel: ReportStudy) -> None:
     assert isinstance(wheel.description, ct.Cam)
-    results = ct.roller_path_results(wheel.description)
+    results = roller_path_results(wheel.description)
     data = results.dataset.copy(deep=True)
     data["pressure_sine"] = data["pressure_sine"] * (1.0 + 1e-9)
     chapter = document_chapter("path", sheet_of(replace(results, dataset=data)), wheel.numbers)
@@ -71,7 +73,7 @@ def test_a_wrong_path_is_found(wheel: ReportStudy) -> None:
 
 
 def test_a_cam_that_stalls_says_so() -> None:
-    cam = ct.load_cam("cam-from-curvature")
+    cam = load_cam("cam-from-curvature")
     longer = cam.model_copy(update={"range": cam.range.model_copy(update={"stop": 3.0})})
     study = ReportStudy(longer, settle_options(longer, ReportOptions(), CHAPTERS))
     failed = [one for one in blocks_of(CHAPTERS["path"].make(study), CheckBlock) if not one.holds]

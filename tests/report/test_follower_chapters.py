@@ -19,6 +19,7 @@ from centrode.cams.followers.motion import FollowerMotion
 from centrode.cams.followers.profile_results import instant_centre_difference, profile_difference
 from centrode.laws import CURVES as LAWS
 from centrode.laws import LawSegment, SegmentedLaw
+from centrode.model.examples.catalogue import load_cam
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
@@ -97,12 +98,12 @@ def blocks_of(chapter: ChapterBlocks | None, kind: type) -> list:
 
 @pytest.fixture(scope="module")
 def valve() -> ReportStudy:
-    return study_of(ct.load_cam("valve-cam"))
+    return study_of(load_cam("valve-cam"))
 
 
 @pytest.fixture(scope="module")
 def indexing() -> ReportStudy:
-    return study_of(ct.load_cam("indexing-cam"))
+    return study_of(load_cam("indexing-cam"))
 
 
 def plate_of(study: ReportStudy) -> ct.PlateCam:
@@ -210,7 +211,7 @@ def test_every_follower_has_all_chapters(follower: str) -> None:
 @pytest.mark.drawn
 @pytest.mark.parametrize("name", ["valve-cam", "indexing-cam"])
 def test_chapters_of_the_examples(name: str) -> None:
-    report = ct.report(ct.load_cam(name))
+    report = ct.report(load_cam(name))
     assert [chapter.name for chapter in report.chapters] == list(NAMES)
     checks = [one for chapter in report.chapters for one in blocks_of(chapter, CheckBlock)]
     assert len(checks) >= 9 and all(one.holds for one in checks)
@@ -275,7 +276,7 @@ def test_a_wrong_profile_is_found(indexing: ReportStudy) -> None:
 
 
 def test_an_undercut_profile_is_told() -> None:
-    cam = ct.load_cam("valve-cam")
+    cam = load_cam("valve-cam")
     steep = cam.model_copy(update={
         "body": cam.body.model_copy(update={"base_radius": 0.015}),
         "study": cam.study.model_copy(update={"show_undercut": True}),
@@ -305,7 +306,7 @@ def test_a_cam_that_no_radius_makes_is_told() -> None:
 
 
 def test_a_follower_that_jumps_is_told() -> None:
-    cam = ct.load_cam("valve-cam")
+    cam = load_cam("valve-cam")
     fast = cam.model_copy(update={"body": cam.body.model_copy(update={"speed": 400.0})})
     chapter = CHAPTERS["cam-forces"].make(study_of(fast))
     failed = [one.text for one in blocks_of(chapter, CheckBlock) if not one.holds]
@@ -407,7 +408,7 @@ def test_chapters_of_linkages_are_none_of_follower_cams(valve: ReportStudy) -> N
 def test_same_input_same_bytes(tmp_path: object) -> None:
     del tmp_path
     first, second = (
-        ct.report(ct.load_cam("valve-cam"), ReportOptions(chapters=("motion", "profile"))) for _k in range(2)
+        ct.report(load_cam("valve-cam"), ReportOptions(chapters=("motion", "profile"))) for _k in range(2)
     )
 
     def blocks(report: object) -> list[Block]:

@@ -13,6 +13,7 @@ from fontTools.ttLib import TTFont
 
 import centrode as ct
 from centrode.locale import speaking
+from centrode.model.examples.catalogue import load_cam
 from centrode.render.document import blocks
 from centrode.render.document.cam_player import moving_wheel
 from centrode.render.document.chapters import document_chapter
@@ -55,7 +56,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def motions(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Motions in the plane, on the sphere, of a wheel."""
-    cam = ct.load_cam(WHEEL)
+    cam = load_cam(WHEEL)
     moved = [moving_of(ct.example(name), ct.motion(ct.example(name))) for name in (PLANE, SPHERE)]
     moved.append(moving_wheel(ct.walking_wheel(cam), cam.title))
     chapters = [

@@ -7,6 +7,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
+from centrode.model.examples.catalogue import load_cam
 from centrode.render.document.blocks import Moving, Outline, RingBlock
 from centrode.render.document.cam_player import STEP, moving_wheel
 from centrode.render.document.linkage_player import moving_of
@@ -123,7 +124,7 @@ def test_a_guide_of_the_sphere_is_a_circle_about_its_pole() -> None:
 
 @pytest.mark.parametrize("name", ["walking-wheel-four-legs"])
 def test_a_walking_wheel_stands_on_its_ground(name: str) -> None:
-    cam = ct.load_cam(name)
+    cam = load_cam(name)
     wheel = ct.walking_wheel(cam)
     moving = moving_wheel(wheel, cam.title)
     outlines = [one for one in moving.shapes if isinstance(one, Outline)]

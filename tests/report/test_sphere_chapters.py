@@ -14,6 +14,7 @@ from centrode.render.document.blocks import ChapterBlocks, CheckBlock, FormulaBl
 from centrode.report.chapters import CHAPTERS
 from centrode.report.document import report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
+from centrode.study.texts import place_words
 from report.texts import texts_of
 
 SPHERE = ("data", "words", "structure", "equations", "tables", "plots", "rotatability", "axes")
@@ -142,4 +143,4 @@ def test_the_value_of_a_drive_along_an_arc_is_an_angle() -> None:
     metres = [text for text in found if re.search(r"\d\u202fm(/s)?\b|, m(/s)?$", text)]
     assert metres == []
     motion = ct.motion(mechanism, at=[math.pi / 4])
-    assert ct.place_words(mechanism, motion, 0) == "C 0.785398163 rad (45 deg)"
+    assert place_words(mechanism, motion, 0) == "C 0.785398163 rad (45 deg)"

@@ -13,7 +13,7 @@ from centrode.errors import InputError
 from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
 from centrode.report.variants import files
 from centrode.report.variants.answers import answer_sheet
-from centrode.report.variants.files import VariantReport
+from centrode.report.variants.files import VariantReport, write_variant_reports
 from centrode.study.variant_answers import InstantAnswers, VariantAnswers, read_answers
 from centrode.study.variant_results import VariantRow, Variants
 from centrode.study.variant_tables import read_variants
@@ -37,7 +37,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_each_variant_has_its_report_and_the_teacher_the_answers(quick: None, tmp_path: Path) -> None:
     topology = ct.example("slider-between-cranks")
-    rows = ct.write_variant_reports(topology, ROWS, tmp_path, formats=("html",)).rows
+    rows = write_variant_reports(topology, ROWS, tmp_path, formats=("html",)).rows
     assert [row.status for row in rows] == ["ok", "refused"]
     assert (tmp_path / "answers.html").is_file() and not (tmp_path / "answers.pdf").exists()
     folder = tmp_path / "variant-first"
@@ -58,7 +58,7 @@ def test_what_is_finished_is_not_made_again(
     quick: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     topology = ct.example("slider-between-cranks")
-    ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
+    write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
     before = (tmp_path / "variant-first" / "report.html").read_bytes()
     sheet = (tmp_path / "answers.html").read_bytes()
 
@@ -66,10 +66,10 @@ def test_what_is_finished_is_not_made_again(
         raise AssertionError("made again")
 
     monkeypatch.setattr(files, "report", never)
-    ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
+    write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
     assert (tmp_path / "variant-first" / "report.html").read_bytes() == before
     assert (tmp_path / "answers.html").read_bytes() == sheet
-    rows = ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="ru").rows
+    rows = write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="ru").rows
     assert [row.status for row in rows] == ["fault"]  # another language is another report: it was to be made
 
 
@@ -123,5 +123,5 @@ def test_wrong_formats_are_refused_before_anything_is_computed(
     formats: tuple[str, ...], tmp_path: Path
 ) -> None:
     with pytest.raises(InputError):
-        ct.write_variant_reports(ct.example("crank-rocker"), ROWS, tmp_path / "new", formats=formats)
+        write_variant_reports(ct.example("crank-rocker"), ROWS, tmp_path / "new", formats=formats)
     assert not (tmp_path / "new").exists()

@@ -15,7 +15,7 @@ import centrode as ct
 from centrode.errors import InputError
 from centrode.locale import speaking
 from centrode.report.variants import folders
-from centrode.study.variant_results import VariantRow, compute_variant
+from centrode.study.variant_results import VariantRow, compute_variant, spoken_variants
 from centrode.study.variant_tables import read_variants
 
 WORKED = ct.example("slider-between-cranks")
@@ -239,9 +239,9 @@ def test_causes_in_the_language_of_the_reader(language: str) -> None:
     found = ct.variants(WORKED, table)
     rows = found.rows
     assert [row.status for row in rows] == ["ok", "refused", "locks"]
-    assert ct.spoken_variants(found) == found
+    assert spoken_variants(found) == found
     with speaking(language):
-        free, refused, locks = ct.spoken_variants(found).rows
+        free, refused, locks = spoken_variants(found).rows
         limits = ct.rotatability(with_l2(0.3)).limits
         with pytest.raises(InputError) as refusal:
             with_l2(-1.0)

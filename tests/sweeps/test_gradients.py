@@ -12,6 +12,7 @@ import pytest
 import centrode as ct
 from centrode.numerics import machine_code
 from centrode.sweeps.machine import Slopes, States
+from centrode.sweeps.sweep import read_sweep
 from drives import five_bar
 from mechanisms import EPS, four_bar
 
@@ -171,7 +172,7 @@ def test_what_has_no_derivatives_is_refused(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     with pytest.raises(ct.InputError, match="expected true or false"):
-        ct.read_sweep(study)
+        read_sweep(study)
 
 
 def test_both_ways_to_carry_a_sum_agree(monkeypatch: pytest.MonkeyPatch) -> None:

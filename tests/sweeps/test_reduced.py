@@ -9,6 +9,7 @@ import pytest
 
 import centrode as ct
 from burdened import burdened
+from centrode.model.examples import example_text
 from centrode.numerics import machine_code
 from growing import grown, mechanism_of
 from mechanisms import EPS
@@ -138,7 +139,7 @@ def test_formulas_may_name_what_is_reduced() -> None:
 
 
 def test_a_diagram_is_computed_by_arrays() -> None:
-    text = ct.example_text("six-bar-press").replace(
+    text = example_text("six-bar-press").replace(
         'point = "H"\nvector = [-9000, 0]\nwhile_moving = [1, 0]',
         'guide = "H"\ntable = [[1, -9000, 0], [4, -9000, 0]]',
     )
@@ -153,7 +154,7 @@ def test_a_diagram_is_computed_by_arrays() -> None:
 
 
 def test_a_stroke_beside_its_diagram_has_no_number() -> None:
-    text = ct.example_text("six-bar-press").replace(
+    text = example_text("six-bar-press").replace(
         'point = "H"\nvector = [-9000, 0]\nwhile_moving = [1, 0]',
         'guide = "H"\ntable = [[1, -9000, 0], [3.6, -9000, 0]]',
     )

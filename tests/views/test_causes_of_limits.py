@@ -12,6 +12,7 @@ from centrode.analysis.redesign.results import rotatability_results
 from centrode.analysis.rotatability.causes import AngleCondition, AngleSymbol, Cause, CauseKind, Tracer
 from centrode.analysis.rotatability.circuits import LoopType, Uncounted
 from centrode.locale import _, choose_language
+from centrode.model.examples import example_text
 from centrode.model.settings import Display
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -57,7 +58,7 @@ def test_conditions_have_their_signs_and_constants() -> None:
 @pytest.mark.parametrize("hostile", HOSTILE)
 def test_names_come_out_character_by_character(hostile: str, tmp_path: Path) -> None:
     """Of a link that falls in line: on the terminal, in the record and in the document, with the repair."""
-    text = ct.example_text(LOCKED).replace("[links.BD]", f'[links."{hostile}"]\npoints = ["B", "D"]')
+    text = example_text(LOCKED).replace("[links.BD]", f'[links."{hostile}"]\npoints = ["B", "D"]')
     mechanism = ct.parse_mechanism(text)
     assert hostile in mechanism.link_names
     found = rotatability_results(mechanism, complete=True)

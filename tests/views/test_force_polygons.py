@@ -7,8 +7,9 @@ import math
 import pytest
 
 import centrode as ct
-from centrode.dynamics.force_polygons.results import ForcePolygonResults
+from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
 from centrode.locale import speaking
+from centrode.model.examples import example_text
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -24,7 +25,7 @@ value = 3
 
 def loaded(name: str, link: str) -> ct.Mechanism:
     """An example with a moment on one link."""
-    return ct.parse_mechanism(ct.example_text(name) + TORQUE.format(link=link))
+    return ct.parse_mechanism(example_text(name) + TORQUE.format(link=link))
 
 
 def chapter_of(results: ForcePolygonResults) -> blocks.ChapterBlocks:
@@ -34,7 +35,7 @@ def chapter_of(results: ForcePolygonResults) -> blocks.ChapterBlocks:
 
 def test_parts_of_several_instants_are_numbered() -> None:
     press = ct.example("six-bar-press")
-    results = ct.force_polygon_results(press, ["30 deg", math.pi / 2])
+    results = force_polygon_results(press, ["30 deg", math.pi / 2])
     sheet = FORCE_POLYGONS.view(results)
     pages = ("group-1", "group-2", "group-3", "lever")
     assert list(sheet.tables) == ["polygons-1", "polygons-2"]
@@ -56,10 +57,10 @@ def test_an_instant_without_forces_is_said_in_its_place(
 ) -> None:
     mechanism = loaded(name, link)
     with pytest.raises(ct.MotionError, match=status):
-        ct.force_polygon_results(mechanism, instants=[at, there])
+        force_polygon_results(mechanism, instants=[at, there])
     with pytest.raises(ct.MotionError, match=status):
-        ct.force_polygon_results(mechanism, instants=[there], complete=False)
-    results = ct.force_polygon_results(mechanism, instants=[at, there], complete=False)
+        force_polygon_results(mechanism, instants=[there], complete=False)
+    results = force_polygon_results(mechanism, instants=[at, there], complete=False)
     assert [found is None for found in results.polygons] == [False, True]
     assert list(ct.tables(results)) == ["polygons-1"]
     (said,) = chapter_of(results).sections[-1].blocks
@@ -71,7 +72,7 @@ def test_an_instant_without_forces_is_said_in_its_place(
 def test_links_of_any_name_are_called_by_it(hostile: str) -> None:
     text = ct.mechanism_text(ct.example("six-bar-press"))
     text = text.replace('"slider"', f'"{hostile}"').replace("links.slider", f'links."{hostile}"')
-    results = ct.force_polygon_results(ct.parse_mechanism(text), ["120 deg"], "A5")
+    results = force_polygon_results(ct.parse_mechanism(text), ["120 deg"], "A5")
     assert f"Group 4, 5 (RRP): DH, {hostile}" in ct.summary(results)
     assert f"5 {hostile}" in ct.summary(results)
     titles = [
@@ -86,14 +87,14 @@ def test_a_slider_has_a_word_of_the_language() -> None:
     """The names of results stay English, so that files are the same for every reader."""
     mechanism = loaded("scotch-yoke", "OA")
     with speaking("ru"):
-        results = ct.force_polygon_results(mechanism, [0.8])
+        results = force_polygon_results(mechanism, [0.8])
         assert "ползун" in ct.summary(results) and "slider" not in ct.summary(results)
     (found,) = results.polygons
     assert found is not None and any(name.startswith("slider ") for name in found.names)
 
 
 def test_a_chapter_has_every_step_and_its_drawings_to_scale() -> None:
-    results = ct.force_polygon_results(ct.example("six-bar-press"), ["120 deg"], "A5")
+    results = force_polygon_results(ct.example("six-bar-press"), ["120 deg"], "A5")
     (found,) = results.polygons
     assert found is not None
     parts = chapter_of(results).sections[1].blocks

@@ -12,23 +12,32 @@ import xarray as xr
 
 import centrode as ct
 from centrode import notebook
+from centrode.cams.cam import cam_routes
+from centrode.cams.followers.geometry import FollowerCam
 from centrode.cams.followers.motion_results import follower_motion_results, motion_law_results
+from centrode.cams.results import shoe_profile
+from centrode.dynamics.bearings.results import reaction_results
+from centrode.dynamics.motion_results import study
+from centrode.dynamics.reduction_results import reduction_results
+from centrode.dynamics.simulation.results import simulation_results
 from centrode.render.netcdf import WITHOUT_ENTRIES, read_dataset, write_dataset
 from centrode.sheets.sheet import Column
-from centrode.topics.presentation import RESTORED, is_result, restored_result
+from centrode.topics.presentation import RESTORED, VALUES, is_result, restored_result
+from centrode.topics.registry import TOPICS
 
 PRESS = ct.example("six-bar-press")
 CRANK_ROCKER = ct.example("crank-rocker")
+VALVE_CAM = ct.example("valve-cam")
+WALKING_WHEEL = ct.example("walking-wheel-four-legs")
 
 DATASETS: dict[str, Callable[[], xr.Dataset]] = {
+    "run": lambda: ct.motion(PRESS, 37),
     "integrate": lambda: ct.integrate(CRANK_ROCKER, steps=20),
     "region": lambda: ct.reachable_region(ct.example("five-bar-two-drives"), samples=9),
     "angles": lambda: ct.transmission_angles(PRESS, 37),
     "reduce": lambda: ct.reduce(PRESS, 37),
     "flywheel": lambda: ct.steady_motion(PRESS, 37),
-    "simulate": lambda: (
-        ct.simulation_results(ct.example("six-bar-press-run-up"), 9, duration="1 s").simulation
-    ),
+    "simulate": lambda: simulation_results(ct.example("six-bar-press-run-up"), 9, duration="1 s").simulation,
     "reactions": lambda: ct.reactions(PRESS, 37),
     "shaking": lambda: ct.shaking(PRESS, 37),
     "centres": lambda: ct.instant_centres(ct.motion(PRESS, at=[2.0, 3.0])),
@@ -38,13 +47,27 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
         CRANK_ROCKER, {"links.AB.length": [3.4, 3.5]}, ["position.B", "angle.DB"], 9, reduce="max"
     ),
     "motion-laws": lambda: motion_law_results(ct.example("valve-cam")).dataset,
+    "roller-path": lambda: ct.cam(ct.example("cam-from-curvature"), 37),
+    "path-routes": lambda: cam_routes(ct.example("cam-from-curvature"), 9),
+    "cam-profile": lambda: ct.cam_profile(WALKING_WHEEL, 37),
+    "walking-wheel": lambda: shoe_profile(WALKING_WHEEL, 37),
+    "cam-contact": lambda: ct.cam_contact(WALKING_WHEEL, 37),
+    "follower-profile": lambda: ct.cam_profile(VALVE_CAM, 37),
+    "follower-forces": lambda: ct.cam_forces(VALVE_CAM, 37),
+}
+VALUES_OF_FUNCTIONS: dict[str, Callable[[], object]] = {
+    "flywheel": lambda: ct.flywheel(PRESS),
+    "polygons": lambda: ct.force_polygons(PRESS, 2.0),
+    "walking-wheel": lambda: ct.walking_wheel(WALKING_WHEEL),
+    "follower-profile": lambda: ct.follower_cam(VALVE_CAM),
 }
 
 
 def same_column(first: Column, second: Column) -> bool:
     """Whether two columns agree to the last bit, absent numbers included."""
     if isinstance(first.values, np.ndarray) and isinstance(second.values, np.ndarray):
-        return first.name == second.name and np.array_equal(first.values, second.values, equal_nan=True)
+        numbers = first.values.dtype.kind == "f"
+        return first.name == second.name and np.array_equal(first.values, second.values, equal_nan=numbers)
     return first == second
 
 
@@ -70,16 +93,63 @@ def test_a_dataset_is_its_result_and_stays_so_in_a_file(topic: str, tmp_path: Pa
     assert ct.Result(again).dataset is again
 
 
+@pytest.mark.parametrize("topic", VALUES_OF_FUNCTIONS)
+def test_a_value_that_knows_its_description_is_shown_as_its_result(topic: str) -> None:
+    known = {one.name: one for one in TOPICS}[topic]
+    assert known in VALUES.values()
+    value = VALUES_OF_FUNCTIONS[topic]()
+    result = known.compute(PRESS, at=[2.0]) if topic == "polygons" else None
+    if result is None:
+        result = known.compute(value.mechanism if hasattr(value, "mechanism") else value.cam)
+    assert type(restored_result(value)) is type(result)
+    assert ct.summary(value) == ct.summary(result)
+    assert list(ct.tables(value)) == list(ct.tables(result))
+
+
+def test_every_topic_with_a_value_is_looked_at() -> None:
+    assert set(VALUES_OF_FUNCTIONS) == {topic.name for topic in VALUES.values()}
+
+
+def test_a_value_without_description_is_refused() -> None:
+    body = ct.follower_cam(VALVE_CAM)
+    plain = FollowerCam(body.motion, body.guide, body.touch, body.base_radius, body.sense)
+    with pytest.raises(ct.InputError, match="knows no description"):
+        ct.summary(plain)
+
+
+@pytest.mark.parametrize(
+    "name", ["six-bar-press", "wiper", "five-bar-two-drives", "slider-between-cranks-locked"]
+)
+def test_a_motion_says_what_the_study_of_its_mechanism_says(name: str) -> None:
+    mechanism = ct.example(name)
+    assert ct.summary(ct.motion(mechanism, 37)) == ct.summary(study(mechanism, 37))
+
+
+def test_single_places_of_a_motion_have_reactions_without_bearing_loads() -> None:
+    single = restored_result(ct.motion(PRESS, at=[2.0]))
+    assert single.reactions.at == (2.0,) and single.reactions.loads is None
+    assert "samples                1: ok 1" in ct.summary(ct.motion(PRESS, at=[2.0]))
+
+
+def test_coefficients_and_curvature_are_parts_of_results() -> None:
+    two = ct.example("five-bar-two-drives")
+    coefficients = ct.kinematic_coefficients(two, 9)
+    assert ct.summary(coefficients) == ct.summary(ct.motion(two, 9))
+    assert "coefficients" in ct.tables(coefficients)
+    bends = ct.curvature(PRESS, "AB", [2.0])
+    assert restored_result(bends).curvature is bends
+
+
 def test_the_whole_result_and_its_dataset_say_the_same() -> None:
-    results = ct.reaction_results(PRESS, 37)
+    results = reaction_results(PRESS, 37)
     assert ct.summary(results) == ct.summary(results.reactions)
-    reduced = ct.reduction_results(PRESS, 37)
+    reduced = reduction_results(PRESS, 37)
     assert ct.summary(reduced) == ct.summary(reduced.reduction)
 
 
 def test_reactions_at_single_places_have_no_bearing_loads() -> None:
     single = ct.reactions(PRESS, at=[2.0])
-    assert ct.summary(single) == ct.summary(ct.reaction_results(PRESS, at=[2.0]))
+    assert ct.summary(single) == ct.summary(reaction_results(PRESS, at=[2.0]))
 
 
 def test_a_simulation_says_by_which_settings_it_ran() -> None:

@@ -17,7 +17,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.analysis.instant_centres.results import centre_results
+from centrode.dynamics.reduction_results import reduction_results
+from centrode.dynamics.steady_motion.machine import machine_results
 from centrode.locale import _, choose_language
+from centrode.model.examples import example_text
 from centrode.model.settings import Display
 from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document import blocks
@@ -210,7 +214,7 @@ def test_loads_of_any_name_are_named_by_it(hostile: str) -> None:
         loads=[{"kind": "torque", "link": "OA", "value": 3, "name": hostile}],
         gravity=[0, -10],
     )
-    results = ct.reduction_results(mechanism, 5)
+    results = reduction_results(mechanism, 5)
     assert f"  {hostile}  " in ct.summary(results) and "  weight OA  " in ct.summary(results)
     legend = ct.figures(results)["reduced-moment"].axes[0].get_legend()
     assert legend is not None
@@ -233,7 +237,7 @@ def test_what_is_no_result_is_refused() -> None:
 
 
 def test_a_result_is_written_as_the_command_writes_it(tmp_path: Path) -> None:
-    results = ct.machine_results(ct.example("six-bar-press"), 9)
+    results = machine_results(ct.example("six-bar-press"), 9)
     ct.write(results, tmp_path / "out")
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"machine.csv", "machine.nc", "machine-instants.csv", "summary.json", "works.svg"} <= names
@@ -298,9 +302,9 @@ def test_no_item_of_a_listing_is_broken() -> None:
 def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
     """A link of any name: in the printed table, the file, the drawing and the chapter of its centres."""
     coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
-    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
+    mechanism = ct.parse_mechanism(example_text("crank-rocker").replace("[links.AB]", coupler))
     assert hostile in mechanism.link_names
-    results = ct.centre_results(mechanism)
+    results = centre_results(mechanism)
     assert f"{hostile} against frame" in ct.summary(results)
     assert Name(hostile) in ct.tables(results)["centres"].columns[2].values
     axes = ct.figures(results)["centres"].axes
@@ -316,8 +320,8 @@ def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
 def test_names_in_a_graphic_check_come_out_character_by_character(hostile: str) -> None:
     """A link of any name: in the printed rows, the file, the pages and the chapter; braces are no holes."""
     coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
-    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
-    results = ct.graphic_results(mechanism, instants=[1.0])
+    mechanism = ct.parse_mechanism(example_text("crank-rocker").replace("[links.AB]", coupler))
+    results = ct.graphic_analysis(mechanism, instants=[1.0])
     printed = ct.summary(results)
     assert f"\nω_{hostile} " in printed and f"circle of {hostile} about A" in printed
     assert Name(hostile) in ct.tables(results)["check"].columns[1].values

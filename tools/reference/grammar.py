@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-import centrode as ct
+from centrode.model.schema import cam_schema, mechanism_schema
 
 Schema: TypeAlias = dict[str, Any]
 
@@ -26,12 +26,12 @@ WORDS = {
 def mechanisms() -> str:
     """The page of linkages as Markdown."""
     head = HEAD.format(things="mechanisms", meaning="[the description](../description.md)")
-    return _page(head, ct.mechanism_schema())
+    return _page(head, mechanism_schema())
 
 
 def cams() -> str:
     """The page of cams as Markdown: each kind of file, then their parts."""
-    schema = ct.cam_schema()
+    schema = cam_schema()
     meaning = "[Cams from a curvature law](../cams.md),\nfor plate cams in [Motion of a follower](../cam-followers.md)"
     files = [one["$ref"].rpartition("/")[2] for one in schema["anyOf"]]
     parts = {name: part for name, part in schema["$defs"].items() if name not in files}

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 import centrode as ct
+from centrode.analysis.graphic.checks import graphic_check
 from tools.validation.rows import Row, Source
 
 BETA = 15.81077119629904
@@ -44,7 +45,7 @@ def _turned(angle: float) -> float:
 
 def drawing() -> Source:
     """The assignment's check by drawing: angles read to whole degrees."""
-    read = ct.graphic_check(ct.example("slider-between-cranks"), math.pi / 2, angle_step=math.radians(1))
+    read = graphic_check(ct.example("slider-between-cranks"), math.pi / 2, angle_step=math.radians(1))
     rows = [
         Row(
             "angular velocity",

@@ -9,6 +9,8 @@ import numpy as np
 import xarray as xr
 
 import centrode as ct
+from centrode.dynamics.simulation.steady_state import steady_regime
+from centrode.dynamics.steady_motion.flywheel import Flywheel
 from tools.thesis_figures import ALPHA, mechanism
 from tools.validation.kinematics import KINEMATIC
 from tools.validation.rows import Row, Source, printed
@@ -41,7 +43,7 @@ def coursework() -> Source:
 
 
 @cache
-def flywheel() -> ct.Flywheel:
+def flywheel() -> Flywheel:
     """The printed machine's flywheel."""
     return ct.flywheel(ct.example("six-bar-press-printed"))
 
@@ -109,7 +111,7 @@ def thesis() -> Source:
     """Steady speeds of a thesis's spherical crank-rocker, with its plain sum of friction."""
     rows = []
     for crank, coupler, moment, told in STEADY:
-        regime = ct.steady_regime(mechanism(crank, coupler, ALPHA), ct.Simulation(driving=repr(moment)))
+        regime = steady_regime(mechanism(crank, coupler, ALPHA), ct.Simulation(driving=repr(moment)))
         found = (regime.least_speed, regime.greatest_speed, regime.mean_speed)
         for name, printed_value, value in zip(("least", "greatest", "mean"), told, found, strict=True):
             if printed_value is not None:

@@ -107,6 +107,12 @@ def principle_of_operation(mechanism: Mechanism) -> PrincipleOfOperation:
 
     Extents (strokes, angles of swing) are those over the description's own range, one turn of the drive if it names
     none. Raises InputError as `check` does.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.summary(ct.principle_of_operation(ct.example("crank-rocker"))).splitlines()[-1])
+    The mobility is 1: one drive determines the place of every link. The drive can turn fully.
     """
     prepared = ready(mechanism)
     roles, turning = roles_of(mechanism), rotatability(mechanism)

@@ -82,6 +82,13 @@ def plan_of_positions(
     -----
     The extreme position is a zero of the velocity coefficient, exact to rounding over the second
     coefficient.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> plan = ct.plan_of_positions(ct.example("crank-rocker"), 12)
+    >>> plan.link, plan.closed
+    ('DB', True)
     """
     if mechanism.space != "plane":
         raise InputError("space", _("a plan of positions is drawn in the plane only"), _("draw the motion"))

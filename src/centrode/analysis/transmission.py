@@ -203,6 +203,13 @@ def transmission_angles(
     On the sphere they are angles between arcs: of links, and from a point to the pole of its guide.
 
     Raises InputError where no group has such an angle; else as `motion` does.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.summary(ct.transmission_angles(ct.example("crank-rocker"), 73)))
+    group  least transmission angle, deg  greatest transmission angle, deg  greatest pressure angle, deg
+    AB-DB                        54.3147                           90.0000                       35.6853
     """
     prepared = ready(mechanism)
     span = (

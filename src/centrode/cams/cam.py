@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,7 @@ from centrode.cams.path_series import (
     series_path,
 )
 from centrode.cams.roller_path import (
+    FEWEST,
     RollerPath,
     SymmetricPath,
     angles_of,
@@ -70,6 +71,13 @@ def cam(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None
     ------
     InputError
         As `path_of`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> path = ct.cam(ct.example("cam-from-curvature"), 37)
+    >>> print(ct.summary(path).splitlines()[5])
+    radius ρ                      50 mm at 0 deg to 61.0092 mm at 79.1402 deg
     """
     phi = angles_of(cam, samples, at)
     if isinstance(cam, PlateCam):
@@ -129,6 +137,7 @@ def status_of(path: RollerPath, phi: Array) -> Variable:
 
 def _path_facts(cam: Cam, path: RollerPath) -> dict[str, Any]:
     return {
+        "topic": "roller-path",
         "title": cam.title,
         "cam": cam_text(cam),
         "version": __version__,
@@ -257,6 +266,7 @@ def _comparison_facts(cam: Cam, routes: Routes, data: dict[str, Any]) -> dict[st
     with np.errstate(all="ignore"):
         apart = np.abs(radii[2] / radii[1] - 1.0)
     return {
+        "topic": "path-routes",
         "title": cam.title,
         "cam": cam_text(cam),
         "version": __version__,
@@ -374,6 +384,11 @@ def roller_path_results(cam: AnyCam, samples: int | None = None) -> RollerPathRe
     )
 
 
+def results_of_roller_path(cam: Cam, dataset: xr.Dataset) -> RollerPathResults:
+    """A dataset of `cam` with what is known of the whole path."""
+    return replace(roller_path_results(cam, FEWEST), dataset=dataset)
+
+
 def _stalls(cam: Cam, path: RollerPath) -> tuple[float, ...]:
     """Where the follower stalls [rad]; of a path that is the same on both sides the positive angle."""
     if path.stall is None:
@@ -464,6 +479,13 @@ def path_routes_results(
     cam = require_curvature_cam(cam)
     dataset = cam_routes(cam, samples, terms=terms)
     chosen = tuple(instants) or cam.study.instants
+    return PathRoutesResults(cam, dataset, cam_routes(cam, at=chosen, terms=terms) if chosen else None)
+
+
+def results_of_path_routes(cam: Cam, dataset: xr.Dataset) -> PathRoutesResults:
+    """A dataset of `cam_routes`, whose series has as many terms, with the routes at the instants of the description."""
+    chosen = cam.study.instants
+    terms = int(dataset.attrs["terms"])
     return PathRoutesResults(cam, dataset, cam_routes(cam, at=chosen, terms=terms) if chosen else None)
 
 

@@ -18,14 +18,14 @@ from centrode.cams.parameter_choice.search import contact_of, working_arc
 from centrode.cams.path_series import path_of
 from centrode.cams.profiles import ProfileBody, cam_body
 from centrode.cams.return_arc import ClosedPath
-from centrode.cams.roller_path import Array, angles_of, frames, stalls_of
+from centrode.cams.roller_path import FEWEST, Array, angles_of, frames, in_order_of, stalls_of
 from centrode.cams.walking_wheel import Shoe, WheelMover, WheelRolling, mover, rolling
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Cam
-from centrode.model.cam_files import AnyCam, require_curvature_cam
+from centrode.model.cam_files import AnyCam, cam_text, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
 
 DEFAULT_SAMPLES = 361
@@ -57,6 +57,13 @@ def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False
     InputError, MotionError
         As the description: no roller, one too large for a hollow of the groove, bounds that cannot be kept, a
         path that does not close.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> profile = ct.cam_profile(ct.example("valve-cam"), 37)
+    >>> round(float(profile.profile_radius.min()), 6)
+    0.024
     """
     if isinstance(cam, PlateCam):
         if groove:
@@ -64,11 +71,11 @@ def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False
             raise InputError("groove", what, _("leave it out"))
         tool = None if cam.tool is None else cam.tool.radius
         return follower_profile(follower_cam(cam), angles_of(cam, samples), tool)
-    return profile_dataset(cam_body(cam), count_of(cam, samples), groove=groove)
+    return profile_dataset(cam, cam_body(cam), count_of(cam, samples), groove=groove)
 
 
-def profile_dataset(body: ProfileBody, samples: int, *, groove: bool = False) -> xr.Dataset:
-    """`cam_profile` of a body."""
+def profile_dataset(cam: Cam, body: ProfileBody, samples: int, *, groove: bool = False) -> xr.Dataset:
+    """`cam_profile` of a body that is known."""
     closed = body.closed
     phi = _angles(closed, samples)
     frame, inner = frames(closed, phi), body.profile(phi)
@@ -91,7 +98,8 @@ def profile_dataset(body: ProfileBody, samples: int, *, groove: bool = False) ->
         variables["groove"] = vocabulary_variable(
             "groove", ("sample", "axis"), body.profile(phi, "outer").place
         )
-    return xr.Dataset(variables, coords={"axis": AXES}, attrs={"roller": body.roller})
+    facts = {"topic": "cam-profile", "title": cam.title, "cam": cam_text(cam), "roller": body.roller}
+    return xr.Dataset(variables, coords={"axis": AXES}, attrs=facts)
 
 
 def _angles(closed: ClosedPath, samples: int) -> Array:
@@ -142,7 +150,15 @@ def cam_profile_results(
         body = cam_body(cam)
     except MotionError as refusal:
         return CamProfileResults(cam, groove, None, None, refusal)
-    return CamProfileResults(cam, groove, body, profile_dataset(body, count_of(cam, samples), groove=groove))
+    dataset = profile_dataset(cam, body, count_of(cam, samples), groove=groove)
+    return CamProfileResults(cam, groove, body, dataset)
+
+
+def results_of_cam_profile(cam: Cam, dataset: xr.Dataset) -> CamProfileResults:
+    """A dataset of `cam_profile` with the body of its cam."""
+    body, groove = cam_body(cam), "groove" in dataset
+    pattern = profile_dataset(cam, body, FEWEST, groove=groove)
+    return CamProfileResults(cam, groove, body, in_order_of(dataset, pattern))
 
 
 def has_roller(cam: AnyCam) -> bool:
@@ -169,11 +185,11 @@ def shoe_profile(cam: Cam, samples: int | None = None) -> xr.Dataset:
     InputError, MotionError
         As `walking_wheel`.
     """
-    return shoe_dataset(walking_wheel(cam), count_of(cam, samples))
+    return shoe_dataset(cam, walking_wheel(cam), count_of(cam, samples))
 
 
-def shoe_dataset(wheel: WheelMover, samples: int) -> xr.Dataset:
-    """`shoe_profile` of a wheel."""
+def shoe_dataset(cam: Cam, wheel: WheelMover, samples: int) -> xr.Dataset:
+    """`shoe_profile` of a wheel that is known."""
     shoe: Shoe = wheel.shoe
     phi: Array = np.linspace(-wheel.half, wheel.half, samples)
     angle, radius = shoe.polar(phi)
@@ -190,7 +206,8 @@ def shoe_dataset(wheel: WheelMover, samples: int) -> xr.Dataset:
     }
     variables = {name: vocabulary_variable(name, ("sample",), values) for name, values in columns.items()}
     variables["shoe_profile"] = vocabulary_variable("shoe_profile", ("sample", "axis"), shoe.place(phi))
-    return xr.Dataset(variables, coords={"axis": AXES}, attrs={"hub_height": wheel.height})
+    facts = {"topic": "walking-wheel", "title": cam.title, "cam": cam_text(cam), "hub_height": wheel.height}
+    return xr.Dataset(variables, coords={"axis": AXES}, attrs=facts)
 
 
 def walking_wheel(cam: AnyCam) -> WheelMover:
@@ -202,6 +219,13 @@ def walking_wheel(cam: AnyCam) -> WheelMover:
         No `[mover]`, a pressure angle at phi = 0 that makes the shoe singular, too few legs, and what a profile needs.
     MotionError
         A shoe with a cusp; no return arc within the bounds.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> wheel = ct.walking_wheel(ct.example("walking-wheel-four-legs"))
+    >>> wheel.legs
+    4
     """
     return wheel_of(require_curvature_cam(cam), cam_body(cam))
 
@@ -210,7 +234,7 @@ def wheel_of(cam: Cam, body: ProfileBody) -> WheelMover:
     """`walking_wheel` on a body that is known."""
     if cam.mover is None:
         raise InputError("[mover]", _("a walking wheel needs legs"), _("give [mover] legs and post"))
-    return mover(body.closed, cam.mover.legs, cam.mover.post, body.roller)
+    return replace(mover(body.closed, cam.mover.legs, cam.mover.post, body.roller), cam=cam)
 
 
 def count_of(cam: Cam, samples: int | None) -> int:
@@ -287,10 +311,22 @@ def walking_wheel_results(
         cam,
         wheel,
         rolling(wheel),
-        shoe_dataset(wheel, count_of(cam, samples)),
+        shoe_dataset(cam, wheel, count_of(cam, samples)),
         tuple(_uneven(body, wheel)),
         tuple(instants) or cam.study.instants or even,
     )
+
+
+def results_of_walking_wheel(cam: Cam, dataset: xr.Dataset) -> WalkingWheelResults:
+    """A dataset of `shoe_profile` with the wheel of its cam."""
+    found = walking_wheel_results(cam, FEWEST)
+    assert found.dataset is not None
+    return replace(found, dataset=in_order_of(dataset, found.dataset))
+
+
+def results_of_wheel(cam: Cam, wheel: WheelMover) -> WalkingWheelResults:
+    """A walking wheel with its shoe, and the proof that it rolls level without slip."""
+    return replace(walking_wheel_results(cam), wheel=wheel)
 
 
 def _uneven(body: ProfileBody, wheel: WheelMover) -> list[tuple[float, float]]:
@@ -368,6 +404,13 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     ------
     InputError
         No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> contact = ct.cam_contact(ct.example("walking-wheel-four-legs"), 37)
+    >>> print(ct.summary(contact).splitlines()[2])
+    greatest contact stress  626.262 MPa at ±45 deg, more than the admissible 600 MPa
     """
     cam = require_curvature_cam(cam)
     contact = contact_of(cam)
@@ -394,7 +437,9 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
         "cam_curvature_radius": found.cam_radius,
     }
     attributes: dict[str, Any] = {
+        "topic": "cam-contact",
         "title": cam.title,
+        "cam": cam_text(cam),
         "greatest_stress": found.greatest.value,
         "greatest_stress_at": found.greatest.angle,
         "greatest_stress_by_source": found.greatest_by_source.value,

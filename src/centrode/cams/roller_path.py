@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 from numpy.typing import NDArray
 
 from centrode.cams.curvature_laws import CurvatureLaw, derivatives
@@ -415,6 +416,8 @@ def runs_away(phi: float) -> InputError:
 # Angles of the carrier at which a cam is looked at.
 
 DEFAULT_SAMPLES = 361
+FEWEST = 2
+"""Samples of what is computed for its extremes alone."""
 
 
 def ends_of(cam: AnyCam) -> tuple[float, float]:
@@ -444,6 +447,14 @@ def angles_of(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None 
     if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("it needs finite angles of the carrier, one or more, in one dimension"))
     return places
+
+
+def in_order_of(dataset: xr.Dataset, pattern: xr.Dataset) -> xr.Dataset:
+    """A dataset with the variables of another, in their order; a netCDF file does not keep it.
+
+    Raises KeyError where one is absent.
+    """
+    return dataset[list(pattern.data_vars)]
 
 
 # Least and greatest values of a path: of its radius, its pressure angle, its curvature.

@@ -6,9 +6,10 @@ Nothing here uses the support function by which the shoes are made (`shoe`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -21,6 +22,9 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.numerics.jets import Jet, quotient
 from centrode.numerics.search import Extremes, extremes, maxima_between
+
+if TYPE_CHECKING:
+    from centrode.model.cam import Cam
 
 # The shoe of a leg: the profile that rolls on flat ground while the hub stays at its height.
 #
@@ -243,12 +247,15 @@ class WheelMover:
     shoe : Shoe
     roller : float [m]
         Radius of the rollers.
+    cam : Cam or None
+        The description that it is the wheel of; None without one.
     """
 
     closed: ClosedPath
     legs: int
     shoe: Shoe
     roller: float
+    cam: Cam | None = field(default=None, repr=False, compare=False)
 
     @property
     def half(self) -> float:

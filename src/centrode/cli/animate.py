@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, range_option, start_option, stop_option
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
 from centrode.topics.registry import READ_PAIRS_OF_BODIES
+
+if TYPE_CHECKING:
+    from centrode.present.animations.animate import Shown
+    from centrode.present.animations.video_files import Animation
 
 ENDINGS = (".gif", ".mp4")
 SIZE = "800x600"
@@ -88,12 +93,12 @@ def animate(
     force: bool,
 ) -> None:
     """Write the animation; exit code 3 if a range was asked for that is not all reached (the rest is written)."""
-    description = _in_range(ct.load_either(described), ranged)
+    description = _in_range(library.load_either(described), ranged)
     path = out if out is not None else Path(f"{Path(described).stem}.gif")
     if path.suffix.lower() not in ENDINGS:
         raise InputError("--out", _("an animation is a .gif or a .mp4"), _("name such a file"))
     shown = _shown(show, points, growing, pairs, link, against)
-    pace = ct.Pace(frames, fps, duration, speed)
+    pace = library.pace_of_frames(frames, fps, duration, speed)
     first, last = _end(description, start, "--from"), _end(description, stop, "--to")
     with output.output_file(path, force=force) as draft, Progress() as progress:
         progress.say(_("solving"))
@@ -145,11 +150,11 @@ def _shown(
     pairs: tuple[str, ...],
     link: str | None,
     against: str | None,
-) -> ct.Shown | None:
+) -> Shown | None:
     """What is shown; nothing where nothing is said, so that a cam can be asked for in the same words."""
     if show is None and points is None and not growing and not pairs and link is None and against is None:
         return None
-    return ct.Shown(
+    shown: Shown = library.shown_signs(
         ("paths",) if show is None else _names(show),
         None if points is None else _names(points),
         growing,
@@ -157,6 +162,7 @@ def _shown(
         link,
         against or "frame",
     )
+    return shown
 
 
 def _names(text: str) -> tuple[str, ...]:
@@ -174,7 +180,7 @@ def _end(description: ct.Mechanism | ct.Cam | ct.PlateCam, text: str | None, whe
     return description.motion_parameter.instant.read(text, where)
 
 
-def _rows(made: ct.Animation) -> list[tuple[str, str]]:
+def _rows(made: Animation) -> list[tuple[str, str]]:
     """Frames, size, time and loop."""
     loop = _("round, without a jump") if made.loop == "round" else _("there and back")
     rate = _("{rate:.4g} a second: {seconds:.4g} s").format(rate=made.per_second, seconds=made.seconds)

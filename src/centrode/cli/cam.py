@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.announcements import announce_samples
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
@@ -46,7 +45,7 @@ animate_option = click.option(
 
 def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given: Any) -> None:
     """Print what is known of a cam, and write it where a folder is named."""
-    description = ct.load_cam(cam)
+    description = library.load_cam(cam)
     no_figures, dark = given.pop("no_figures"), given.pop("dark")
     _check_options(description, given)
     with about(cam):

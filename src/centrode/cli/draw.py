@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.announcements import announce_size
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PLACED = (Status.OK, Status.CUT_OFF, Status.SINGULAR)
 """Statuses of samples that have a position."""
 REQUIRE_CENTRES = Lazily("centrode.analysis.instant_centres.results", "require_centres")
-KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
+KINDS = {".dxf": library.write_drawing_dxf, ".svg": library.write_drawing_svg}
 
 
 @click.command(help=mark("Draw a mechanism at full size in conventional signs."))
@@ -69,11 +69,11 @@ def draw(
     if kind not in KINDS:
         what = _("{ending} is no kind of file for drawings").format(ending=f'"{out.suffix}"')
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
-    description = ct.load(mechanism)
+    description = library.load(mechanism)
     announce_size(description, samples)
     description = description.with_range(ranged)
     place = (
-        ct.initial_place(description)
+        library.initial_place(description)
         if instant is None
         else description.motion_parameter.instant.read(instant, "--at")
     )
@@ -81,24 +81,26 @@ def draw(
     last = None if stop is None else description.motion_parameter.instant.read(stop, "--to")
     with about(mechanism):
         course = ct.motion(description, samples, first, last)
-        motion, sample = ct.motion_among(description, course, place)
+        motion, sample = library.motion_among(description, course, place)
         rolled = [_centrodes(course, link) for link in links]
-        drawing = ct.mechanism_drawing(
+        drawing = library.mechanism_drawing(
             description,
             motion,
             sample,
-            ct.moving_points(description, paths, "--path"),
+            library.moving_points(description, paths, "--path"),
             rolled,
             not no_names,
             course,
         )
     with output.output_file(out, force=force) as draft:
-        getattr(ct, KINDS[kind])(drawing, draft)
+        KINDS[kind](drawing, draft)
     click.echo(_("wrote {file}").format(file=out))
     if Status(int(motion["status"][sample])) not in PLACED:
         raise MotionError(
             mechanism,
-            _("there is no position at {place}").format(place=ct.place_words(description, motion, sample)),
+            _("there is no position at {place}").format(
+                place=library.place_words(description, motion, sample)
+            ),
             _("ask for a value between the limits"),
         )
 

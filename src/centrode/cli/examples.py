@@ -9,7 +9,7 @@ import click
 
 import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.locale import _, mark, ngettext
 
 
@@ -30,7 +30,7 @@ def examples(name: str | None, out: Path | None, force: bool) -> None:
             raise click.UsageError(_("--out needs the NAME of a built-in mechanism"))
         click.echo(_listing())
         return
-    text = ct.example_text(name)
+    text = library.example_text(name)
     if out is None:
         click.echo(text, nl=not text.endswith("\n"))
         return
@@ -51,4 +51,4 @@ def _listing() -> str:
 
 
 def _rows(names: tuple[str, ...]) -> list[tuple[str, str]]:
-    return [(name, _(str(tomllib.loads(ct.example_text(name)).get("title", "")))) for name in names]
+    return [(name, _(str(tomllib.loads(library.example_text(name)).get("title", "")))) for name in names]

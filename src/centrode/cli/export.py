@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.errors import InputError
@@ -28,9 +28,9 @@ def export(mechanism: str, mjcf: bool, out: Path | None, force: bool) -> None:
     """Print or write the mechanism in its initial position as another program reads it."""
     if not mjcf:
         raise InputError("", _("nothing says for which program"), _("say --mjcf for MuJoCo"))
-    description = ct.load(mechanism)
+    description = library.load(mechanism)
     with about(mechanism):
-        text = ct.mjcf_text(description, ct.motion(description, at=[ct.initial_place(description)]))
+        text = library.mjcf_text(description, ct.motion(description, at=[library.initial_place(description)]))
     if out is None:
         click.echo(text, nl=False)
         return

@@ -11,7 +11,7 @@ import lazy_loader
 
 import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.arguments import results_option
 from centrode.cli.progress import Progress
@@ -71,7 +71,7 @@ def report(
     digits: int | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
-    described = ct.load_either(description)
+    described = library.load_either(description)
     folder = output.folder_of(out, description, "report")
     kinds = _names_in(formats)
     _writing().check_formats(kinds)

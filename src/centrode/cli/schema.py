@@ -6,7 +6,7 @@ import json
 
 import click
 
-import centrode as ct
+from centrode.cli import library
 from centrode.locale import mark
 
 
@@ -14,5 +14,5 @@ from centrode.locale import mark
 @click.option("--cam", is_flag=True, help=mark("That of cams; else that of linkages."))
 def schema(cam: bool) -> None:
     """Print the JSON Schema of the description."""
-    found = ct.cam_schema() if cam else ct.mechanism_schema()
+    found = library.cam_schema() if cam else library.mechanism_schema()
     click.echo(json.dumps(found, indent=2, ensure_ascii=False))

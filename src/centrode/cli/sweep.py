@@ -12,7 +12,7 @@ import click
 
 import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.progress import Progress
 from centrode.cli.tables import need_table, table_files, tables_options
@@ -39,7 +39,7 @@ TABLE, STORE = ".csv", ".zarr"
 @click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
 def sweep(study: str, out: Path | None, force: bool) -> None:
     """Compute and write; exit code 3 if no mechanism moves anywhere (the results are written)."""
-    asked = ct.read_sweep(study)
+    asked = library.read_sweep(study)
     target = out if out is not None else Path(Path(study).stem + STORE)
     need_table(target)
     if target.suffix == TABLE:
@@ -50,7 +50,7 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
         raise InputError(
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
-    sheet, display = ct.sheet_of(data), asked.mechanism.display
+    sheet, display = library.sheet_of(data), asked.mechanism.display
     click.echo(render.sheet_text(sheet, display))
     click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
     if sheet.failure is not None:

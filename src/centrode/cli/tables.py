@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-import centrode as ct
+from centrode.cli import library
 from centrode.errors import InputError
 from centrode.locale import _, mark
+
+if TYPE_CHECKING:
+    from centrode.present.spelled_tables import TableSpelling
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -38,11 +41,12 @@ def _keep(key: str) -> Callable[[click.Context, click.Parameter, bool], None]:
     return keep
 
 
-def asked_spelling() -> ct.TableSpelling:
+def asked_spelling() -> TableSpelling:
     """How the running command was asked to spell its tables."""
     context = click.get_current_context(silent=True)
     asked = {} if context is None else context.meta
-    return ct.TableSpelling(bool(asked.get(XLSX)), bool(asked.get(COMMA)))
+    spelling: TableSpelling = library.table_spelling(bool(asked.get(XLSX)), bool(asked.get(COMMA)))
+    return spelling
 
 
 def need_table(path: Path | None) -> None:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import click
 
-import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.announcements import announce_size, announce_turns
 from centrode.cli.arguments import (
@@ -51,7 +50,7 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
     """The command of a topic: `centrode TOPIC MECHANISM [options] [--out DIR]`."""
 
     def run(mechanism: str, out: Path | None = None, **given: Any) -> None:
-        description = ct.load(mechanism)
+        description = library.load(mechanism)
         samples = given.pop("samples") if command.samples else None
         if command.samples and command.extent is None:
             announce_size(description, samples)

@@ -8,7 +8,7 @@ import click
 
 import centrode as ct
 from centrode import render
-from centrode.cli import output
+from centrode.cli import library, output
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
@@ -60,7 +60,7 @@ def variants(
         raise InputError("--format", _("it belongs to --report"), _("say that too"))
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
     spelling = asked_spelling()
-    description = ct.load(topology)
+    description = library.load(topology)
     folder = output.folder_of(out, table, "variants")
     try:
         with Progress() as progress:
@@ -69,7 +69,7 @@ def variants(
                 progress.say(_("computing variants"), done, of)
 
             if reports:
-                found = ct.write_variant_reports(
+                found = library.write_variant_reports(
                     description, table, folder, jobs, figures, formats=kinds, progress=tell, spelling=spelling
                 )
             else:
@@ -80,8 +80,8 @@ def variants(
         note = _("what is finished stays in {folder}; the same command goes on from there")
         output.tell(note.format(folder=folder))
         raise
-    found = ct.spoken_variants(found)
-    sheet = ct.sheet_of(found)
+    found = library.spoken_variants(found)
+    sheet = library.sheet_of(found)
     click.echo(render.sheet_text(sheet, description.display))
     written = ["summary.csv", *(f"answers.{kind}" for kind in dict.fromkeys(kinds) if reports)]
     click.echo("\n".join(_("wrote {file}").format(file=folder / name) for name in written))

@@ -8,6 +8,7 @@ from math import isfinite, tau
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.bearings.results import ReactionResults, with_bearings
@@ -98,12 +99,44 @@ def study(
     Examples
     --------
     >>> import centrode as ct
-    >>> results = ct.study(ct.example("crank-rocker"), 37)
+    >>> from centrode.dynamics.motion_results import study
+    >>> results = study(ct.example("crank-rocker"), 37)
     >>> results.unreached
     0
     """
     prepared = ready(mechanism)
     solved = solve(prepared, requested_grid(prepared, samples, start, stop))
+    return _results(solved, dataset_of(solved), samples)
+
+
+def results_of_motion(mechanism: Mechanism, course: xr.Dataset) -> MotionResults:
+    """A dataset of `motion`, or of `kinematic_coefficients`, with all that `study` computes beside it.
+
+    Single places have no loads of bearings, as these are taken over a motion.
+    """
+    prepared = ready(mechanism)
+    places = mechanism.motion_parameter.instants(course)
+    solved = solve(prepared, grid_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64)))
+    over_range = _is_evenly_spaced(places)
+    count = len(places) if over_range else None
+    if "position" not in course:
+        return replace(
+            _results(solved, dataset_of(solved), count, over_range=over_range), coefficients=course
+        )
+    return _results(solved, course, count, over_range=over_range)
+
+
+def _is_evenly_spaced(places: npt.NDArray[np.float64]) -> bool:
+    """Whether places are those of a range: the grid of a range with these ends has the same bits."""
+    ends = float(places[0]), float(places[-1])
+    return len(places) > 2 and np.array_equal(places, np.linspace(*ends, len(places)))
+
+
+def _results(
+    solved: Solved, data: xr.Dataset, samples: int | None, *, over_range: bool = True
+) -> MotionResults:
+    """What follows from a motion that is solved already; `samples` are those of the machine's cycle."""
+    prepared, mechanism = solved.ready, solved.ready.mechanism
     refusals: dict[str, CentrodeError] = {}
     machine = reactions = None
     try:
@@ -111,12 +144,12 @@ def study(
     except (MotionError, NotComputedYet) as refusal:
         refusals["flywheel"] = refusal
     try:
-        reactions = _reactions(mechanism, solved) if has_masses_or_loads(mechanism) else None
+        if has_masses_or_loads(mechanism):
+            reactions = _reactions(mechanism, solved, over_range)
     except (InputError, NotComputedYet) as refusal:
         refusals["reactions"] = refusal
     most = most_samples(solved)
     by_each_drive = len(mechanism.drives) > 1 and solved.status.size <= most
-    data = dataset_of(solved)
     found = MotionResults(
         mechanism,
         check_of(prepared),
@@ -160,11 +193,15 @@ def instants_of(mechanism: Mechanism, course: xr.Dataset, wished: Sequence[float
     return [float(course["time"][sample]) for sample in nearest]
 
 
-def _reactions(mechanism: Mechanism, solved: Solved) -> ReactionResults:
-    """Reactions of a motion that is solved already."""
+def _reactions(mechanism: Mechanism, solved: Solved, over_range: bool) -> ReactionResults:
+    """Reactions of a motion that is solved already, over a range with the loads and the wear of the bearings."""
     given = MassesAndLoads.for_reactions(mechanism)
-    found = reactions_at(solved, given, input_motion_of(solved, given), contacts_of(mechanism))
-    return with_bearings(mechanism, found)
+    found = reactions_at(
+        solved, given, input_motion_of(solved, given), contacts_of(mechanism), whole=over_range
+    )
+    if over_range:
+        return with_bearings(mechanism, found)
+    return ReactionResults(mechanism, found, tuple(map(float, mechanism.motion_parameter.instants(found))))
 
 
 def _at_instants(prepared: Ready) -> xr.Dataset | None:

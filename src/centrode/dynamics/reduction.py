@@ -416,6 +416,13 @@ def reduce(
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
         Friction by a coefficient.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> reduced = ct.reduce(ct.example("six-bar-press"), 37)
+    >>> print(ct.summary(reduced).splitlines()[3])
+    loads                  force H, weight AB, weight CD, weight DH, weight slider
     """
     prepared = ready(mechanism)
     burden = MassesAndLoads.of(mechanism)

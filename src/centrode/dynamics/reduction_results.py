@@ -92,7 +92,8 @@ def reduction_results(
     Examples
     --------
     >>> import centrode as ct
-    >>> results = ct.reduction_results(ct.example("six-bar-press"), 37)
+    >>> from centrode.dynamics.reduction_results import reduction_results
+    >>> results = reduction_results(ct.example("six-bar-press"), 37)
     >>> print(results.extremes[0].variable, results.extremes[0].unit)
     reduced_inertia kg m^2
     """

@@ -238,6 +238,12 @@ def equations(mechanism: Mechanism, points: Sequence[str] | None = None) -> Equa
     InputError
         The mechanism cannot be driven or does not assemble; a point does not move; or on the sphere other groups than
         dyads of arcs and circles have to be solved.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.summary(ct.equations(ct.example("crank-rocker"))).splitlines()[2])
+      φ₂(0) = 0.94797 rad   angle of link AB
     """
     made = ready(mechanism)
     board, drafts = assemble_chains(made) if made.mechanism.space == "plane" else laid_on_sphere(made)

@@ -603,6 +603,13 @@ def integrate(
     ------
     InputError
         As `motion` and `equations` do, or method, steps or tolerance do not exist.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> found = ct.integrate(ct.example("crank-rocker"), steps=200)
+    >>> print(ct.summary(found).splitlines()[2])
+    rows                 201: ok 201
     """
     _check(method, steps, tolerance)
     prepared = ready(mechanism)

@@ -279,6 +279,15 @@ def motion(
         The description does not define a motion: drives against mobility, initial position, range.
     NotComputedYet
         It names what this version does not compute.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> motion = ct.motion(ct.example("crank-rocker"), 37)
+    >>> motion.position.sel(point="B").shape
+    (37, 2)
+    >>> print(ct.summary(motion).splitlines()[-2])
+    samples                37: ok 37
     """
     prepared = ready(mechanism)
     numbers, lanes = _batch(mechanism, vary)

@@ -72,6 +72,16 @@ def choose_language(language: str | None = None) -> str:
     """Speak `language` ("en", "ru" or "uk") from now on; None follows the environment. Returns the choice.
 
     Raises InputError for a language without a catalogue.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.choose_language("uk")
+    'uk'
+    >>> print(ct.summary(ct.limits(ct.example("crank-rocker"))).splitlines()[-1])
+    точки розгалуження  немає
+    >>> ct.choose_language("en")
+    'en'
     """
     global _catalogue
     if language is not None and language not in LANGUAGES:

@@ -443,6 +443,12 @@ class Cam(DescriptionPart):
     ------
     InputError
         Anything that is not a description, with its place and the repair.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.example("cam-from-curvature").curvature.k0
+    10.0
     """
 
     title: Text = ""
@@ -528,8 +534,11 @@ def _has(cam: Cam, name: str) -> bool:
     return getattr(getattr(cam, table), key, None) is not None
 
 
-def vary_cam(cam: SomeCam, values: Mapping[str, float]) -> SomeCam:
-    """The cam with other numbers [SI] at paths such as "curvature.k0"; InputError for a path it does not have."""
+def vary_cam(cam: SomeCam, values: Mapping[str, float | str]) -> SomeCam:
+    """The cam with other numbers [SI], or texts with a unit, at paths such as "curvature.k0".
+
+    Raises InputError for a path that it does not have.
+    """
     tables = part_tables(cam)
     for path, value in values.items():
         table, _dot, key = path.partition(".")
@@ -546,7 +555,7 @@ def vary_cam(cam: SomeCam, values: Mapping[str, float]) -> SomeCam:
     return type(cam)(**tables)
 
 
-def _put_point(curvature: dict[str, Any], path: str, value: float) -> None:
+def _put_point(curvature: dict[str, Any], path: str, value: float | str) -> None:
     points = [list(point) for point in curvature.get("points", ())]
     number = int(path.rpartition(".")[2])
     if number > len(points):

@@ -25,7 +25,16 @@ _OF_FOLLOWER = ("follower", "segments")
 
 
 def read_cam(path: str | Path) -> AnyCam:
-    """The cam described in a TOML file; raises InputError that says where it is wrong."""
+    """The cam described in a TOML file; raises InputError that says where it is wrong.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> from pathlib import Path
+    >>> _ = Path("cam.toml").write_text(ct.cam_text(ct.example("valve-cam")))
+    >>> ct.read_cam("cam.toml").title
+    'Valve cam'
+    """
     path = Path(path)
     return parse_cam(read_file(path), path.name, path.parent)
 
@@ -44,6 +53,13 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
     Raises
     ------
     InputError
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> cam = ct.example("valve-cam")
+    >>> ct.parse_cam(ct.cam_text(cam)) == cam
+    True
     """
     return cam_from(toml_tables(text, where), where, folder)
 
@@ -95,5 +111,12 @@ def with_follower(cam: AnyCam) -> PlateCam:
 
 
 def cam_text(cam: AnyCam) -> str:
-    """The cam as TOML in SI, without defaults; `parse_cam` gives exactly it back."""
+    """The cam as TOML in SI, without defaults; `parse_cam` gives exactly it back.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.cam_text(ct.example("valve-cam")).splitlines()[1])
+    kind = "cam"
+    """
     return in_short_lines(tomli_w.dumps(part_tables(cam)))

@@ -35,6 +35,12 @@ def four_bar(
     K1 cos psi - K2 cos phi + K3 = cos(phi - psi), where K1 = ground/crank, K2 = ground/rocker and
     K3 = (crank^2 - coupler^2 + rocker^2 + ground^2) / (2 crank rocker) (F. Freudenstein, Trans. ASME 76,
     1954, 483-492; angles from O towards D). Raises InputError for lengths that close at no angle.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.check(ct.four_bar(1, 3.5, 3, 4)).formula
+    'I(crank) -> II(coupler, rocker)'
     """
     a, b, c, d = _lengths(crank=crank, coupler=coupler, rocker=rocker, ground=ground)
     return _driven(
@@ -80,6 +86,12 @@ def slider_crank(
     x_B = crank cos phi +- sqrt(coupler^2 - (offset - crank sin phi)^2), plus where B is "ahead" of A along
     the x axis (J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of Machines and Mechanisms, offset
     slider-crank). Raises InputError for lengths that close at no angle.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> float(ct.motion(ct.slider_crank(1, 3), at=[0.0]).position.sel(point="B", axis="x")[0])
+    4.0
     """
     a, b = _lengths(crank=crank, coupler=coupler)
     e = to_si(offset, "length")

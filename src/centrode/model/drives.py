@@ -70,6 +70,12 @@ class Drive(DescriptionPart):
         out.
     lowers : bool
         Whether the cam's lift lowers the value instead of raising it.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Drive(link="OA", speed="60 rpm").speed
+    6.283185307179586
     """
 
     link: Name | None = None

@@ -6,17 +6,21 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import tomli_w
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.cam import Cam, vary_cam
 from centrode.model.description import Description
+from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
 from centrode.model.toml import is_cam, parse_tables, toml_tables
+
+AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
 
 # A mechanism as the tables of its file, with only what differs from the defaults.
 
@@ -35,7 +39,16 @@ _SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
 
 
 def read_mechanism(path: str | Path) -> Mechanism:
-    """The mechanism described in a TOML file; raises InputError that says where it is wrong."""
+    """The mechanism described in a TOML file; raises InputError that says where it is wrong.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> from pathlib import Path
+    >>> _ = Path("bars.toml").write_text(ct.mechanism_text(ct.example("crank-rocker")))
+    >>> ct.read_mechanism("bars.toml").title
+    'Crank-rocker four-bar linkage'
+    """
     path = Path(path)
     return parse_mechanism(read_file(path), path.name, path.parent)
 
@@ -54,6 +67,13 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     Raises
     ------
     InputError
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> mechanism = ct.example("crank-rocker")
+    >>> ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
+    True
     """
     return mechanism_from(toml_tables(text, where), where, folder)
 
@@ -67,7 +87,14 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
 
 
 def mechanism_text(mechanism: Mechanism) -> str:
-    """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back."""
+    """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.mechanism_text(ct.example("crank-rocker"))[:40])
+    title = "Crank-rocker four-bar linkage"
+    """
     return in_short_lines("\n".join(_sections(document(mechanism))))
 
 
@@ -108,10 +135,16 @@ Spot = tuple[Any, Any]
 
 
 def value_at(mechanism: Mechanism, path: str) -> float:
-    """Number [SI] at a path; raises InputError where there is none.
+    """Number [SI] of a mechanism at a path; raises InputError where there is none.
 
     `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate of a
     link whose points have coordinates. On the sphere, coordinates are `longitude` and `latitude`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.value_at(ct.example("crank-rocker"), "links.AB.length")
+    3.5
     """
     words = _words(mechanism, path)
     if words[0] == "guides" and words[2:] == ["direction"]:
@@ -128,14 +161,23 @@ def value_at(mechanism: Mechanism, path: str) -> float:
     return float(value)
 
 
-def with_value(mechanism: Mechanism, path: str, value: float | str) -> Mechanism:
-    """The mechanism with another number, or text with a unit, at a path.
+def with_value(description: AnyDescription, path: str, value: float | str) -> AnyDescription:
+    """The mechanism, or the cam, with another number, or text with a unit, at a path.
 
     What was `placed` stays where it is, unless it is what the path names (then it counts as given from
     now on); `replace_placed` places anew. Raises InputError where there is no such path, or where the
     value does not fit.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> longer = ct.with_value(ct.example("crank-rocker"), "links.AB.length", "3.6 m")
+    >>> longer.links["AB"].length
+    3.6
     """
-    return with_values(mechanism, {path: value})
+    if isinstance(description, Mechanism):
+        return with_values(description, {path: value})
+    return vary_cam(description, {path: value})
 
 
 def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mechanism:

@@ -458,6 +458,12 @@ class PlateCam(DescriptionPart):
     ------
     InputError
         Anything that is not a description, with its place and the repair.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.example("valve-cam").follower.kind
+    'translating'
     """
 
     title: Text = ""

@@ -83,6 +83,12 @@ class Frame(DescriptionPart):
     Attributes
     ----------
     points : mapping of name to (x, y) [m] or Placed
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Frame(points={"O": [0, 0], "D": ["4 m", 0]}).points["D"]
+    (4.0, 0.0)
     """
 
     points: NamedPositions = FrozenMap({})
@@ -124,6 +130,12 @@ class Link(DescriptionPart):
         On the sphere: the inertia is that about the axis through the centre alone, and the mass is there.
     reference : two points
         On the sphere: the arc the angle is measured from.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Link(length="50 mm", angle="30 deg").length
+    0.05
     """
 
     points: Annotated[tuple[str, ...] | Mapping[str, Vector], PlainValidator(_read_points)] = ()
@@ -194,6 +206,12 @@ class Guide(DescriptionPart):
         The guide's id where it is not its point's name.
     pole, radius : (longitude, latitude) [rad], a point's name or Placed; arc [rad]
         On the sphere, instead of `through` and `direction`; without a radius a great circle.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Guide(point="C", through=[0, 0], direction="90 deg").direction_angle
+    1.5707963267948966
     """
 
     point: Name

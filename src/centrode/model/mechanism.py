@@ -68,6 +68,15 @@ class Mechanism(Description):
     ------
     InputError
         Anything that is not a description, with its place and the repair.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> bar = ct.Mechanism(
+    ...     frame={"points": {"O": [0, 0]}}, links={"OA": {"length": "0.2 m"}}, drives=[{"link": "OA", "speed": 1}]
+    ... )
+    >>> bar.links["OA"].length
+    0.2
     """
 
     if TYPE_CHECKING:

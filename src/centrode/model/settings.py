@@ -70,6 +70,12 @@ class Assembly(DescriptionPart):
         behind along a guide. Needed where the initial position does not tell.
     continuation : "smooth" or "keep"
         Run through change points smoothly, or keep the sign of the assembly.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Assembly(sides={"B": "left"}).sides["B"]
+    'left'
     """
 
     sides: Annotated[
@@ -93,6 +99,12 @@ class Study(DescriptionPart):
         Range of the drive's value; "from" and "to" in a file.
     range : "reachable"
         In place of these: between the limits about the initial position, without limits one turn.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Study(samples=73, stop="90 deg").samples
+    73
     """
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None

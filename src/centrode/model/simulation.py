@@ -145,6 +145,13 @@ class Simulation(DescriptionPart):
         Relative one of the adaptive schemes.
     samples : int
         Of the result, evenly spaced in time.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> settings = ct.Simulation(driving="20 - 2*v", duration="1 s")
+    >>> settings.duration
+    1.0
     """
 
     start: PlaceOfMotion | None = None

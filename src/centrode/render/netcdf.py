@@ -40,9 +40,6 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     kept.to_netcdf(path, engine="scipy")
 
 
-write_motion_netcdf = write_dataset
-
-
 def read_dataset(path: Path) -> xarray.Dataset:
     """A dataset from a netCDF file, as it was written.
 

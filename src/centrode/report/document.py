@@ -50,6 +50,14 @@ def report(
     ------
     InputError
         The mechanism does not assemble, or the options name what is not there.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> chosen = ct.ReportOptions(chapters=("structure",))
+    >>> made = ct.report(ct.example("crank-rocker"), chosen)
+    >>> [chapter.name for chapter in made.chapters]
+    ['structure']
     """
     with nullcontext() if language is None else speaking(language):
         study = ReportStudy(description, settle_options(description, options or ReportOptions(), CHAPTERS))

@@ -57,6 +57,13 @@ def write_report(
     ------
     InputError
         An unknown format, a missing library, or a folder that cannot be written.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> chosen = ct.ReportOptions(chapters=("structure",))
+    >>> [file.name for file in ct.write_report(ct.report(ct.example("crank-rocker"), chosen), "pages", ["html"])]
+    ['report.html']
     """
     check_formats(formats)
     documents: dict[str, bytes] = {}

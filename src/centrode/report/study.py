@@ -41,6 +41,12 @@ class ReportOptions:
     instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives]
     points : names of points whose velocities and paths are told
     digits : significant digits of numbers
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.ReportOptions(chapters=("structure", "reactions"), digits=4).digits
+    4
     """
 
     chapters: tuple[str, ...] | None = None

@@ -107,6 +107,13 @@ def variants(topology: Mechanism, table: Table, progress: Progress | None = None
     ------
     InputError
         The table is wrong. A variant that is no mechanism has the status "refused" instead.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> rows = [{"variant": "long", "links.AB.length": 3.6}, {"variant": "short", "links.AB.length": 3.4}]
+    >>> [row.turns_fully for row in ct.variants(ct.example("crank-rocker"), rows).rows]
+    [True, True]
     """
     given = read_variants(topology, table)
     results = []

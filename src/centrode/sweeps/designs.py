@@ -209,6 +209,14 @@ def sample(ranges: Mapping[str, Any], count: int, method: str = "latin hypercube
         a power of two).
     seed : int
         The same seed draws the same mechanisms.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> drawn = ct.sample({"links.AB.length": ("3.4 m", "3.6 m")}, 4)
+    >>> found = ct.sweep(ct.example("crank-rocker"), drawn, ["angle.DB"], 37, reduce="max")
+    >>> found.sizes["mechanism"]
+    4
     """
     return Sample(dict(ranges), count, method, seed)
 
@@ -330,6 +338,14 @@ def grid(ranges: Mapping[str, Any]) -> Grid:
     ranges : path -> (first, last, count), or values
         A tuple is a range: evenly spaced values with both ends, numbers [SI] or texts with a unit. A list or an
         array is taken as it is. The last path varies fastest.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> lengths = ct.grid({"links.AB.length": ("3.4 m", "3.6 m", 3), "links.DB.length": [3.0, 3.1]})
+    >>> found = ct.sweep(ct.example("crank-rocker"), lengths, ["angle.DB"], 37, reduce="max")
+    >>> dict(found.sizes)
+    {'links.AB.length': 3, 'links.DB.length': 2}
     """
     return Grid(dict(ranges))
 

@@ -91,6 +91,13 @@ def sweep(
     InputError
         Anything requested that there is not, a result too great, a store of another sweep, machine code for
         what it cannot compute.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> found = ct.sweep(ct.example("crank-rocker"), {"links.AB.length": [3.4, 3.6]}, ["angle.DB"], 37, reduce="max")
+    >>> found.sizes["mechanism"]
+    2
     """
     name = check_executor(executor)
     design = design_of(mechanism, vary)

@@ -1,6 +1,7 @@
 """A result of any topic: in words, in tables, in figures, as files of a folder, and read from a file again.
 
-A result is what a topic computes, or its dataset, which names its topic and holds its description as text.
+A result is what a topic computes, its dataset, which names its topic and holds its description as text, or a value
+that a plain function of the topic returns and that knows its mechanism or its cam.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ PARSERS = {
 WHOLE = mark("show a dataset as it was computed, with its attributes")
 RESTORED = {topic.name: topic for topic in TOPICS if topic.restore is not None}
 """Topics whose results are made from their datasets."""
+VALUES = {(topic.value.module, topic.value.name): topic for topic in TOPICS if topic.value is not None}
+"""Module and name of the class of a value -> its topic."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -50,7 +53,8 @@ class Result:
     --------
     >>> import centrode as ct
     >>> print(ct.Result(ct.transmission_angles(ct.example("crank-rocker"), 73)))
-    least transmission angle AB-DB  0.585686 rad at 0 rad
+    group  least transmission angle, deg  greatest transmission angle, deg  greatest pressure angle, deg
+    AB-DB                        54.3147                           90.0000                       35.6853
     """
 
     dataset: xarray.Dataset
@@ -73,24 +77,37 @@ def _key_of_description(topic: str) -> str:
 
 
 def restored_result(result: Any) -> Any:
-    """The result of a dataset, where what the dataset does not hold is computed; any other result as it is.
+    """The result of a dataset or a value, where what it does not hold is computed; any other result as it is.
 
-    Raises InputError for a dataset that does not name its topic, or lacks a part.
+    Raises InputError for a dataset that does not name its topic, or lacks a part, and for a value without description.
     """
     dataset = result.dataset if isinstance(result, Result) else result
     if not isinstance(getattr(dataset, "attrs", None), dict):
-        return dataset
+        return _completed_value(dataset)
     if not is_result(dataset):
         raise InputError("dataset", _("it names no topic, or no description"), _(WHOLE))
     topic = RESTORED[dataset.attrs["topic"]]
     assert topic.restore is not None
     try:
-        return topic.restore(_description_of(dataset), dataset)
+        return topic.restore(_parsed_description(dataset), dataset)
     except (KeyError, AttributeError) as absent:
         raise _incomplete(absent) from absent
 
 
-def _description_of(dataset: xarray.Dataset) -> Mechanism | AnyCam:
+def _completed_value(value: Any) -> Any:
+    """The result of a value that a plain function returns; anything else as it is."""
+    kind = type(value)
+    topic = VALUES.get((kind.__module__, kind.__qualname__))
+    if topic is None or topic.complete is None:
+        return value
+    description = getattr(value, "mechanism", None) or getattr(value, "cam", None)
+    if description is None:
+        what = _("it knows no description")
+        raise InputError(kind.__name__, what, _("show what was computed from a mechanism or a cam"))
+    return topic.complete(description, value)
+
+
+def _parsed_description(dataset: xarray.Dataset) -> Mechanism | AnyCam:
     """The mechanism or cam that a dataset of a result holds as text."""
     key = _key_of_description(dataset.attrs["topic"])
     return cast("Mechanism | AnyCam", PARSERS[key](dataset.attrs[key]))
@@ -122,7 +139,7 @@ def description_of(result: Any) -> Mechanism | AnyCam:
     """The mechanism or the cam that a result knows."""
     dataset = result.dataset if isinstance(result, Result) else result
     if is_result(dataset):
-        return _description_of(dataset)
+        return _parsed_description(dataset)
     return cast("Mechanism | AnyCam", result.mechanism if hasattr(result, "mechanism") else result.cam)
 
 
@@ -130,6 +147,17 @@ def summary(result: Any) -> str:
     """The facts of a result as lines of text, with the tables that a terminal prints.
 
     They are in the language that is spoken and the units of the result's description.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.summary(ct.limits(ct.example("crank-rocker"))))
+    drive          OA
+    held           none
+    about          0 rad (0 deg)
+    from           unlimited
+    to             unlimited
+    change points  none
     """
     return render.sheet_text(sheet_of(result), display_of(result))
 
@@ -147,12 +175,26 @@ def page(result: Any, kind: str) -> str:
 
 
 def tables(result: Any) -> Mapping[str, Table]:
-    """The tables of a result by name; columns are arrays in SI."""
+    """The tables of a result by name; columns are arrays in SI.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> list(ct.tables(ct.transmission_angles(ct.example("crank-rocker"), 37)))
+    ['transmission']
+    """
     return sheet_of(result).tables
 
 
 def figures(result: Any) -> dict[str, Figure]:
-    """The figures of a result by name; needs matplotlib."""
+    """The figures of a result by name; needs matplotlib.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> list(ct.figures(ct.transmission_angles(ct.example("crank-rocker"), 37)))
+    ['transmission']
+    """
     return render.figures_of(sheet_of(result).pictures, display_of(result))
 
 
@@ -160,6 +202,14 @@ def write(result: Any, folder: str | Path) -> None:
     """Write tables, datasets, figures and the summary of a result into a folder, which appears whole or not at all.
 
     A result without single numbers has no summary. Raises InputError where the folder cannot be written.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> from pathlib import Path
+    >>> ct.write(ct.integrate(ct.example("crank-rocker"), steps=20), "integration")
+    >>> (Path("integration") / "integration.csv").exists()
+    True
     """
     sheet, display = sheet_of(result), display_of(result)
     with draft_folder(Path(folder)) as draft:
@@ -173,6 +223,13 @@ def open(path: str | Path) -> xarray.Dataset:
     """A dataset of a result from the netCDF file that a command or `ct.write` wrote.
 
     Raises InputError for a file that cannot be read, and for one that is no result of centrode.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.write(ct.transmission_angles(ct.example("crank-rocker"), 37), "angles")
+    >>> ct.open("angles/transmission.nc").attrs["topic"]
+    'angles'
     """
     dataset = render.read_dataset(Path(path))
     if not is_result(dataset):

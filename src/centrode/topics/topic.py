@@ -216,6 +216,9 @@ class Topic:
     flag : option of that command without which it leaves the topic out
     restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
         computation has no dataset that says everything
+    value : class of what a plain function of the topic returns, which is neither a dataset nor the result; None if
+        there is none. It knows its `mechanism` or its `cam`
+    complete : (mechanism or cam, value) -> result
     """
 
     name: str
@@ -228,3 +231,5 @@ class Topic:
     subject: Literal["mechanism", "cam", "mechanisms"] = "mechanism"
     flag: str = ""
     restore: Lazily | None = None
+    value: Lazily | None = None
+    complete: Lazily | None = None

@@ -13,10 +13,12 @@ from matplotlib.patches import Circle
 from PIL import Image
 
 import centrode as ct
-from centrode.present.animations.animate import animate_walking
+from centrode.cams.profiles import cam_body
+from centrode.present.animations.animate import Shown, animate_walking
 from centrode.present.animations.cams import TurningCamLayer, WalkingLayer
 from centrode.present.animations.layers import View
 from centrode.present.animations.stage import Stage
+from centrode.present.animations.video_files import Pace
 
 EPS = float(np.finfo(float).eps)
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]
@@ -74,7 +76,7 @@ def axes_in(layer: TurningCamLayer) -> Axes:
 
 def test_the_roller_stays_on_its_ray_and_touches_the_cam() -> None:
     """Its centre is above the hub at the polar radius; no point of the profile is nearer than the roller's radius."""
-    body = ct.cam_body(ct.parse_cam(CAM + "return = {}"))
+    body = cam_body(ct.parse_cam(CAM + "return = {}"))
     angles = body.closed.start + math.tau * np.arange(9) / 9
     layer = TurningCamLayer(body, angles, 1e3)
     radius = 1e3 * body.closed.radius(angles)[0]
@@ -95,7 +97,7 @@ def test_the_roller_stays_on_its_ray_and_touches_the_cam() -> None:
 
 @pytest.mark.parametrize(("more", "loop"), [("return = {}", "round"), ("", "back")])
 def test_an_open_cam_runs_there_and_back(tmp_path: Path, more: str, loop: str) -> None:
-    made = ct.animate(ct.parse_cam(CAM + more), tmp_path / "cam.gif", pace=ct.Pace(frames=6), size=(160, 120))
+    made = ct.animate(ct.parse_cam(CAM + more), tmp_path / "cam.gif", pace=Pace(frames=6), size=(160, 120))
     assert (made.loop, made.frames) == (loop, 6)
     with Image.open(tmp_path / "cam.gif") as picture:
         assert picture.n_frames == 6
@@ -103,11 +105,11 @@ def test_an_open_cam_runs_there_and_back(tmp_path: Path, more: str, loop: str) -
 
 def test_what_a_cam_does_not_show_is_refused(tmp_path: Path) -> None:
     cam, path = ct.example("walking-wheel-four-legs"), tmp_path / "cam.gif"
-    for refused in ({"shown": ct.Shown()}, {"start": 0.0}, {"stop": 1.0}):
+    for refused in ({"shown": Shown()}, {"start": 0.0}, {"stop": 1.0}):
         with pytest.raises(ct.InputError, match="a cam is shown as a whole"):
             ct.animate(cam, path, **refused)
     with pytest.raises(ct.InputError, match="a cam has no speed of its own"):
-        ct.animate(cam, path, pace=ct.Pace(speed=1.0))
+        ct.animate(cam, path, pace=Pace(speed=1.0))
     with pytest.raises(ct.InputError, match="a profile needs a roller"):
         ct.animate(ct.example("cam-from-curvature"), path)
     assert list(tmp_path.iterdir()) == []

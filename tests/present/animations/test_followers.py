@@ -13,9 +13,12 @@ from matplotlib.patches import Circle, Polygon
 from PIL import Image
 
 import centrode as ct
+from centrode.cams.followers.motion import follower_motion
+from centrode.present.animations.animate import Shown
 from centrode.present.animations.cams import FollowerLayer
 from centrode.present.animations.layers import Layer, View, follower_captions, instant_captions, scene_of_film
 from centrode.present.animations.linkages import LinksLayer
+from centrode.present.animations.video_files import Pace
 from centrode.study.animation_frames import course_of, film_of
 
 EPS = float(np.finfo(float).eps)
@@ -87,7 +90,7 @@ def test_the_cam_turns_as_it_is_described(name: str, turn: str, sense: float) ->
 def test_the_follower_touches_the_cam_where_its_lift_says(name: str) -> None:
     """Roller, edge and face stand at the law's lift; the profile comes up to them and not beyond."""
     layer, cam = layer_of(name), cam_of(name)
-    law = ct.follower_motion(cam)
+    law = follower_motion(cam)
     for frame in range(FRAMES):
         profile = profile_of(drawn(layer, frame))
         step = float(np.hypot(*np.diff(profile, axis=0).T).max())
@@ -163,7 +166,7 @@ def test_its_caption_tells_angle_and_lift() -> None:
 def test_a_turn_takes_the_time_of_the_camshaft(tmp_path: Path) -> None:
     """1500 rpm, 500 times as slow: 20 s a turn."""
     made = ct.animate(
-        ct.example("valve-cam"), tmp_path / "a.gif", pace=ct.Pace(frames=4, speed=0.002), size=(160, 120)
+        ct.example("valve-cam"), tmp_path / "a.gif", pace=Pace(frames=4, speed=0.002), size=(160, 120)
     )
     assert made.seconds == pytest.approx(60.0 / 1500.0 / 0.002, rel=8 * EPS)
     assert (made.frames, made.loop) == (4, "round")
@@ -177,11 +180,11 @@ def test_a_cam_without_a_profile_is_refused(tmp_path: Path) -> None:
     open_cam = ct.parse_cam(text.replace('base_radius = "40 mm", ', ""))
     with pytest.raises(ct.InputError, match=r"\[cam\] base_radius: a profile needs the cam's base radius"):
         ct.animate(open_cam, path)
-    for refused in ({"shown": ct.Shown()}, {"start": 0.0}, {"stop": 1.0}):
+    for refused in ({"shown": Shown()}, {"start": 0.0}, {"stop": 1.0}):
         with pytest.raises(ct.InputError, match="a cam is shown as a whole"):
             ct.animate(cam_of("roller"), path, **refused)
     with pytest.raises(ct.InputError, match="a cam has no speed of its own"):
-        ct.animate(cam_of("roller"), path, pace=ct.Pace(speed=1.0))
+        ct.animate(cam_of("roller"), path, pace=Pace(speed=1.0))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -16,7 +16,7 @@ from matplotlib.patches import Circle
 from PIL import Image
 
 import centrode as ct
-from centrode.present.animations.animate import MAKERS, Shown, layers_of, stage_of
+from centrode.present.animations.animate import MAKERS, Shown, animate_motion, layers_of, stage_of
 from centrode.present.animations.centrodes import CentresLayer, CentrodesLayer
 from centrode.present.animations.layers import Layer, View, scene_of_film
 from centrode.present.animations.linkages import LinksLayer, PathsLayer
@@ -300,7 +300,7 @@ def test_names_that_mean_nothing_are_refused(shown: Shown, told: str) -> None:
 
 def test_forces_need_masses_or_loads() -> None:
     with pytest.raises(ct.InputError, match="there are neither masses nor loads"):
-        ct.animate(ct.example("crank-rocker"), Path("never.gif"), ct.Shown(["forces"]))
+        ct.animate(ct.example("crank-rocker"), Path("never.gif"), Shown(["forces"]))
     assert not Path("never.gif").exists()
 
 
@@ -308,7 +308,7 @@ def test_given_results_run_round_or_there_and_back(tmp_path: Path) -> None:
     linkage = ct.example("spherical-four-bar")
     for name, last, count in (("round", math.tau, 12), ("back", 3.0, 24)):
         motion = ct.motion(linkage, at=np.linspace(0.0, last, 49))
-        ct.animate_motion(linkage, motion, tmp_path / f"{name}.gif", frames=12)
+        animate_motion(linkage, motion, tmp_path / f"{name}.gif", frames=12)
         with Image.open(tmp_path / f"{name}.gif") as picture:
             assert getattr(picture, "n_frames", 1) == count
 

@@ -11,6 +11,7 @@ import numpy as np
 import tomli_w
 
 import centrode as ct
+from centrode.cams.followers.motion import follower_motion
 from centrode.errors import CentrodeError
 from tools.campaigns.campaign import Campaign, Outcome, random_of
 from tools.campaigns.cams.envelopes import DIGITS, Layout, touch
@@ -119,7 +120,7 @@ def run(seed: int, number: int) -> Outcome:
     outcome = Outcome(text)
     cam = ct.parse_cam(text)
     phi = np.sort(random.uniform(0.0, math.tau, SAMPLES))
-    found = ct.follower_motion(cam).lift(phi, ORDERS)
+    found = follower_motion(cam).lift(phi, ORDERS)
     with mpmath.workdps(DIGITS):
         compare_lift(outcome, lift, phi, found)
         try:

@@ -13,6 +13,7 @@ import tomli_w
 
 import centrode as ct
 from centrode.errors import CentrodeError
+from centrode.model.examples import example_text
 
 NUMBERS = (
     *(0.0, -0.0, -1.0, 1.0, 2.0, 1e-300, 1e-49, 1e-12, 1e-7, 1e7, 1e12, 1e49, 1e51, 1e300, 5e-324),
@@ -182,7 +183,7 @@ NUMBER_OR_TEXT = re.compile(r'(?<![\w.])-?\d+\.?\d*(?:[eE][+-]?\d+)?|"[^"\n]*"')
 @cache
 def example(name: str) -> str:
     """The text of a built-in description."""
-    return ct.example_text(name)
+    return example_text(name)
 
 
 def formula(draw: random.Random) -> str:

@@ -32,7 +32,7 @@ class GraphicResults:
     checks: tuple[GraphicCheck | CentrodeError | None, ...]
 
 
-def graphic_results(
+def graphic_analysis(
     mechanism: Mechanism,
     *,
     instants: Sequence[float] = (),
@@ -53,6 +53,13 @@ def graphic_results(
     ------
     InputError, MotionError
         As `motion` and, unless `incomplete`, `graphic_check`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> found = ct.graphic_analysis(ct.example("crank-rocker"), instants=[1.0])
+    >>> print(ct.summary(found).splitlines()[1])
+    scales           μ_l = 0.05 m per mm, μ_v = 0.01 m/s per mm, μ_a = 0.015 m/s^2 per mm
     """
     places = tuple(instants) or (initial_place(mechanism),)
 

@@ -334,6 +334,14 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     -----
     A relative spin below eps^(2/3) of the motion's greatest velocity over its greatest length is none: the
     centre is then at infinity. A centre is as exact as the velocities over the relative spin.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> motion = ct.motion(ct.example("crank-rocker"), at=[1.0])
+    >>> centres = ct.instant_centres(motion, [("AB", "frame")])
+    >>> centres.centre.values.round(3).tolist()
+    [[[2.972, 4.629]]]
     """
     bodies = turning_bodies_of(motion) if is_spherical(motion) else bodies_of(motion)
     numbers = number_pairs(bodies, pairs)

@@ -104,6 +104,13 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
     -----
     Both arcs are integrated apart, each from its own places; that they agree tells that nothing slips. They
     are of the fourth order in the distance of the samples.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> curves = ct.centrodes(ct.motion(ct.example("elliptic-trammel"), 37), "AB")
+    >>> print(ct.summary(curves).splitlines()[3])
+    arc of the fixed centrode   2.50648968 m
     """
     spherical = is_spherical(motion)
     polodes = _on_sphere(motion, link, against) if spherical else _in_plane(motion, link, against)

@@ -22,7 +22,13 @@ from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import PlanePose, Vector, reversed_rotor, rotate_vector, subtract
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, vocabulary_variable
+from centrode.kinematics.motion import (
+    attributes_of,
+    coordinates_of,
+    judgements_of,
+    labels_of,
+    vocabulary_variable,
+)
 from centrode.kinematics.path import JETS, SampleGrid, grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import start_of
@@ -79,6 +85,13 @@ def curvature(
     Exact: from jets of the third order. Absent (NaN) in a translation is what belongs to the pole, at the
     pole the curvature, on the inflection circle the centre of curvature; Ball's point where every point of
     the inflection circle is one.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> bends = ct.curvature(ct.example("elliptic-trammel"), "AB", [0.6])
+    >>> round(float(bends.inflection_diameter[0]), 6)
+    1.0
     """
     mechanism, places = _source_mechanism(source, at)
     if mechanism.space == "sphere":
@@ -108,7 +121,8 @@ def curvature(
     kept = {name: coordinates[name] for name in ("time", "drive_value", "drive", "axis")}
     variables["status"] = judgements_of(solved, ())["status"]
     coordinate = {"point": labels_of(tuple(own)), "coefficient": labels_of(("a", "b"))}
-    return xr.Dataset(variables, coords=kept | coordinate, attrs={"link": link, "against": against})
+    facts = attributes_of(solved, "centrodes") | {"link": link, "against": against}
+    return xr.Dataset(variables, coords=kept | coordinate, attrs=facts)
 
 
 def _source_mechanism(

@@ -148,10 +148,15 @@ def centrode_results(
 
 
 def results_of_centrodes(mechanism: Mechanism, curves: xr.Dataset) -> CentrodeResults:
-    """A dataset of `centrodes` with the motion at its samples."""
-    course = motion(mechanism, at=mechanism.motion_parameter.instants(curves))
+    """A dataset of `centrodes` with the motion at its samples; one of `curvature` with the centrodes of its link."""
     link, against = str(curves.attrs["link"]), str(curves.attrs["against"])
-    return CentrodeResults(mechanism, link, against, course, curves, None, None)
+    there = motion(mechanism, at=mechanism.motion_parameter.instants(curves))
+    if "inflection_pole" in curves:
+        course = motion(mechanism)
+        return CentrodeResults(
+            mechanism, link, against, course, centrodes(course, link, against), there, curves
+        )
+    return CentrodeResults(mechanism, link, against, there, curves, None, None)
 
 
 def count_of_pairs(mechanism: Mechanism) -> int:

@@ -418,6 +418,13 @@ def repair(
         A path or bound is wrong, the drive is no angle or not the only one.
     NotComputedYet
         Groups of higher class, gears and rolling wheels.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> found = ct.repair(ct.four_bar(2, 3, 2.5, 2.5), ["links.crank.length"])
+    >>> print(ct.summary(found).splitlines()[3])
+    verified            turns fully, least transmission angle 1 deg
     """
     prepared = ready(mechanism)
     _check_repairable(prepared)

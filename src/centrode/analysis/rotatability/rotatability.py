@@ -174,6 +174,12 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
     Notes
     -----
     With several drives each is moved with the others held at their initial values.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.rotatability(ct.example("crank-rocker")).turns_fully
+    True
     """
     prepared = ready(mechanism)
     values = initial_values(prepared)

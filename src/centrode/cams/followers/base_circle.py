@@ -450,6 +450,12 @@ def follower_cam(cam: AnyCam) -> FollowerCam:
         is told.
     MotionError
         No base radius keeps the bounds.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.follower_cam(ct.example("valve-cam")).base_radius
+    0.024
     """
     plate = with_follower(cam)
     body = _body(plate)
@@ -470,7 +476,7 @@ def _body(cam: PlateCam) -> FollowerCam:
             what = _("no bound decides the base radius: a cam as small as one likes keeps them all")
             raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
         base = least.base_radius
-    return layout.cam(motion, base)
+    return replace(layout.cam(motion, base), cam=cam)
 
 
 def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:

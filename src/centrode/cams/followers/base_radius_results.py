@@ -86,7 +86,7 @@ class SizedCam:
     bend: float = math.nan
 
 
-def base_radius_results(
+def choose_base_radius(
     cam: AnyCam, samples: int | None = None, *, instants: Sequence[float] | None = None
 ) -> BaseRadiusResults:
     """What decides the base radius of a cam with a follower.
@@ -97,6 +97,13 @@ def base_radius_results(
     ------
     InputError
         As `follower_cam`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> chosen = ct.choose_base_radius(ct.example("indexing-cam"))
+    >>> round(chosen.least.base_radius, 4), chosen.least.by
+    (0.0337, 'pressure angle')
     """
     del samples, instants
     plate = with_follower(cam)

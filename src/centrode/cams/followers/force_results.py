@@ -104,6 +104,11 @@ def follower_force_results(
     return FollowerForceResults(plate, forces, dataset_of_forces(plate, forces, angles_of(plate, samples)))
 
 
+def results_of_cam_forces(cam: PlateCam, dataset: xr.Dataset) -> FollowerForceResults:
+    """A dataset of `cam_forces` with the forces over the whole turn."""
+    return FollowerForceResults(cam, follower_forces(cam), dataset)
+
+
 def has_forces(cam: AnyCam) -> bool:
     """Whether masses, a spring or a load of a follower are given, and a size of its cam that can be made.
 

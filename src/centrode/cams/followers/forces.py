@@ -597,6 +597,13 @@ def cam_forces(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None
     ------
     InputError
         As `follower_cam`.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> forces = ct.cam_forces(ct.example("valve-cam"), 37)
+    >>> print(ct.summary(forces).splitlines()[3])
+    contact of cam and follower  kept: at least 180 N along the follower at 0 deg
     """
     plate = with_follower(cam)
     return dataset_of_forces(plate, follower_forces(plate), angles_of(plate, samples, at))
@@ -643,8 +650,8 @@ def _facts(cam: PlateCam, forces: FollowerForces) -> dict[str, Any]:
     }
     if forces.modulus is not None and forces.width is not None:
         extremes["greatest_stress"] = forces.greatest_stress
-    facts: dict[str, Any] = {"title": cam.title, "cam": cam_text(cam), "version": __version__}
-    facts |= {"speed": forces.speed, "led": int(forces.led)}
+    facts: dict[str, Any] = {"topic": "follower-forces", "title": cam.title, "cam": cam_text(cam)}
+    facts |= {"version": __version__, "speed": forces.speed, "led": int(forces.led)}
     for name, one in extremes.items():
         facts |= {name: one.value, f"{name}_at": one.angle}
     if cam.bounds.stress is not None:

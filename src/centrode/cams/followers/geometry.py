@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,9 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import Extremes, Function, extremes, roots
+
+if TYPE_CHECKING:
+    from centrode.model.follower_cam import PlateCam
 
 # How a follower is led: along a line or about a pivot, in the axes of the frame.
 #
@@ -404,6 +407,8 @@ class FollowerCam:
         Least radius of the profile, where the lift is 0.
     sense : +1 or -1
         Whether the cam turns counter-clockwise or clockwise.
+    cam : PlateCam or None
+        The description that it is the cam of; None without one.
     """
 
     motion: ContactMotion
@@ -411,6 +416,7 @@ class FollowerCam:
     touch: ContactPoint
     base_radius: float
     sense: float = 1.0
+    cam: PlateCam | None = field(default=None, repr=False, compare=False)
 
     @property
     def edges(self) -> tuple[float, ...]:

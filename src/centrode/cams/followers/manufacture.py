@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,7 +18,7 @@ from centrode.cams.profiles import CamOutline, Layer
 from centrode.errors import InputError
 from centrode.kinematics.motion import Variable, vocabulary_variable
 from centrode.locale import _
-from centrode.model.cam_files import AnyCam, with_follower
+from centrode.model.cam_files import AnyCam, cam_text, with_follower
 
 LEAST_SPACES = 8
 """Least number of spaces between the points of a piece."""
@@ -243,7 +244,9 @@ def follower_profile(body: FollowerCam, phi: Array, cutter: float | None = None)
         variables["cutter_centre"] = vocabulary_variable(
             "cutter_centre", PLACED, cutter_centres(found, cutter)
         )
-    attributes = {"roller": body.touch.roller, "base_radius": body.base_radius}
+    attributes: dict[str, Any] = {"roller": body.touch.roller, "base_radius": body.base_radius}
+    if body.cam is not None:
+        attributes |= {"topic": "follower-profile", "title": body.cam.title, "cam": cam_text(body.cam)}
     return xr.Dataset(variables, coords={"axis": AXES}, attrs=attributes)
 
 

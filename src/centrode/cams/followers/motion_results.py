@@ -26,7 +26,7 @@ from centrode.cams.followers.motion import (
     peaks_of,
     stretches,
 )
-from centrode.cams.roller_path import angles_of
+from centrode.cams.roller_path import FEWEST, angles_of
 from centrode.model.cam_files import AnyCam, with_follower
 from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import Extremes
@@ -126,7 +126,7 @@ def follower_motion_results(
 
 def results_of_follower_motion(cam: PlateCam, dataset: xr.Dataset) -> FollowerMotionResults:
     """A dataset of the motion of a follower with the extremes and the joints of its cam."""
-    return replace(follower_motion_results(cam, dataset.sizes["sample"]), dataset=dataset)
+    return replace(follower_motion_results(cam, FEWEST), dataset=dataset)
 
 
 def formulas_difference(results: FollowerMotionResults) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ from centrode.cams.followers.manufacture import (
 from centrode.cams.followers.motion import derivative, extremes_of, follower_motion, greatest_size
 from centrode.cams.nodes import nodes_of
 from centrode.cams.profiles import CamOutline
-from centrode.cams.roller_path import angles_of
+from centrode.cams.roller_path import FEWEST, angles_of, in_order_of
 from centrode.model.cam_files import AnyCam, with_follower
 from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import roots
@@ -92,6 +92,17 @@ def follower_profile_results(
         shown,
         shown_by,
     )
+
+
+def results_of_follower_profile(cam: PlateCam, dataset: xr.Dataset) -> FollowerProfileResults:
+    """A dataset of `cam_profile` with the outlines of its cam, and points for a machine."""
+    found = follower_profile_results(cam, FEWEST)
+    return replace(found, dataset=in_order_of(dataset, found.dataset))
+
+
+def results_of_follower_cam(cam: PlateCam, body: FollowerCam) -> FollowerProfileResults:
+    """A cam under its follower with its profile, its outlines, and points for a machine."""
+    return replace(follower_profile_results(cam), body=body)
 
 
 def _greatest_radius(body: FollowerCam) -> float:

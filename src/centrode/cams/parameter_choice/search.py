@@ -752,6 +752,13 @@ def choose_cam(
     ------
     InputError
         Nothing to choose, or ranges that hold no design.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> chosen = ct.choose_cam(ct.example("walking-wheel-four-legs"), front=False)  # doctest: +SKIP
+    >>> chosen.choice.admissible  # doctest: +SKIP
+    True
     """
     cam = require_curvature_cam(cam)
     family = family_of(cam)

@@ -157,6 +157,13 @@ def balance(
     A full balance leaves rounding. The least greatest effects are found to 1e-8, mostly with a proof (`proved`); with
     discs, and where more inertia than counterweights have would be better, they are the best of several searches. In
     steady motion counterweights are sought at the speed without them; `after` has its own real speed.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> found = ct.balance(ct.example("six-bar-press"))
+    >>> print(ct.summary(found).splitlines()[0])
+    balance             shaking force zero
     """
     if mechanism.space == "sphere":
         raise on_sphere()

@@ -554,6 +554,12 @@ def shaking(
         As `motion` does; no link with a mass; a place that is not the frame's.
     NotComputedYet
         The sphere.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> print(ct.summary(ct.shaking(ct.example("six-bar-press"), 37)).splitlines()[0])
+    greatest shaking force                        2669.34 N
     """
     if mechanism.space == "sphere":
         raise on_sphere()

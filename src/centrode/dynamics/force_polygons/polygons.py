@@ -394,6 +394,13 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
         The sphere; friction; constraints that repeat each other, so that reactions are not determined.
     MotionError
         The mechanism does not close there, or stands at a limit, a change point or a dead point.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> found = ct.force_polygons(ct.example("six-bar-press"), 2.0)
+    >>> [str(name) for name in found.balancing]
+    ['OA']
     """
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)

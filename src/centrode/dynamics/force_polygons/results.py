@@ -76,6 +76,12 @@ def force_polygon_results(
     return ForcePolygonResults(mechanism, named, motion(mechanism, at=places), tuple(found))
 
 
+def results_of_force_polygons(mechanism: Mechanism, polygons: ForcePolygons) -> ForcePolygonResults:
+    """Force polygons at one instant."""
+    at = float(mechanism.motion_parameter.instants(polygons.exact)[0])
+    return ForcePolygonResults(mechanism, (at,), polygons.exact, (polygons,))
+
+
 def has_force_polygons(mechanism: Mechanism) -> bool:
     """Whether a mechanism is plane and has masses or loads."""
     return mechanism.space == "plane" and has_masses_or_loads(mechanism)

@@ -517,6 +517,13 @@ def reactions(
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
         Friction by a coefficient on the sphere, and at the real speed.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> forces = ct.reactions(ct.example("six-bar-press"), 37)
+    >>> print(ct.summary(forces).splitlines()[4])
+    samples               37: ok 37
     """
     mechanism = mechanism if friction else without_friction(mechanism)
     burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)

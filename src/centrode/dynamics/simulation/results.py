@@ -66,7 +66,8 @@ def simulation_results(
     Examples
     --------
     >>> import centrode as ct
-    >>> results = ct.simulation_results(ct.example("six-bar-press-run-up"), 5, duration="1 s")
+    >>> from centrode.dynamics.simulation.results import simulation_results
+    >>> results = simulation_results(ct.example("six-bar-press-run-up"), 5, duration="1 s")
     >>> print(results.simulation.attrs["ended"])
     duration
     """

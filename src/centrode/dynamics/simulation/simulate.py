@@ -364,6 +364,14 @@ def simulate(
         No settings, several drives, nothing with mass, a start at a dead point.
     MotionError
         Nothing sets it in motion, or a formula has no value on the way.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> settings = ct.Simulation(driving="2000", duration="0.2 s")
+    >>> run = ct.simulate(ct.example("six-bar-press-run-up"), settings)
+    >>> run.attrs["ended"]
+    'duration'
     """
     if executor not in get_args(Executor):
         raise InputError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from centrode.dynamics.steady_motion.coursework_method import needed_by_source
 from centrode.dynamics.steady_motion.speed import MeanSpeed, Tangents, with_inertia
@@ -111,6 +111,7 @@ class Flywheel:
 
     Attributes
     ----------
+    mechanism : the machine
     mean : "middle" or "time"
         What the mean speed is: half of greatest plus least, or turns over time.
     mean_speed, fluctuation : float [rad/s], [1]
@@ -144,6 +145,7 @@ class Flywheel:
         `inertia` is what these sizes really have.
     """
 
+    mechanism: Mechanism = field(repr=False, compare=False)
     mean: MeanSpeed
     mean_speed: float
     fluctuation: float | None
@@ -197,6 +199,12 @@ def flywheel(mechanism: Mechanism, mean: MeanSpeed = "middle") -> Flywheel:
     Notes
     -----
     Works are exact to `error`; the exact speed has the fluctuation and the mean to rounding, some 1e-14.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> round(ct.flywheel(ct.example("six-bar-press")).added, 2)
+    1456.73
     """
     need_fluctuation(mechanism)
     return flywheel_of(solution_of(mechanism, mean))
@@ -219,6 +227,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
     # by the energy equation for this inertia alone, not by the tangents that gave it
     checked = with_inertia(found.speed.balance, machine.mean_speed, found.speed.inertia, found.kind)
     common = Flywheel(
+        mechanism=found.prepared.mechanism,
         mean=found.kind,
         mean_speed=machine.mean_speed,
         fluctuation=machine.fluctuation,

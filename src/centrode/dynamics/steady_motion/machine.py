@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import xarray as xr
 
@@ -65,6 +65,11 @@ def results_of_steady_motion(mechanism: Mechanism, steady: xr.Dataset) -> Machin
     """A dataset of `steady_motion` with the energies and the flywheel of the machine."""
     solution = solution_of(mechanism, steady.attrs["mean"])
     return MachineResults(mechanism, flywheel_of(solution), steady, None)
+
+
+def results_of_flywheel(mechanism: Mechanism, flywheel: Flywheel) -> MachineResults:
+    """A flywheel with the steady motion of its machine."""
+    return replace(machine_results(mechanism, mean=flywheel.mean), flywheel=flywheel)
 
 
 def is_machine(mechanism: Mechanism) -> bool:

@@ -320,6 +320,13 @@ def steady_motion(
     ------
     InputError, MotionError
         As `flywheel`; without `fluctuation` the machine has the inertia of its shafts alone.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> steady = ct.steady_motion(ct.example("six-bar-press"), 37)
+    >>> print(ct.summary(steady).splitlines()[0])
+    cycle                1 turn of the drive, 0.922005 s
     """
     solution = solution_of(mechanism, mean)
     return steady_dataset(solution, turned_at(solution, samples, at), method)

@@ -188,6 +188,13 @@ def kinematic_coefficients(
     ------
     InputError, NotComputedYet
         As `motion` does.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> arm = ct.example("five-bar-two-drives")
+    >>> ct.kinematic_coefficients(arm, 9).velocity_coefficient.dims
+    ('sample', 'drive', 'point', 'axis')
     """
     prepared = ready(mechanism)
     if at is None:
@@ -218,7 +225,7 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
             )
     coordinates = coordinates_of(solved)
     coordinates["drive_2"] = labels_of(tuple(coefficients.units))
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "run"))
 
 
 def most_samples(solved: Solved) -> int:

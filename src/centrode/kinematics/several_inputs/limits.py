@@ -260,6 +260,18 @@ def limits(
         There is no such drive, or the mechanism does not close at the values given.
     NotComputedYet
         As `motion` does.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> locked = ct.example("slider-between-cranks-locked")
+    >>> print(ct.summary(ct.limits(locked)))
+    drive          OA
+    held           none
+    about          0 rad (0 deg)
+    from           -0.808314721 rad (-46.313 deg), limit of group CB-BD (point B)
+    to             1.79991242 rad (103.127 deg), limit of group CB-BD (point B)
+    change points  none
     """
     prepared = ready(mechanism)
     moving = chosen_drive(mechanism, drive)

@@ -341,6 +341,13 @@ def reachable_region(
         Not two drives; ranges that do not hold the initial position.
     NotComputedYet
         A group of higher class, gears or rolling wheels; as `motion` does.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> region = ct.reachable_region(ct.example("five-bar-two-drives"), samples=9)
+    >>> print(ct.summary(region).splitlines()[0])
+    drive OA              -3.14159265 rad (-180 deg) to 3.14159265 rad (180 deg)
     """
     prepared = ready(mechanism)
     _refuse_what_is_not_computed(prepared)

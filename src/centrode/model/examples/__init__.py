@@ -14,7 +14,16 @@ FOLDERS = {"linkage": DIRECTORY, "cam": DIRECTORY / "cams"}
 
 
 def example_names(kind: str = "linkage") -> tuple[str, ...]:
-    """Names of the built-in mechanisms of a kind, "linkage" or "cam", sorted."""
+    """Names of the built-in mechanisms of a kind, "linkage" or "cam", sorted.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> "crank-rocker" in ct.example_names()
+    True
+    >>> ct.example_names("cam")[0]
+    'cam-from-curvature'
+    """
     if kind not in FOLDERS:
         what = _("there are no built-in mechanisms of kind {kind}").format(kind=f'"{kind}"')
         raise InputError("", what, _("use one of {known}").format(known=", ".join(FOLDERS)))

@@ -27,7 +27,14 @@ def example(name: PlateName) -> PlateCam: ...  # type: ignore[overload-overlap]
 @overload
 def example(name: str) -> Mechanism: ...
 def example(name: str) -> Mechanism | Cam | PlateCam:
-    """The built-in mechanism or cam of a name; InputError if there is none."""
+    """The built-in mechanism or cam of a name; InputError if there is none.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.example("crank-rocker").title
+    'Crank-rocker four-bar linkage'
+    """
     if name in example_names("cam"):
         return parse_cam(example_text(name), f"{name}.toml")
     return parse_mechanism(example_text(name), f"{name}.toml")

@@ -196,6 +196,13 @@ def animate(
     ------
     InputError
         Names, numbers or sizes out of bounds; nothing that moves; MP4 without imageio-ffmpeg.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> animation = ct.animate(ct.example("crank-rocker"), "motion.gif", stop=0.2, size=(160, 120))
+    >>> animation.loop
+    'back'
     """
     path, pace = Path(path), pace or Pace()
     kind = kind_of(path)

@@ -190,6 +190,14 @@ def write_variants(
     InputError
         The table is wrong, the folder cannot be written, a file that was read would be replaced, another run
         writes into it, or a process was ended.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> rows = [{"variant": "long", "links.AB.length": 3.6}]
+    >>> found = ct.write_variants(ct.example("crank-rocker"), rows, "variants")
+    >>> found.rows[0].status
+    'ok'
     """
     _check_jobs(jobs)
     folder = Path(folder)
