@@ -65,6 +65,10 @@ FEW_FRAMES = {animate: ("FRAMES",), cams: ("FRAMES_OF_A_STEP", "FRAMES_OF_A_TURN
 FEW_DESIGNS = (3,)
 """How many points the front of a choice has here where it would have 15."""
 FILE_NAME = re.compile(r"# ([\w-]+\.toml)\n")
+ROW = re.compile(r"^\|.*\|$", re.MULTILINE)
+COMMAND = re.compile(r"`(centrode [^`]+)`")
+COMPLETE_TABLES = ("paths.md", "start.md")
+"""Pages whose tables hold lines that can be typed as they are; in the tables of others FILE stands for a file."""
 
 
 def run_console(example: Example) -> None:
@@ -175,6 +179,33 @@ class PythonParser(PythonCodeBlockParser):
             yield region
 
 
+def read_table_rows(document: Document) -> Iterator[Region]:
+    """The commands that stand in a table, each as a console block of its own."""
+    if Path(document.path).name in COMPLETE_TABLES:
+        for row in ROW.finditer(document.text):
+            for command in COMMAND.finditer(row.group()):
+                place = row.start() + command.start()
+                yield Region(place, place + len(command.group()), f"$ {command.group(1)}\n", run_console)
+
+
+def write_table(example: Example) -> None:
+    """Write a CSV block to the file that the text before it names last."""
+    named = re.findall(r"`([\w-]+\.csv)`", example.document.text[: example.region.start])
+    Path(named[-1]).write_text(example.parsed, encoding="utf-8")
+
+
+def write_wrong_file(example: Example) -> None:
+    """Write the wrong file of a block that says how it differs (-) from the right one (+), which is there."""
+    wrong, right, *lines = str(example.parsed).splitlines()
+    wrong, right = wrong.removeprefix("--- "), right.removeprefix("+++ ")
+    before, after = (
+        "".join(f"{line[1:]}\n" for line in lines if not line.startswith(sign)) for sign in ("+", "-")
+    )
+    text = Path(right).read_text(encoding="utf-8")
+    assert text.count(after) == 1, f"{right} has not the lines {after}"
+    Path(wrong).write_text(text.replace(after, before), encoding="utf-8")
+
+
 def enter_folder(namespace: dict[str, Any]) -> None:
     namespace["_home"], namespace["_folder"] = Path.cwd(), tempfile.mkdtemp()
     os.chdir(namespace["_folder"])
@@ -190,6 +221,9 @@ pytest_collect_file = Sybil(
         PythonParser(),
         CodeBlockParser("console", run_console),
         CodeBlockParser("toml", read_toml),
+        CodeBlockParser("csv", write_table),
+        CodeBlockParser("diff", write_wrong_file),
+        read_table_rows,
     ],
     patterns=["README.md", "docs/*.md", "docs/**/*.md"],
     setup=enter_folder,

@@ -31,6 +31,20 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 TREE = re.compile(r"^```\{toctree\}\n(?::.*\n)*((?:[\w/-]+\n|\n)*)```$", re.MULTILINE)
 BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 WIDTH = 140
+FIRST_PAGES = (
+    ROOT / "README.md",
+    *(ROOT / "docs" / page for page in ("tutorial.md", "ru/start.md", "uk/start.md")),
+)
+"""What a newcomer reads first, in each language."""
+DESCRIPTION, RESULTS = (
+    "\n".join(text for page, text in TEXTS.items() if page.stem.partition("-")[0] == name)
+    for name in ("description", "results")
+)
+"""The pages of each, `description.md` and `description-drives.md` and so on."""
+REFERENCE = [
+    page for page in PAGES if page.parent == MADE or page.stem.partition("-")[0] in ("description", "results")
+]
+MOST_LINES = {ROOT / "README.md": 90, **{page: 400 for page in REFERENCE}}
 
 
 def options(command: click.Command, path: str = "centrode") -> list[tuple[str, str]]:
@@ -83,24 +97,24 @@ def test_public_names_are_told(name: str) -> None:
 
 @pytest.mark.parametrize(("part", "key"), keys(mechanism_schema()))
 def test_keys_are_told(part: str, key: str) -> None:
-    page = BLOCK.sub("", TEXTS[ROOT / "docs" / "description.md"])
+    page = BLOCK.sub("", DESCRIPTION)
     assert re.search(rf"`(?:\[*(?:\w+\.)?)?{key}(?:\.\w+)?\]*`", page), f"{key} of {part or 'the file'}"
 
 
 @pytest.mark.parametrize("name", sorted(QUANTITIES))
 def test_variables_are_told(name: str) -> None:
-    assert f"`{name}`" in TEXTS[ROOT / "docs" / "results.md"]
+    assert f"`{name}`" in RESULTS
 
 
 @pytest.mark.parametrize("status", ct.Status)
 def test_statuses_are_told(status: ct.Status) -> None:
     row = f"| {status.value} | `{status.name}` | {status.word} |"
-    assert row in TEXTS[ROOT / "docs" / "results.md"]
+    assert row in RESULTS
 
 
 @pytest.mark.parametrize("name", ["slider-between-cranks-locked", "wiper", "parallelogram"])
 def test_scalars_are_told(name: str) -> None:
-    page = TEXTS[ROOT / "docs" / "results.md"]
+    page = RESULTS
     study = motion_results.study(ct.example(name), samples=2)
     assert [scalar for scalar in sheet_of(study).scalars if f"`{scalar}`" not in page] == []
 
@@ -166,3 +180,43 @@ def test_lines_are_not_too_long(page: Path) -> None:
     text = BLOCK.sub("", TEXTS[page])
     long = [line for line in text.splitlines() if len(line) > WIDTH and not line.startswith("|")]
     assert long == []
+
+
+@pytest.mark.parametrize("page", FIRST_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "line", [". .venv/bin/activate", r".venv\Scripts\activate", "pip install -e '.[all]'"]
+)
+def test_first_pages_put_the_command_on_the_path(page: Path, line: str) -> None:
+    assert line in TEXTS[page]
+
+
+@pytest.mark.parametrize("page", MOST_LINES, ids=lambda page: page.name)
+def test_pages_are_short_enough_to_be_read(page: Path) -> None:
+    assert len(TEXTS[page].splitlines()) <= MOST_LINES[page]
+
+
+def test_each_command_is_on_one_page_of_the_reference() -> None:
+    app = build_app()
+    assert isinstance(app, click.Group)
+    headings = [
+        line.removeprefix("## centrode ")
+        for page in MADE.glob("commands-*.md")
+        for line in TEXTS[page].splitlines()
+        if line.startswith("## centrode ")
+    ]
+    assert sorted(headings) == sorted(app.commands)
+
+
+def test_the_glossary_has_each_term_in_three_languages() -> None:
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in TEXTS[ROOT / "docs" / "glossary.md"].splitlines()
+        if line.startswith("| ") and not line.startswith("| English")
+    ]
+    assert len(rows) > 80
+    for english, russian, ukrainian, _place in rows:
+        assert re.fullmatch(r"[A-Za-z' ,()-]+", english), english
+        assert re.search(r"[а-яёА-Я]", russian) and not re.search(r"[іїєґ]", russian), russian
+        assert re.search(r"[а-яіїєґА-Я]", ukrainian) and not re.search(r"[ыэъё]", ukrainian), ukrainian
+    terms = [row[0] for row in rows]
+    assert len(set(terms)) == len(terms)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from tools import gallery
@@ -13,7 +14,8 @@ from tools.validation import page as validation
 FOLDER = Path(__file__).parents[2] / "docs"
 PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands.page,
-    "reference/python.md": face.page,
+    **{f"reference/{name}.md": partial(commands.page_of, name) for name in commands.PAGES},
+    **{f"reference/{name}.md": partial(str, text) for name, text in face.pages().items()},
     "reference/grammar.md": grammar.mechanisms,
     "reference/cam-grammar.md": grammar.cams,
     "validation.md": validation.page,

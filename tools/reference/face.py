@@ -1,4 +1,4 @@
-"""The page of the public face: its names in reading order, each with what its docstring says."""
+"""The pages of the public face: its names in reading order, each with what its docstring says."""
 
 from __future__ import annotations
 
@@ -20,14 +20,41 @@ is that was public once.
 """
 
 
-def page() -> str:
-    """The page as Markdown."""
-    groups = list(_groups())
-    contents = [f"| {title} | {', '.join(f'`ct.{name}`' for name in names)} |" for title, names in groups]
-    parts = [HEAD, "\n".join(["| about | names |", "|---|---|", *contents]) + "\n"]
-    for title, names in groups:
-        parts += [f"## {title}\n", *map(_entry, names)]
-    return "\n".join(parts)
+MOST_LINES = 360
+"""Of entries on a page: with its head it stays below what tests allow."""
+
+
+def pages() -> dict[str, str]:
+    """The pages as Markdown by name: all names with the page of each, then the entries group by group."""
+    rows, texts = [], {}
+    for title, names in _groups():
+        parts = list(_parts(names))
+        for number, part in enumerate(parts, start=1):
+            page = f"python-{_slug(title)}" + (f"-{number}" if len(parts) > 1 else "")
+            heading = title + (f" ({number})" if len(parts) > 1 else "")
+            links = ", ".join(f"[`ct.{name}`]({page}.md#{name.lower()})" for name in part)
+            rows.append(f"| [{heading}]({page}.md) | {links} |")
+            texts[page] = "\n".join([f"# {heading}\n", *map(_entry, part)])
+    return {"python": "\n".join([HEAD, "| about | names |", "|---|---|", *rows]) + "\n", **texts}
+
+
+def _parts(names: list[str]) -> Iterator[list[str]]:
+    """Names of a group, dealt to as few pages as hold their entries."""
+    part: list[str] = []
+    lines = 0
+    for name in names:
+        more = _entry(name).count("\n") + 1
+        if part and lines + more > MOST_LINES:
+            yield part
+            part, lines = [], 0
+        part.append(name)
+        lines += more
+    yield part
+
+
+def _slug(title: str) -> str:
+    """The name of a group in the name of a file: its first noun."""
+    return re.sub(r"\W+", "-", re.sub(r"^(The|Any) ", "", title).partition(",")[0].lower()).strip("-")
 
 
 def _groups() -> Iterator[tuple[str, list[str]]]:
@@ -44,7 +71,7 @@ def _groups() -> Iterator[tuple[str, list[str]]]:
 def _entry(name: str) -> str:
     """A name with its parameters and its docstring."""
     public = getattr(ct, name)
-    return f"### {name}\n\n```text\nct.{name}{_parameters(public)}\n\n{inspect.getdoc(public)}\n```\n"
+    return f"## {name}\n\n```text\nct.{name}{_parameters(public)}\n\n{inspect.getdoc(public)}\n```\n"
 
 
 def _parameters(public: object) -> str:

@@ -1,4 +1,4 @@
-"""The page of the grammar: every key of a description with what may stand there, from the JSON Schema."""
+"""The page of the grammar: every key of a description with its permitted values, from the JSON Schema."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ Schema: TypeAlias = dict[str, Any]
 
 HEAD = """# Grammar of {things}
 
-Every key, and what may stand there; made from the schema that also reads the files (`centrode schema`).
-What the keys mean is told in {meaning}.
-Files are TOML. A number is in SI (m, kg, s, rad, N); a text has a unit: `"28.6 deg"`, `"0.5 mm"`. Keys that are not
-here are refused.
+Every key with its permitted values, made from the schema that also reads the files (`centrode schema`).
+The keys are explained in {meaning}.
+Files are TOML. A number is in SI (m, kg, s, rad, N); a text has a unit: `"28.6 deg"`, `"0.5 mm"`. Other keys are
+refused.
 """
 FILES = {"Cam": "A cam from a curvature law", "PlateCam": "A plate cam under its follower"}
 NAME = 40
@@ -25,16 +25,14 @@ WORDS = {
 
 def mechanisms() -> str:
     """The page of linkages as Markdown."""
-    head = HEAD.format(things="mechanisms", meaning="[The description](../description.md)")
+    head = HEAD.format(things="mechanisms", meaning="[the description](../description.md)")
     return _page(head, mechanism_schema())
 
 
 def cams() -> str:
     """The page of cams as Markdown: each kind of file, then their parts."""
     schema = cam_schema()
-    meaning = (
-        "[Cams from a curvature law](../cams.md),\nof plate cams in [Cams and followers](../cam-followers.md)"
-    )
+    meaning = "[Cams from a curvature law](../cams.md),\nfor plate cams in [Motion of a follower](../cam-followers.md)"
     files = [one["$ref"].rpartition("/")[2] for one in schema["anyOf"]]
     parts = {name: part for name, part in schema["$defs"].items() if name not in files}
     tables = [f"## {FILES[name]}\n\n{_table(schema['$defs'][name])}" for name in files]
@@ -49,11 +47,11 @@ def _page(head: str, schema: Schema) -> str:
 
 def _part(name: str, inner: Schema, whole: Schema) -> str:
     places = ", ".join(f"`{place}`" for place in _places(name, whole))
-    return f"## {name}\n\nStands in {places}.\n\n{_table(inner)}"
+    return f"## {name}\n\nPlace: {places}.\n\n{_table(inner)}"
 
 
 def _places(name: str, whole: Schema) -> list[str]:
-    """Keys below which a part stands, as TOML spells them."""
+    """Keys below which a part belongs, as TOML spells them."""
     reference = f"#/$defs/{name}"
     found = []
     for owner, schema in (("", whole), *whole["$defs"].items()):
@@ -77,7 +75,7 @@ def _references(schema: Any) -> set[str]:
 
 def _table(schema: Schema) -> str:
     required = set(schema.get("required", ()))
-    rows = ["| key | what may stand there |", "|---|---|"]
+    rows = ["| key | permitted values |", "|---|---|"]
     for key, value in schema.get("properties", {}).items():
         must = " (needed)" if key in required else ""
         rows.append(f"| `{key}`{must} | {_said(value)} |")
