@@ -215,7 +215,7 @@ def test_a_fault_is_told_and_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_figures_of_each(tmp_path: Path) -> None:
-    with blank_pictures():  # which files there are; tests/present renders them
+    with blank_pictures():  # which files there are; tests/render renders them
         ct.write_variants(WORKED, TWO[:1], tmp_path, figures=True)
     names = {file.name for file in (tmp_path / "variant-a").iterdir()}
     assert {"mechanism.png", "angles.svg", "integrated-angles.png", "integration-errors.svg"} <= names
