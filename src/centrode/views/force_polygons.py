@@ -146,7 +146,7 @@ def _group_title(found: ForcePolygons, group: GroupForces) -> Text:
     if group.kind == "single":
         return Sentence("Link {numbers} by itself: {names}", numbers=numbers, names=names)
     kinds = {"together": Sentence("solved together"), "triad": Sentence("triad, by an Assur point")}
-    kind = kinds.get(group.kind, Name(group.kind))
+    kind = kinds.get(group.kind, Sentence(group.kind))
     return Sentence("Group {numbers} ({kind}): {names}", numbers=numbers, kind=kind, names=names)
 
 

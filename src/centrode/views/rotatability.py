@@ -384,7 +384,7 @@ class _Turning:
             Sentence(
                 "{group} ({kind}): least {value} at {place}",
                 group=Name(one.group),
-                kind=Name(one.kind),
+                kind=Sentence(one.kind),
                 value=least,
                 place=self.place(one.least_at),
             ),
