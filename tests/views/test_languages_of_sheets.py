@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
 import centrode as ct
+from centrode.analysis.instant_centres.results import require_centres
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.sheet import Sheet, Table
 from centrode.sheets.texts import Text
+from centrode.structure.constraints import NoTurning
 from centrode.topics.presentation import sheet_of
 
 LANGUAGES = ("en", "ru", "uk")
@@ -92,3 +94,61 @@ def test_names_that_look_like_kinds_stay() -> None:
     text = PlainSpelling(None).text(sheet_of(ct.check(mechanism)).facts[5].value)
     assert text.startswith("RRP: ")
     assert "AB, PB: класс II, порядок 2, ВВВ" in ct.summary(ct.check(mechanism))
+
+
+# The frame among links, in the case of its sentence.
+
+AGAINST = {"en": "{} against the frame", "ru": "{} относительно стойки", "uk": "{} відносно стояка"}
+REFUSED = {
+    "en": ("the frame has no point", "both belong to the frame", "lie on the frame", "against the frame"),
+    "ru": ("у стойки нет точки", "принадлежат стойке", "лежать на стойке", "относительно стойки"),
+    "uk": ("у стояка немає точки", "належать стояку", "лежати на стояку", "відносно стояка"),
+}
+FOUR_BAR = {
+    "frame": {"points": {"O": [0, 0], "D": [4, 0]}},
+    "links": {"OA": {"length": 1}, "AB": {"length": 3.5}, "DB": {"length": 3}},
+    "drives": [{"link": "OA", "start": 1, "speed": 1}],
+    "assembly": {"sides": {"B": "left"}},
+}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_bodies_are_told_against_the_frame(language: str) -> None:
+    """Centres and centrodes name the frame by its word in the right case, between links as before."""
+    mechanism = ct.example("crank-rocker")
+    ct.choose_language(language)
+    told = ct.summary(ct.instant_centres(ct.motion(mechanism, at=[1.0])))
+    assert all(AGAINST[language].format(link) in told for link in mechanism.links)
+    assert language == "en" or "frame" not in told
+    told = ct.summary(ct.centrodes(ct.motion(mechanism, 9), "AB"))
+    assert AGAINST[language].format("AB") in told
+    assert language == "en" or "frame" not in told
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_refusals_name_the_frame_in_its_case(language: str) -> None:
+    ct.choose_language(language)
+    guide = {"point": "B", "on": "frame", "through": "Q", "direction": 0}
+    sphere = ct.mechanism_text(ct.example("spherical-four-bar")).replace(
+        'reference = ["A", "D"]', 'reference = ["A", "C"]'
+    )
+    wrong: list[Callable[[], object]] = [
+        lambda: ct.Mechanism(**FOUR_BAR | {"guides": [guide]}),
+        lambda: ct.Mechanism(**FOUR_BAR | {"drives": [{"distance": ["O", "D"], "start": 1, "speed": 1}]}),
+        lambda: ct.check(ct.parse_mechanism(sphere)),
+        lambda: require_centres(ct.centrodes(ct.motion(ct.example("rack-and-pinion"), 9), "rack")),
+    ]
+    for make, part in zip(wrong, REFUSED[language], strict=True):
+        with pytest.raises(ct.CentrodeError) as refused:
+            make()
+        assert part in str(refused.value)
+        assert language == "en" or "frame" not in str(refused.value).replace("[frame", "")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_redundant_constraints_name_the_frame_in_its_case(language: str) -> None:
+    ct.choose_language(language)
+    label = NoTurning("AB", "C", "frame").label
+    assert REFUSED[language][3] in label and "AB" in label and "C" in label
+    assert language == "en" or "frame" not in label
+    assert "DE" in NoTurning("AB", "C", "DE").label

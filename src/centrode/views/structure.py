@@ -47,6 +47,21 @@ PAIRS: dict[PairKind, tuple[Text, Text]] = {
 }
 """Kind of a pair -> what it is called, and its sign."""
 
+GROUP_KINDS: dict[str, Text] = {
+    "RRR": Sentence("RRR"),
+    "RRP": Sentence("RRP"),
+    "RPR": Sentence("RPR"),
+    "PRP": Sentence("PRP"),
+    "RPP": Sentence("RPP"),
+    "gear": Sentence("gear"),
+    "rolling": Sentence("rolling"),
+    "gear train": Sentence("gear train"),
+    "higher class": Sentence("higher class"),
+    "parallel link": Sentence("parallel link"),
+    "link by two points": Sentence("link by two points"),
+}
+"""Kind of a group -> what it is called: dyads by the letters of their pairs, which depend on the language."""
+
 
 def sheet(checked: MechanismCheck) -> Sheet:
     """Mobility, groups, plan and initial position, and the chapters on the data and the structure."""
@@ -102,7 +117,7 @@ def _group(group: AssurGroup) -> Text:
         name=name,
         roman=Name(group.roman),
         order=_whole(group.order),
-        kind=Sentence(group.kind),
+        kind=GROUP_KINDS[group.kind],
     )
 
 
@@ -223,4 +238,4 @@ def _order(group: AssurGroup) -> Text:
 
 
 def _kind(group: AssurGroup) -> Text:
-    return Sentence("input") if group.roman == "I" else Sentence(group.kind)
+    return Sentence("input") if group.roman == "I" else GROUP_KINDS[group.kind]
