@@ -148,7 +148,7 @@ def test_a_link_that_translates_has_no_centrode(centrode: Centrode, folder: Path
         "centrodes", "rack-and-pinion", "--link", "rack", "--samples", "5", "--no-figures", "--out", "r"
     )
     assert done.code == 3
-    assert "rack-and-pinion: rack has no centre against frame in this range: it translates" in done.err
+    assert "rack-and-pinion: rack has no centre against the frame in this range: it translates" in done.err
     assert "--against" in done.err
 
 

@@ -19,7 +19,7 @@ from samples import examples_at_hand
 Centrode = Callable[..., Any]
 LANGUAGES = ("ru", "uk")
 NOT_WORDS = {
-    "centrode", "rad", "deg", "mm", "m", "s", "I", "II", "III", "IV", "RRR", "RRP", "RPR", "PRP", "RPP",
+    "centrode", "rad", "deg", "mm", "m", "s", "I", "II", "III", "IV",
     "loads", "machine", "instants", "motion", "coefficients", "csv", "nc", "summary", "json", "toml", "TOML", "NAME",
     "run", "examples",
     "from", "to", "samples", "out", "study", "drives", "frame", "e", "r",

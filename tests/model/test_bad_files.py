@@ -176,7 +176,7 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
         (FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = [0, 0]', '[[guides]] 1: "direction" is missing'),
         (
             FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = "Z"\ndirection = 0',
-            "[[guides]] 1, through: frame has no point",
+            "[[guides]] 1, through: the frame has no point",
         ),
         (
             FOUR_BAR + '[[guides]]\npoint = "B"\non = "BD"\nthrough = [0, 0]\ndirection = 0',

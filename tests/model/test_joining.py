@@ -100,7 +100,7 @@ def test_names_go_before_links() -> None:
             "one of direction, radius is missing",
         ),
         ('centre = "O", radius', "radius", "radius and centre go together"),
-        ('centre = "O", radius', 'centre = "Z", radius', "along.centre: frame has no point"),
+        ('centre = "O", radius', 'centre = "Z", radius', "along.centre: the frame has no point"),
         ('centre = "A"', 'centre = "Q"', "[[rolling]] 1, centre: planet has no point"),
         ('link = "planet"', 'link = "frame"', '[[rolling]] 1, link: unknown link "frame"'),
         ("along", 'on = "planet"\nalong', "link planet cannot roll on itself"),
@@ -109,7 +109,7 @@ def test_names_go_before_links() -> None:
         (
             '"E", "Q"',
             '"E", "O"',
-            'distance: points "E" and "O" both belong to frame: their distance cannot change',
+            'distance: points "E" and "O" both belong to the frame: their distance cannot change',
         ),
         ('"E", "Q"', '"P", "Q"', 'points "P" and "Q" both belong to rod: their distance cannot change; name'),
         ('"E", "Q"', '"Q", "Q"', "two different points are needed"),

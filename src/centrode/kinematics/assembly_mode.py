@@ -64,7 +64,7 @@ def stated_side(kinematics: Kinematics, group: Group) -> float | None:
     if word not in side_words(space, group):
         raise InputError(
             f"[assembly] sides.{name}",
-            _("{word} does not apply to a group {kind}").format(word=f'"{word}"', kind=group.kind),
+            _("{word} does not apply to a group {kind}").format(word=f'"{word}"', kind=_(group.kind)),
             _("write {words}").format(words=side_choice(space, group)),
         )
     return SIDES[word]

@@ -30,8 +30,9 @@ def unknown_name_problems(
     candidates = list(names)
     if name in candidates:
         return
+    no_point = _("the frame has no point {name}") if link == FRAME else _("{link} has no point {name}")
     sentences = {
-        "point": _("{link} has no point {name}") if link else _("unknown point {name}"),
+        "point": no_point if link else _("unknown point {name}"),
         "link": _("unknown link {name}"),
         "guide": _("unknown guide {name}"),
         "point, link or guide": _("unknown point, link or guide {name}"),
@@ -132,6 +133,8 @@ def _on_track(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Pro
         )
     if wheel.centre in points:
         what = _("point {point} is a point of {link} already, the wheel cannot roll on it")
+        if wheel.on == FRAME:
+            what = _("point {point} is a point of the frame already, the wheel cannot roll on it")
         repair = _("take it out of the link, or let the wheel roll on another one")
         yield Problem(what.format(point=value_text(wheel.centre), link=wheel.on), repair, at)
 
@@ -142,6 +145,8 @@ def cylinder_problems(mechanism: Description, drive: Drive, at: Place) -> Iterat
     for body in (FRAME, *mechanism.links):
         if {first, second} <= set(points_on(mechanism, body)):
             what = _("points {first} and {second} both belong to {link}: their distance cannot change")
+            if body == FRAME:
+                what = _("points {first} and {second} both belong to the frame: their distance cannot change")
             repair = _("name points of two different links")
             told = what.format(first=value_text(first), second=value_text(second), link=body)
             yield Problem(told, repair, (*at, "distance"))

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import assert_never
 
-from centrode.locale import _, ngettext
+from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.structure.groups import (
     Aim,
@@ -133,7 +133,7 @@ class AssurGroup:
     ----------
     roman : "I" for an input, "II" for a dyad, "III" and on for higher groups, "0" for a link that only follows
     order : number of outer joints, 0 where that says nothing
-    kind : "RRR", ..., or what else it is
+    kind : "RRR", ..., or what else it is, in English; views translate it
     members : links, sliders that are understood included
     """
 
@@ -174,16 +174,16 @@ def _term(mechanism: Mechanism, group: Group, members: tuple[str, ...]) -> Assur
         return AssurGroup("I", 1, group.kind, members)
     match group:
         case TurnedLink(turning=Meshed()):
-            return AssurGroup("II", 2, _("gear"), members)
+            return AssurGroup("II", 2, mark("gear"), members)
         case TurnedLink(turning=Rolled()):
-            return AssurGroup("II", 2, _("rolling"), members)
+            return AssurGroup("II", 2, mark("rolling"), members)
         case Train():
-            return AssurGroup("II", len(group.links), _("gear train"), members)
+            return AssurGroup("II", len(group.links), group.kind, members)
         case Meet() | Aim():
             return AssurGroup("II", 2, group.kind, members)
         case Newton():
             contours = contours_of(mechanism, group)
-            return AssurGroup(roman(contours.highest), contours.outer, _("higher class"), members)
+            return AssurGroup(roman(contours.highest), contours.outer, group.kind, members)
         case RigidPoint() | TwoPointLink() | TurnedLink():
             return AssurGroup("0", 0, group.kind, members)
         case _:

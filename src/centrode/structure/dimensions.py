@@ -49,11 +49,12 @@ def references_of(
         base = frame if drive.relative_to == FRAME else local[drive.relative_to]
         missing = [point for point in (pivot, towards) if point not in base]
         if missing:
+            what = _("its reference arc has to lie on {body}, and {point} is no point of it")
+            if drive.relative_to == FRAME:
+                what = _("its reference arc has to lie on the frame, and {point} is no point of it")
             raise InputError(
                 _("drive of link {link}").format(link=drive.link),
-                _("its reference arc has to lie on {body}, and {point} is no point of it").format(
-                    body=drive.relative_to, point=missing[0]
-                ),
+                what.format(body=drive.relative_to, point=missing[0]),
                 _("drive it relative to the link that has both points, or choose other points"),
             )
         own = local[drive.link]
@@ -242,10 +243,14 @@ def _spot(guide: Guide, key: str, spot: Any, places: Mapping[str, Vector], value
     if not isinstance(spot, str):
         return values.vector(f"guides.{guide.id}.{key}", spot)
     if spot not in places:
+        what, repair = _("point {point} does not lie on {body}"), _("give coordinates, or a point of {body}")
+        if guide.on == FRAME:
+            what = _("point {point} does not lie on the frame")
+            repair = _("give coordinates, or a point of the frame")
         raise InputError(
             _("guide {guide}").format(guide=guide.id),
-            _("point {point} does not lie on {body}").format(point=spot, body=guide.on),
-            _("give coordinates, or a point of {body}").format(body=guide.on),
+            what.format(point=spot, body=guide.on),
+            repair.format(body=guide.on),
         )
     return places[spot]
 

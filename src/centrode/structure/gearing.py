@@ -221,12 +221,13 @@ def _base(mechanism: Mechanism, gear: Gear, link: str) -> str:
     reference = mechanism.links[link].reference
     if reference is None:
         pivot = next(iter(mechanism.links[link].coordinates), "")
+        repair = _('add to it: reference = ["{pivot}", ...], two points of {carrier}')
+        if gear.carrier == FRAME:
+            repair = _('add to it: reference = ["{pivot}", ...], two points of the frame')
         raise InputError(
             where,
             _("on the sphere {link} needs an arc that its angle is measured from").format(link=link),
-            _('add to it: reference = ["{pivot}", ...], two points of {carrier}').format(
-                pivot=pivot, carrier=gear.carrier
-            ),
+            repair.format(pivot=pivot, carrier=gear.carrier),
         )
     driven = {drive.link: drive.relative_to for drive in mechanism.drives if drive.link}
     # a driven link's angle is measured where its drive's is
@@ -238,10 +239,11 @@ def _base(mechanism: Mechanism, gear: Gear, link: str) -> str:
             and set(reference) <= set(mechanism.points_of(body))
         ):
             return body
+    what = _("the angle of {link} is measured neither on {carrier} nor on the frame")
+    if gear.carrier == FRAME:
+        what = _("the angle of {link} is not measured on the frame")
     raise InputError(
         where,
-        _("the angle of {link} is measured neither on {carrier} nor on the frame").format(
-            link=link, carrier=gear.carrier
-        ),
+        what.format(link=link, carrier=gear.carrier),
         _("name two points of one of them: reference = [...]"),
     )

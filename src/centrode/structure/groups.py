@@ -4,6 +4,9 @@ Assur groups of class II (dyads) are named by their joints, R a hinge and P a gu
 inner, outer: RRR, RRP, RPR, PRP, RPP (Artobolevsky, Theory of Mechanisms and Machines, kinds 1 to 5). Rigid
 points, links by two points, cranks and parallel links are solved on the way.
 
+Kinds are words of English, marked for the catalogues: data hold them as they are, readers see them in their language
+(Russian and Ukrainian books write ВВП for RRP).
+
 Every group answers for itself: `kind` and whether it is `signed`, the `links` whose pose and the `points` whose place
 it gives, whether a drive acts inside it (`is_input`), and a `sentence` that says in the language of the reader what is
 found and from what. What tells groups or loci apart ends in `assert_never`, so the type checker names every place that
@@ -15,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
-from centrode.locale import _
+from centrode.locale import _, mark
 from centrode.model.reading import body_word
 from centrode.structure.constraints import Constraint, Contact, GearRatio, NoSlip
 
@@ -111,7 +114,7 @@ class Train:
     pivots: tuple[tuple[int, str], ...]
     places: tuple[tuple[str, str], ...]
     brought: tuple[tuple[str, str], ...]
-    kind = "gear train"
+    kind = mark("gear train")
     signed = False
 
     @property
@@ -181,7 +184,7 @@ class TwoPointLink:
     link: str
     first: str
     second: str
-    kind = "link by two points"
+    kind = mark("link by two points")
     signed = False
     points = ()
     is_input = False
@@ -225,7 +228,7 @@ class TurnedLink:
     @property
     def kind(self) -> str:
         if isinstance(self.turning, Turning):
-            return "crank" if self.turning.drive is not None else "parallel link"
+            return "crank" if self.turning.drive is not None else mark("parallel link")
         return "rolling wheel" if isinstance(self.turning, Rolled) else "gear"
 
     @property
@@ -275,7 +278,7 @@ class Aim:
     block: str | None = None
     sliding: str | None = None
     contact: Contact | None = None
-    kind = "RPR"
+    kind = mark("RPR")
     signed = True
     is_input = False
 
@@ -414,8 +417,8 @@ class Meet:
     @property
     def kind(self) -> str:
         if self.circles:
-            return "RRR" if self.circles == 2 else "RRP"
-        return "RPP" if any(isinstance(locus, Slot) for locus in self.loci) else "PRP"
+            return mark("RRR") if self.circles == 2 else mark("RRP")
+        return mark("RPP") if any(isinstance(locus, Slot) for locus in self.loci) else mark("PRP")
 
     # in the plane a circle meets anything in two places, two lines in one; on the sphere curves of guides are
     # circles too
@@ -449,10 +452,10 @@ class Meet:
         one, other = (locus.sentence for locus in self.loci)
         if self.carriage is None:
             return _("{kind}: point {point}, where {one} meets {other}").format(
-                kind=self.kind, point=self.points[0], one=one, other=other
+                kind=_(self.kind), point=self.points[0], one=one, other=other
             )
         return _("{kind}: link {link} of known angle, where {one} meets {other}").format(
-            kind=self.kind, link=self.carriage, one=one, other=other
+            kind=_(self.kind), link=self.carriage, one=one, other=other
         )
 
 
@@ -466,7 +469,7 @@ class Newton:
     points: tuple[str, ...]
     links: tuple[str, ...]
     equations: tuple[tuple[Constraint, int], ...]
-    kind = "higher class"
+    kind = mark("higher class")
     signed = False
     is_input = False
 

@@ -49,7 +49,7 @@ from centrode.sheets.texts import (
     Title,
 )
 from centrode.views.columns import instant_columns
-from centrode.views.instants import body_text, instant_place, instant_title
+from centrode.views.instants import body_text, instant_place, instant_title, pair_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -123,12 +123,7 @@ def _table(results: CentreResults, centres: xr.Dataset, construction: Constructi
     labels = [tuple(str(label).split(",")) for label in centres["pair"].values]
     pairs = [(names.index(first), names.index(second)) for first, second in labels]
     steps = [_step(construction, pair) for pair in pairs]
-    bodies = tuple(
-        Sentence(
-            "{first} against {second}", first=body_text(mechanism, first), second=body_text(mechanism, second)
-        )
-        for first, second in labels
-    )
+    bodies = tuple(pair_text(mechanism, first, second) for first, second in labels)
     spherical = mechanism.space == "sphere"
     places = tuple(_place(centres.isel(pair=number)) for number in range(len(pairs)))
     speeds = tuple(map(_speed, centres["relative_speed"].values.tolist())) if spherical else ()

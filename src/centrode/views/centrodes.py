@@ -25,7 +25,7 @@ from centrode.sheets.sheet import Column, Fact, FactTable, Sheet, Table
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Title
 from centrode.views.centres import ABSENT, place_text
 from centrode.views.columns import instant_columns
-from centrode.views.instants import body_text, instant_place
+from centrode.views.instants import body_text, instant_place, pair_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,12 +58,7 @@ def _rolling_facts(results: CentrodeResults) -> Iterator[Fact]:
     rolled = [sum(_last(arc[pieces == piece]) for piece in np.unique(pieces[pieces >= 0])) for arc in arcs]
     slip = float(np.nanmax(np.abs(arcs[0] - arcs[1]), initial=0.0))
     unit = "m" if mechanism.space == "plane" else "rad"
-    bodies = Sentence(
-        "{first} against {second}",
-        first=body_text(mechanism, results.link),
-        second=body_text(mechanism, results.against),
-    )
-    yield Fact(Sentence("bodies"), bodies)
+    yield Fact(Sentence("bodies"), pair_text(mechanism, results.link, results.against))
     seen = Joined((Number(int((pieces >= 0).sum())), Number(pieces.size)), " / ")
     yield Fact(Sentence("samples with a centre"), seen)
     yield Fact(Sentence("pieces"), Number(int(pieces.max()) + 1))
@@ -137,7 +132,7 @@ def _rolling_scene(results: CentrodeResults) -> Scene:
     """Both centrodes with the linkage, where one touches the other."""
     mechanism, found = results.mechanism, results.centrodes
     pieces = found["centrode_piece"].to_numpy().astype(np.intp)
-    against, link = Name(results.against), Name(results.link)
+    against, link = body_text(mechanism, results.against), body_text(mechanism, results.link)
     spherical = mechanism.space == "sphere"
     legend: tuple[Text, ...] = (
         Sentence("fixed centrode\n(of {name})", name=against),

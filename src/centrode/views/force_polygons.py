@@ -47,6 +47,7 @@ from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbo
 from centrode.views.force_pages import RIGHT_ANGLE, group_page, lever_page
 from centrode.views.instants import body_text, instant_title, place_number
 from centrode.views.load_names import load_text
+from centrode.views.structure import GROUP_KINDS
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.polygons import (
@@ -145,8 +146,8 @@ def _group_title(found: ForcePolygons, group: GroupForces) -> Text:
         return Sentence("Input link {numbers}: {names}", numbers=numbers, names=names)
     if group.kind == "single":
         return Sentence("Link {numbers} by itself: {names}", numbers=numbers, names=names)
-    kinds = {"together": Sentence("solved together"), "triad": Sentence("triad, by an Assur point")}
-    kind = kinds.get(group.kind, Name(group.kind))
+    other = {"together": Sentence("solved together"), "triad": Sentence("triad, by an Assur point")}
+    kind = other.get(group.kind) or GROUP_KINDS[group.kind]
     return Sentence("Group {numbers} ({kind}): {names}", numbers=numbers, kind=kind, names=names)
 
 

@@ -60,5 +60,14 @@ def body_text(mechanism: Mechanism, name: str) -> Text:
     return Sentence("slider {point}", point=Name(name.removeprefix("slider ")))
 
 
+def pair_text(mechanism: Mechanism, first: str, second: str) -> Text:
+    """One body against another; the frame in the case that its word takes there."""
+    if second == FRAME:
+        return Sentence("{name} against the frame", name=body_text(mechanism, first))
+    return Sentence(
+        "{first} against {second}", first=body_text(mechanism, first), second=body_text(mechanism, second)
+    )
+
+
 def _equal(name: str, number: Number) -> Text:
     return Joined((Name(name), number), " = ")

@@ -47,6 +47,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views import transmission
 from centrode.views.instants import place_number
+from centrode.views.structure import GROUP_KINDS
 
 if TYPE_CHECKING:
     from centrode.analysis.redesign.repair import Change, Repair
@@ -384,7 +385,7 @@ class _Turning:
             Sentence(
                 "{group} ({kind}): least {value} at {place}",
                 group=Name(one.group),
-                kind=Name(one.kind),
+                kind=GROUP_KINDS[one.kind],
                 value=least,
                 place=self.place(one.least_at),
             ),

@@ -39,13 +39,28 @@ def _whole(number: int) -> Number:
     return Number(number, digits="d")
 
 
-PAIRS: dict[PairKind, tuple[Text, str]] = {
-    "turning": (Sentence("turning pair, class {number}", number=_whole(5)), "R"),
-    "sliding": (Sentence("sliding pair, class {number}", number=_whole(5)), "P"),
-    "gear": (Sentence("gear pair, class {number}", number=_whole(4)), ""),
-    "rolling": (Sentence("rolling pair"), ""),
+PAIRS: dict[PairKind, tuple[Text, Text]] = {
+    "turning": (Sentence("turning pair, class {number}", number=_whole(5)), Sentence("R")),
+    "sliding": (Sentence("sliding pair, class {number}", number=_whole(5)), Sentence("P")),
+    "gear": (Sentence("gear pair, class {number}", number=_whole(4)), NOTHING),
+    "rolling": (Sentence("rolling pair"), NOTHING),
 }
 """Kind of a pair -> what it is called, and its sign."""
+
+GROUP_KINDS: dict[str, Text] = {
+    "RRR": Sentence("RRR"),
+    "RRP": Sentence("RRP"),
+    "RPR": Sentence("RPR"),
+    "PRP": Sentence("PRP"),
+    "RPP": Sentence("RPP"),
+    "gear": Sentence("gear"),
+    "rolling": Sentence("rolling"),
+    "gear train": Sentence("gear train"),
+    "higher class": Sentence("higher class"),
+    "parallel link": Sentence("parallel link"),
+    "link by two points": Sentence("link by two points"),
+}
+"""Kind of a group -> what it is called: dyads by the letters of their pairs, which depend on the language."""
 
 
 def sheet(checked: MechanismCheck) -> Sheet:
@@ -102,7 +117,7 @@ def _group(group: AssurGroup) -> Text:
         name=name,
         roman=Name(group.roman),
         order=_whole(group.order),
-        kind=Name(group.kind),
+        kind=GROUP_KINDS[group.kind],
     )
 
 
@@ -135,7 +150,7 @@ def _pairs(mechanism: Mechanism) -> Table:
         Column("pair", tuple(Name(pair.name) for pair in pairs), head=Sentence("pair")),
         Column("bodies", tuple(map(_bodies, pairs)), head=Sentence("bodies")),
         Column("kind", tuple(PAIRS[pair.kind][0] for pair in pairs), head=Sentence("kind")),
-        Column("sign", tuple(Name(PAIRS[pair.kind][1]) for pair in pairs), head=Sentence("sign")),
+        Column("sign", tuple(PAIRS[pair.kind][1] for pair in pairs), head=Sentence("sign")),
     )
     return Table(columns, Sentence("Kinematic pairs"))
 
@@ -223,4 +238,4 @@ def _order(group: AssurGroup) -> Text:
 
 
 def _kind(group: AssurGroup) -> Text:
-    return Sentence("input") if group.roman == "I" else Name(group.kind)
+    return Sentence("input") if group.roman == "I" else GROUP_KINDS[group.kind]

@@ -423,9 +423,10 @@ def number_pairs(bodies: Named, pairs: Sequence[tuple[str, str]] | None) -> list
     for first, second in pairs:
         pair = bodies.number(first), bodies.number(second)
         if pair[0] == pair[1]:
-            raise InputError(
-                "pair", _("{name} has no centre against itself").format(name=first), _("name two bodies")
-            )
+            what = _("{name} has no centre against itself")
+            if first == FRAME:
+                what = _("the frame has no centre against itself")
+            raise InputError("pair", what.format(name=first), _("name two bodies"))
         numbers.append(pair)
     return numbers
 

@@ -101,7 +101,10 @@ def curvature(
     for name in (link, against):
         _check_body(mechanism, name)
     if link == against:
-        raise InputError("link", _("{name} does not move against itself").format(name=link))
+        what = _("{name} does not move against itself")
+        if link == FRAME:
+            what = _("the frame does not move against itself")
+        raise InputError("link", what.format(name=link))
     prepared = ready(mechanism)
     if places is None:
         # the motion starts anew from its description: a dataset has two derivatives, and the third is needed

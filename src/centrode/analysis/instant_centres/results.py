@@ -220,9 +220,14 @@ def require_velocities(course: xr.Dataset) -> None:
 def require_centres(curves: xr.Dataset) -> None:
     """Raise MotionError if a link has no instant centre against the other body at any sample of its `centrodes`."""
     if not (curves["centrode_piece"] >= 0).any():
+        link, other = str(curves.attrs["link"]), str(curves.attrs["against"])
         what = _("{link} has no centre against {other} in this range: it translates, or does not move")
+        if FRAME in (link, other):
+            # the centre is that of the pair, whichever of the two is said to move
+            link = other if link == FRAME else link
+            what = _("{link} has no centre against the frame in this range: it translates, or does not move")
         raise MotionError(
             "",
-            what.format(link=curves.attrs["link"], other=curves.attrs["against"]),
+            what.format(link=link, other=other),
             _("name another link, or another body with --against"),
         )
