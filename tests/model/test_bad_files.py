@@ -35,6 +35,11 @@ Complaint = Callable[[str], str]
             'length = "0.5 kg"',
             'press.toml, [links.AB] length: expected a length (m), got "0.5 kg"',
         ),
+        (
+            "length = 3.5",
+            'length = "3,5 mm"',
+            'expected a length (m), got "3,5 mm"; decimals have a point, not a comma: write "3.5 mm"',
+        ),
         ("length = 3.5", "length = nan", "press.toml, [links.AB] length: expected a finite number, got nan"),
         ("length = 3.5", "length = inf", "press.toml, [links.AB] length: expected a finite number, got inf"),
         ("length = 3.5", "length = 1e200", "press.toml, [links.AB] length: 1e+200 is beyond"),
@@ -84,6 +89,11 @@ Complaint = Callable[[str], str]
             "O = [0, 0]",
             "O = [0, 0, 0]",
             "press.toml, [frame.points] O: expected [x, y], got a list of 3 values",
+        ),
+        (
+            "O = [0, 0]",
+            "O = [0,5, 0,25]",
+            "press.toml, [frame.points] O: expected [x, y], got a list of 4 values; decimals have a point",
         ),
         ("O = [0, 0]", 'O = ["1 m", "1 kg"]', "[frame.points] O: expected a length (m)"),
         ("O = [0, 0]", "placed = [0, 0]", '"placed" cannot be a name'),
