@@ -16,6 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, mo
 from centrode.errors import InputError
 from centrode.files.inputs import note
 from centrode.locale import _, ngettext
+from centrode.model.look_alikes import letters_note, look_alike
 
 # What a file may ask for at most: a text that asks for more is refused before anything is built from it.
 
@@ -114,6 +115,9 @@ def value_text(value: object) -> str:
 def likely(name: str, known: Iterable[str]) -> str:
     """Repair of a misspelt name: the nearest known one, if one is near."""
     names = list(known)
+    alike = look_alike(name, names)
+    if alike is not None:
+        return letters_note(name, [(name, alike)])
     folded = [other for other in names if other.casefold() == name.casefold()]
     cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
     close = folded or difflib.get_close_matches(name[:NAME_LENGTH], names, n=1, cutoff=cutoff)
