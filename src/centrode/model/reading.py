@@ -324,21 +324,26 @@ def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
 Word = TypeVar("Word", bound=str)
 
 
-def read_choice(value: object, options: Sequence[Word]) -> Word:
-    """One of a few words; raises Problem for anything else."""
+def read_choice(
+    value: object, options: Sequence[Word], other_names: Mapping[str, Word] | None = None
+) -> Word:
+    """One of a few words; raises Problem for anything else, `other_names` are those that the error knows as well."""
     for option in options:
         if isinstance(value, str) and value == option:
             return option
     words = ", ".join(value_text(option) for option in options)
-    repair = likely(value, options) if isinstance(value, str) else ""
+    repair = ""
+    if isinstance(value, str):
+        meant = (other_names or {}).get(value.strip().casefold())
+        repair = likely(meant or value, options)
     raise Problem(
         _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair
     )
 
 
-def choice(*options: str) -> BeforeValidator:
+def choice(*options: str, other_names: Mapping[str, str] | None = None) -> BeforeValidator:
     """One of a few words."""
-    return BeforeValidator(lambda value: read_choice(value, options))
+    return BeforeValidator(lambda value: read_choice(value, options, other_names))
 
 
 def entries(value: object, most: int) -> tuple[object, ...]:
