@@ -47,6 +47,41 @@ def test_nothing_said_of_the_side() -> None:
         started(four_bar(1.0, 3.5, 3.0, 4.0, assembly={}))
 
 
+def six_bar(sides: dict[str, str], **angles: float) -> ct.Mechanism:
+    """Two four-bar linkages in a row: the rocker of the first drives the second."""
+    links: dict[str, Any] = {
+        "AB": {"length": 1},
+        "BC": {"length": 3.5},
+        "rocker": {"points": {"C": [3, 0], "D": [0, 0], "E": [2, 0]}},
+        "EF": {"length": 4},
+        "GF": {"length": 2.5},
+    }
+    return ct.Mechanism(
+        frame={"points": {"A": [0, 0], "D": [4, 0], "G": [8, 0]}},
+        links={
+            name: link | ({"angle": angles[name]} if name in angles else {}) for name, link in links.items()
+        },
+        drives=[{"link": "AB", "start": 0.7, "speed": 1}],
+        assembly={"sides": sides},
+    )
+
+
+@pytest.mark.parametrize(
+    ("sides", "angles", "points"),
+    [({}, {}, "CF"), ({"C": "left"}, {}, "F"), ({"F": "left"}, {}, "C"), ({}, {"GF": 1.0}, "C")],
+)
+def test_all_sides_that_nothing_says_are_told_at_once(
+    sides: dict[str, str], angles: dict[str, float], points: str
+) -> None:
+    with pytest.raises(ct.InputError) as caught:
+        ct.check(six_bar(sides, **angles))
+    lines = str(caught.value).splitlines()
+    assert [line[line.index("(point ") + 7] for line in lines] == [*points]
+    for line, name in zip(lines, points, strict=True):
+        assert line.endswith(f'or [assembly] sides, {name} = "left" | "right"')
+    assert ct.check(six_bar({"C": "left", "F": "left"})).mobility == 1
+
+
 @pytest.mark.parametrize(("off", "refused"), [(4.9, False), (5.1, True), (-5.1, True)])
 def test_initial_angles_hold_to_five_degrees(off: float, refused: bool) -> None:
     right = started(four_bar(1.0, 3.5, 3.0, 4.0))

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from centrode import laws
 from centrode.errors import InputError
 from centrode.model import reading
 from centrode.model.files import mechanism_text, parse_mechanism, read_mechanism
@@ -34,6 +35,11 @@ Complaint = Callable[[str], str]
             "length = 3.5",
             'length = "0.5 kg"',
             'press.toml, [links.AB] length: expected a length (m), got "0.5 kg"',
+        ),
+        (
+            "length = 3.5",
+            'length = "3,5 mm"',
+            'expected a length (m), got "3,5 mm"; decimals have a point, not a comma: write "3.5 mm"',
         ),
         ("length = 3.5", "length = nan", "press.toml, [links.AB] length: expected a finite number, got nan"),
         ("length = 3.5", "length = inf", "press.toml, [links.AB] length: expected a finite number, got inf"),
@@ -85,6 +91,11 @@ Complaint = Callable[[str], str]
             "O = [0, 0, 0]",
             "press.toml, [frame.points] O: expected [x, y], got a list of 3 values",
         ),
+        (
+            "O = [0, 0]",
+            "O = [0,5, 0,25]",
+            "press.toml, [frame.points] O: expected [x, y], got a list of 4 values; decimals have a point",
+        ),
         ("O = [0, 0]", 'O = ["1 m", "1 kg"]', "[frame.points] O: expected a length (m)"),
         ("O = [0, 0]", "placed = [0, 0]", '"placed" cannot be a name'),
         (
@@ -105,6 +116,12 @@ Complaint = Callable[[str], str]
             'law = "2*q"',
             'press.toml, [[drives]] 1, law: unknown name "q", at character 3 of "2*q"',
         ),
+        (
+            "speed = 1",
+            'law = "tg(t)"',
+            'unknown function "tg", at character 1 of "tg(t)"; did you mean "tan"? known',
+        ),
+        ("speed = 1", 'law = "sinn(t)"', 'did you mean "sin"? known are: abs acos'),
         ("speed = 1", "table = [[0, 0]]", "press.toml, [[drives]] 1, table: a table needs at least two rows"),
         ("speed = 1", "table = [[0, 0], [0, 1]]", "row 2 does not"),
         ("speed = 1", "table = [[0, 0], [1]]", "expected [time, value]"),
@@ -216,6 +233,34 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
 )
 def test_bad_texts_are_told(complaint: Complaint, text: str, message: str) -> None:
     assert message in complaint(text)
+
+
+@pytest.mark.parametrize(
+    ("curve", "proposed"),
+    [
+        ("cycloid", "cycloidal"),
+        ("Harmonic", "harmonic"),
+        ("cosine", "harmonic"),
+        ("Sinusoidal", "cycloidal"),
+        ("modified-sine", "modified sine"),
+        ("345", "3-4-5"),
+        ("linear", "uniform"),
+        ("wobbly", None),
+    ],
+)
+def test_unknown_curves_name_those_known_and_the_nearest(
+    complaint: Complaint, curve: str, proposed: str | None
+) -> None:
+    segment = f'segments = [{{ to = 1, time = 1, curve = "{curve}" }}]'
+    told = complaint(FOUR_BAR.replace("speed = 1", segment))
+    assert told.startswith("press.toml, [[drives]] 1, segments: segment 1, curve: expected one of")
+    assert all(f'"{known}"' in told for known in laws.SEGMENT_CURVES)
+    assert told.partition(f'got "{curve}"')[2] == (f'; did you mean "{proposed}"?' if proposed else "")
+
+
+def test_synonyms_of_curves_are_of_known_ones() -> None:
+    assert set(laws.CURVE_SYNONYMS.values()) <= set(laws.SEGMENT_CURVES)
+    assert not set(laws.CURVE_SYNONYMS) & set(laws.SEGMENT_CURVES)
 
 
 def test_first_problems_of_a_file_are_told_together(complaint: Complaint) -> None:

@@ -43,3 +43,43 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
     with pytest.raises(InputError) as caught:
         parse_mechanism(text, "press.toml")
     assert str(caught.value).endswith(f"not TOML: {sentence}")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("a = 3,5", "line 1, column 6: not TOML: decimals have a point, not a comma; write 3.5"),
+        (
+            "b = 1\na = -3,05 # m",
+            "line 2, column 7: not TOML: decimals have a point, not a comma; write -3.05",
+        ),
+        ("a = { b = 3,5, c = 1 }", "decimals have a point, not a comma; write 3.5"),
+        ("a = { b = 3,5 }", "decimals have a point, not a comma; write 3.5"),
+        ("a = { b = 3,5 mm }", 'decimals have a point, not a comma; write "3.5 mm"'),
+        ("a = 3,5 mm", 'decimals have a point, not a comma; write "3.5 mm"'),
+        ("a = 3.5 mm", 'column 9: not TOML: a number with a unit is a text in quotes; write "3.5 mm"'),
+        ("a = -3.5mm", 'a number with a unit is a text in quotes; write "-3.5 mm"'),
+        ("a = { b = 3500 mm, c = 1 }", 'a number with a unit is a text in quotes; write "3500 mm"'),
+        ("a = 60°", 'a number with a unit is a text in quotes; write "60 °"'),
+        ("a = 5 мм/с^2", 'a number with a unit is a text in quotes; write "5 мм/с^2"'),
+        (
+            "a = [\n  1e-3 m, 0\n]",
+            'line 2, column 8: not TOML: a number with a unit is a text in quotes; write "1e-3 m"',
+        ),
+        ("a = [1, 2 mm]", 'a number with a unit is a text in quotes; write "2 mm"'),
+    ],
+)
+def test_decimal_commas_and_units_without_quotes_are_named(text: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_mechanism(text, "press.toml")
+    assert str(caught.value).startswith("press.toml, line")
+    assert str(caught.value).endswith(told)
+
+
+@pytest.mark.parametrize(
+    "text", ["a = 1 b = 2", "a = { b = 1 c = 2 }", "a = [1,5", "a = 5.", "a = 1/2", "a = { b = 1, 5 = }"]
+)
+def test_other_mistakes_beside_numbers_are_not_taken_for_these(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_mechanism(text)
+    assert not caught.value.repair

@@ -103,13 +103,7 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
         and turned_apart(kinematics.numbers.space, link, left, right) > DEGENERATE
     }
     if not hints:
-        raise InputError(
-            name_of(group),
-            _("nothing says on which side it is assembled"),
-            _("give the initial angle of {links}, or [assembly] sides, {words}").format(
-                links=_(" or ").join(group.links), words=side_choice(kinematics.numbers.space, group)
-            ),
-        )
+        raise _undecided_sides(kinematics, group)
     # the sum over all links that tell: one link alone may be drawn badly
     misfit = {
         sign: sum(
@@ -118,6 +112,36 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
         for sign, option in options.items()
     }
     return min(misfit, key=misfit.__getitem__)
+
+
+def _undecided_sides(kinematics: Kinematics, group: Group) -> InputError:
+    """The error of a group whose side nothing says, and of those behind it of which the same is certain.
+
+    Those behind are not solved, as their places depend on the side of this one: only where no initial angle of
+    their links is given, none can tell.
+    """
+    groups = kinematics.structure.groups
+    mechanism = kinematics.structure.mechanism
+    behind = [
+        other
+        for other in groups[groups.index(group) + 1 :]
+        if other.signed
+        and not any(name in mechanism.assembly.sides for name in side_names(other))
+        and all(mechanism.links[link].angle is None for link in other.links)
+    ]
+    space = kinematics.numbers.space
+    errors = [
+        InputError(
+            name_of(undecided),
+            _("nothing says on which side it is assembled"),
+            _("give the initial angle of {links}, or [assembly] sides, {words}").format(
+                links=_(" or ").join(undecided.links), words=side_choice(space, undecided)
+            ),
+        )
+        for undecided in (group, *behind)
+    ]
+    first, rest = errors[0], errors[1:]
+    return InputError(first.where, first.what, first.repair + "".join(f"\n{other}" for other in rest))
 
 
 def turned_apart(space: Space, link: str, one: Positions, other: Positions) -> float:

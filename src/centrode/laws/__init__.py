@@ -4,6 +4,7 @@ from centrode.laws.laws import ShaftLaw, TableLaw, TextLaw, Uniform
 from centrode.laws.rises import CURVES, Law, Piece, RiseCurve
 from centrode.laws.segments import (
     B_SPLINE,
+    CURVE_SYNONYMS,
     DEGREE,
     DWELL,
     MOST_DEGREE,
@@ -17,6 +18,7 @@ from centrode.laws.segments import (
 __all__ = [
     "B_SPLINE",
     "CURVES",
+    "CURVE_SYNONYMS",
     "DEGREE",
     "DWELL",
     "MOST_DEGREE",

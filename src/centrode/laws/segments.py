@@ -296,6 +296,23 @@ B_SPLINE = "b-spline"
 THROUGH_POINTS = (POLYNOMIAL, B_SPLINE)
 """Curves by conditions: values on the way, derivatives at the ends."""
 SEGMENT_CURVES = (*CURVES, DWELL, *THROUGH_POINTS)
+CURVE_SYNONYMS = {
+    "linear": "uniform",
+    "constant velocity": "uniform",
+    "cosine": "harmonic",
+    "cosine acceleration": "harmonic",
+    "sine": "cycloidal",
+    "sinusoidal": "cycloidal",
+    "sine acceleration": "cycloidal",
+    "quintic": "3-4-5",
+    "polynomial 3-4-5": "3-4-5",
+    "septic": "4-5-6-7",
+    "polynomial 4-5-6-7": "4-5-6-7",
+    "constant": DWELL,
+    "pause": DWELL,
+    "rest": DWELL,
+}
+"""What textbooks also call these curves: an error proposes the curve."""
 
 DEGREE = 5
 """Of a B-spline: with it speed, acceleration, jerk and the rate of the jerk are continuous."""

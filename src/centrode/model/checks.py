@@ -14,6 +14,7 @@ from centrode.model.description import Description, value_at_start
 from centrode.model.drives import Drive
 from centrode.model.links import Gear, Link, Rolling
 from centrode.model.loads import AnyLoad, TurningLoad
+from centrode.model.look_alikes import letters_note, look_alike
 from centrode.model.reading import FRAME, Place, Problem, nearest, two_points, value_text
 from centrode.model.values import Placed, Vector, makes_arc, unit_vector
 
@@ -526,4 +527,12 @@ def _loose(mechanism: Description) -> Iterator[Problem]:
     for part in disconnected_parts(mechanism):
         at: Place = ("links", part.links[0]) if part.links else ()
         what = _("nothing connects {names} to the frame").format(names=part)
-        yield Problem(what, _("hinge it to a link that is connected, or give it a guide"), at)
+        repair = _("hinge it to a link that is connected, or give it a guide")
+        yield Problem(what, _look_alikes(mechanism, part) or repair, at)
+
+
+def _look_alikes(mechanism: Description, part: LoosePart) -> str:
+    """In which letters the points of a loose part differ from others that look alike; empty where none do."""
+    others = [point for point in mechanism.points if point not in part.points]
+    pairs = [(point, other) for point in part.points if (other := look_alike(point, others)) is not None]
+    return letters_note(str(part), pairs) if pairs else ""

@@ -280,7 +280,7 @@ class LiftSegment(DescriptionPart):
     angle: Annotated[float, PlainValidator(_read_angle)]
     start: Annotated[float | None, Field(alias="from")] = None
     to: float | None = None
-    curve: Annotated[str, choice(*laws.SEGMENT_CURVES)]
+    curve: Annotated[str, choice(*laws.SEGMENT_CURVES, other_names=laws.CURVE_SYNONYMS)]
     at_start: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
     at_end: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
     through: tuple[tuple[float, float], ...] = ()

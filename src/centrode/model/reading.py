@@ -16,6 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, mo
 from centrode.errors import InputError
 from centrode.files.inputs import note
 from centrode.locale import _, ngettext
+from centrode.model.look_alikes import letters_note, look_alike
 
 # What a file may ask for at most: a text that asks for more is refused before anything is built from it.
 
@@ -114,6 +115,9 @@ def value_text(value: object) -> str:
 def likely(name: str, known: Iterable[str]) -> str:
     """Repair of a misspelt name: the nearest known one, if one is near."""
     names = list(known)
+    alike = look_alike(name, names)
+    if alike is not None:
+        return letters_note(name, [(name, alike)])
     folded = [other for other in names if other.casefold() == name.casefold()]
     cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
     close = folded or difflib.get_close_matches(name[:NAME_LENGTH], names, n=1, cutoff=cutoff)
@@ -320,21 +324,26 @@ def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
 Word = TypeVar("Word", bound=str)
 
 
-def read_choice(value: object, options: Sequence[Word]) -> Word:
-    """One of a few words; raises Problem for anything else."""
+def read_choice(
+    value: object, options: Sequence[Word], other_names: Mapping[str, Word] | None = None
+) -> Word:
+    """One of a few words; raises Problem for anything else, `other_names` are those that the error knows as well."""
     for option in options:
         if isinstance(value, str) and value == option:
             return option
     words = ", ".join(value_text(option) for option in options)
-    repair = likely(value, options) if isinstance(value, str) else ""
+    repair = ""
+    if isinstance(value, str):
+        meant = (other_names or {}).get(value.strip().casefold())
+        repair = likely(meant or value, options)
     raise Problem(
         _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair
     )
 
 
-def choice(*options: str) -> BeforeValidator:
+def choice(*options: str, other_names: Mapping[str, str] | None = None) -> BeforeValidator:
     """One of a few words."""
-    return BeforeValidator(lambda value: read_choice(value, options))
+    return BeforeValidator(lambda value: read_choice(value, options, other_names))
 
 
 def entries(value: object, most: int) -> tuple[object, ...]:

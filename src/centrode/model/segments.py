@@ -74,7 +74,7 @@ class Segment(DescriptionPart):
 
     to: float | None = None
     time: Annotated[float, PlainValidator(lambda value: positive(value, "time"))]
-    curve: Annotated[str, choice(*laws.SEGMENT_CURVES)]
+    curve: Annotated[str, choice(*laws.SEGMENT_CURVES, other_names=laws.CURVE_SYNONYMS)]
     speed_at_start: float | None = None
     acceleration_at_start: float | None = None
     jerk_at_start: float | None = None

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
-from centrode.model.reading import DescriptionPart, input_error
+from centrode.model.reading import DescriptionPart, input_error, value_text
 from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
 
 # What the parser of TOML complains about, in sentences of ours: its own are for programmers, and English
@@ -59,6 +59,10 @@ Described = TypeVar("Described", bound=DescriptionPart)
 _KEY = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 # Dotted keys nest without a bracket, and cost the parser the square of their number.
 _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NESTING * 2},}}")
+# Two mistakes of people who are used to other decimals and to units behind numbers: 3,5 and 3.5 mm.
+_COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
+_NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
+_UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -125,13 +129,33 @@ def toml_tables(text: str, where: str) -> dict[str, Any]:
 
 def _not_toml(message: str, text: str, where: str) -> InputError:
     match = _PLACE.fullmatch(message)
-    reason = toml_reason(match.group(1) if match else message)
-    lines = text.splitlines() or [""]
-    line, column = (
-        (match.group(2), match.group(3)) if match and match.group(2) else (len(lines), len(lines[-1]) + 1)
-    )
+    reason, repair = toml_reason(match.group(1) if match else message), ""
+    if match and match.group(2):
+        line, column = int(match.group(2)), int(match.group(3))
+        # Lines as the parser counts them: `splitlines` would part a text at other characters too.
+        reason, repair = _mistyped_number(text.split("\n")[line - 1], column - 1) or (reason, repair)
+    else:
+        lines = text.splitlines() or [""]
+        line, column = len(lines), len(lines[-1]) + 1
     place = _("line {line}, column {column}").format(line=line, column=column)
-    return InputError(f"{where}, {place}" if where else place, _("not TOML: {reason}").format(reason=reason))
+    what = _("not TOML: {reason}").format(reason=reason)
+    return InputError(f"{where}, {place}" if where else place, what, repair)
+
+
+def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped at a number with a decimal comma, or with a unit but no quotes."""
+    for comma in _COMMA.finditer(line):
+        if comma.start() < at <= comma.end():
+            number = f"{comma.group(1)}.{comma.group(2)}"
+            behind = _UNIT.match(line, comma.end())
+            written = value_text(f"{number} {behind.group()}") if behind else number
+            return _("decimals have a point, not a comma"), _("write {number}").format(number=written)
+    number_before = _NUMBER.search(line, 0, at)
+    unit = _UNIT.match(line, at)
+    if number_before and unit:
+        written = value_text(f"{number_before.group(1)} {unit.group()}")
+        return _("a number with a unit is a text in quotes"), _("write {number}").format(number=written)
+    return None
 
 
 def _depth(value: object) -> int:

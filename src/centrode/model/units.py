@@ -85,6 +85,7 @@ ANGULAR = ("angle", "arc")
 _NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
 _UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
+_DECIMAL_COMMA = re.compile(r"([+-]?[0-9]+),([0-9][^,]*)")
 
 
 def to_si(value: object, kind: str) -> float:
@@ -208,14 +209,22 @@ def _example(kind: str) -> str:
 
 def _wrong(value: object, kind: str) -> InputError:
     named = KINDS[kind]
+    repair = decimal_point_repair(value) if isinstance(value, str) else ""
     if not named.unit:
-        return InputError(
-            "", _("expected a number, got {value}").format(value=value_text(value)), _example(kind)
-        )
-    what = _("expected {kind} ({unit}), got {value}")
-    return InputError(
-        "", what.format(kind=_(named.name), unit=named.unit, value=value_text(value)), _example(kind)
-    )
+        what = _("expected a number, got {value}").format(value=value_text(value))
+    else:
+        what = _("expected {kind} ({unit}), got {value}")
+        what = what.format(kind=_(named.name), unit=named.unit, value=value_text(value))
+    return InputError("", what, repair or _example(kind))
+
+
+def decimal_point_repair(text: str) -> str:
+    """Repair of a text with a decimal comma, as "3,5 mm"; empty for other texts."""
+    comma = _DECIMAL_COMMA.fullmatch(text.strip())
+    if comma is None:
+        return ""
+    number = value_text(f"{comma.group(1)}.{comma.group(2)}")
+    return _("decimals have a point, not a comma: write {number}").format(number=number)
 
 
 def _other_kind(unit: str, kind: str, frequency: bool = False) -> InputError:

@@ -135,7 +135,12 @@ def not_negative(value: object, kind: str) -> float:
 def numbers(value: object, kinds: tuple[str, ...], form: str) -> tuple[float, ...]:
     """A list of numbers of these kinds; `form` shows how it is written."""
     if not isinstance(value, list | tuple) or len(value) != len(kinds):
-        raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
+        what = _("expected {form}, got {value}").format(form=form, value=value_text(value))
+        # [0,5, 0] is a list of three whole numbers: where too many stand in a list, a comma may be a decimal one.
+        listed = value if isinstance(value, list | tuple) else ()
+        whole = any(listed) and all(isinstance(item, int) for item in listed)
+        comma = whole and len(kinds) < len(listed) <= 2 * len(kinds)
+        raise Problem(what, _("decimals have a point, not a comma: 3.5") if comma else "")
     return tuple(si(item, kind) for item, kind in zip(value, kinds, strict=True))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import difflib
 import math
 import re
 import unicodedata
@@ -13,6 +14,9 @@ from typing import Any
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.numerics.operations import CONSTANTS, DERIVED, FUNCTIONS, ONE_ARGUMENT, SCALARS, Number
+
+SYNONYMS = {"tg": "tan", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctg": "atan", "ln": "log"}
+"""Other spellings of functions, which an error corrects."""
 
 # The text of a formula as Python reads it, with the way back to the user's characters.
 
@@ -281,7 +285,11 @@ class _FormulaReader:
                 if name
                 else _("only known functions are allowed")
             )
-            raise self.at(node, what, _("known are: {names}").format(names=" ".join(sorted(known))))
+            repair = _("known are: {names}").format(names=" ".join(sorted(known)))
+            near = SYNONYMS.get(name) or next(iter(difflib.get_close_matches(name, sorted(known), n=1)), "")
+            if near:
+                repair = _("did you mean {name}?").format(name=f'"{near}"') + " " + repair
+            raise self.at(node, what, repair)
         count = len(node.args)
         # of one argument min and max fold samples, of several they compare numbers
         folded = name in self.folds and (count == 1 or name not in FUNCTIONS)

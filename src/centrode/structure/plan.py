@@ -56,6 +56,7 @@ from centrode.structure.groups import (
     TwoPointLink,
     angles_in,
 )
+from centrode.structure.loose_points import look_alike_error, loose_points_repair
 from centrode.structure.rank import (
     Matrix,
     generic_jacobian,
@@ -529,7 +530,7 @@ def structure_of(mechanism: Mechanism) -> Structure:
     # if nothing is redundant no second elimination is needed
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
-    _check_drives(mechanism, matrix, kept, owners, mobility)
+    _check_drives(mechanism, matrix, kept, owners, mobility, unknowns)
     groups = _groups(mechanism, dimensions.space, unknowns, kept, owners)
     # a constraint is redundant if any of its equations is
     repeating = _left_out(owners, kept)
@@ -575,7 +576,12 @@ def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
 
 
 def _check_drives(
-    mechanism: Mechanism, matrix: Matrix, kept: Sequence[bool], owners: Sequence[Constraint], mobility: int
+    mechanism: Mechanism,
+    matrix: Matrix,
+    kept: Sequence[bool],
+    owners: Sequence[Constraint],
+    mobility: int,
+    unknowns: Sequence[Entity],
 ) -> None:
     """Refuse drives that repeat each other, drive what is locked, or leave something loose."""
     drives = len(mechanism.drives)
@@ -597,7 +603,11 @@ def _check_drives(
             _("it cannot move: the rest of the mechanism holds it"),
             _("drive what can move, or take constraints away"),
         )
-    raise InputError("[[drives]]", numbers, _("add drives, or constrain what moves freely"))
+    alike = look_alike_error(mechanism, numbers)
+    if alike:
+        raise alike
+    loose = loose_points_repair(mechanism, matrix, unknowns)
+    raise InputError("[[drives]]", numbers, loose or _("add drives, or constrain what moves freely"))
 
 
 def _locked_drives(matrix: Matrix, owners: Sequence[Constraint]) -> list[str]:
