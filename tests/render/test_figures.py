@@ -8,8 +8,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from centrode.render.drawing.style import PALETTE, pens
-from centrode.render.figures.files import save_figures
 from centrode.render.figures import curves
+from centrode.render.figures.files import save_figures
 from centrode.views.motion_plots import deal_to_panels
 from shown_motion import motion_figures
 
