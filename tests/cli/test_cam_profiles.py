@@ -102,7 +102,7 @@ def test_wrong_input_ends_with_2_without_a_traceback(
 
 
 def test_a_pressure_angle_at_the_start_makes_the_shoe_singular(centrode: Centrode, wheel: Path) -> None:
-    text = WHEEL.replace("symmetric = true\n", "").replace('to = "90 deg"', 'to = "1"\nfrom = "-1"')
+    text = WHEEL.replace("symmetric = true\n", "").replace('to = "90 deg"', 'to = "1 rad"\nfrom = "-1 rad"')
     text = text.replace('radius = "50 mm"', 'radius = "50 mm"\npressure_angle = "5 deg"')
     (wheel / "wheel.toml").write_text(text, encoding="utf-8")
     done = centrode("cam", "wheel.toml")

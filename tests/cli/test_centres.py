@@ -181,7 +181,7 @@ REFUSED = {
         "--link",
         "BC",
         "--at",
-        "1",
+        "1 rad",
     ): "curvature is not computed on the sphere",
     ("centrodes", "spherical-four-bar", "--link", "BC", "--against", "XY"): 'there is no link "XY"',
     (

@@ -33,11 +33,11 @@ length = 0.6
 length = 0.5
 [[drives]]
 link = "OA"
-start = 1
+start = "1 rad"
 speed = 1
 [[drives]]
 link = "EC"
-start = 1.8
+start = "1.8 rad"
 speed = -2
 [assembly]
 sides = { B = "left" }
@@ -164,7 +164,7 @@ def test_a_region_without_a_time_to_draw_a_path_for(centrode: Centrode, arm: Pat
     (arm / "arm.toml").write_text(
         FIVE_BAR.replace("speed = 1\n", 'law = "t"\n').replace("speed = -2", 'law = "-t"')
     )
-    arguments = ("--samples", "9", "--range", "OA=0 deg:90 deg", "--range", "EC=1:2 rad")
+    arguments = ("--samples", "9", "--range", "OA=0 deg:90 deg", "--range", "EC=1 rad:2 rad")
     done = centrode("region", "arm.toml", *arguments)
     assert done.code == 0
     assert done.rows["drive OA"] == "0 deg to 90 deg"

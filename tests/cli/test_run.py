@@ -232,7 +232,8 @@ def test_a_table_beside_the_file(centrode: Centrode, folder: Path, four_bar: str
 
 
 def test_the_file_says_what_it_shows(centrode: Centrode, folder: Path, four_bar: str) -> None:
-    text = 'display = { length = "mm", angle = "deg" }\n' + four_bar + "[study]\nsamples = 3\n"
+    text = 'display = { length = "mm", angle = "deg" }\n' + four_bar.replace("start = 1", 'start = "1 rad"')
+    text += "[study]\nsamples = 3\n"
     (folder / "press.toml").write_text(text)
     done = centrode("run", "press.toml", "--out", "r", "--no-figures")
     assert done.rows["range"] == "57.2957795 deg to 417.29578 deg in 6.28319 s"

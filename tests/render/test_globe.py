@@ -39,7 +39,7 @@ speed = 1
 
 def made(size: float = 0.8, samples: int = 73, gap: bool = False):
     """A crank whose points run round circles about the x axis, as a result of motion."""
-    mechanism = parse_mechanism(TEXT.replace("SIZE", repr(size)), "crank.toml")
+    mechanism = parse_mechanism(TEXT.replace("SIZE", f'"{size!r} rad"'), "crank.toml")
     q = np.linspace(0.0, 2 * np.pi, samples)
 
     def ring(shift: float):

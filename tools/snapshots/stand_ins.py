@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import inspect
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -29,7 +30,7 @@ MARK = "figure number"
 """How a file begins that stands for a figure; its number in `Seen.figures` follows."""
 FORMULA = re.compile(r"\$ (.*?) \$(?=\n\n|\Z)", re.DOTALL)
 PARSER: Any = MathTextParser
-REMEMBERED = functools.lru_cache(20_000)(PARSER._parse_cached.__wrapped__)
+REMEMBERED = functools.lru_cache(20_000)(inspect.unwrap(PARSER._parse_cached))
 """Sizes of formulas in labels, as often as they are asked for; matplotlib itself remembers 50."""
 PAGE_SOURCE = "document set by typst"
 
