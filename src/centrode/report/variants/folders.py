@@ -210,7 +210,7 @@ def write_variants(
     keep_inputs(folder / SUMMARY)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        with hold_lock(folder / LOCK, str(folder)):
+        with hold_lock(folder / LOCK, str(folder), remove=True):
             variants = Variants(topology, given, tuple(_all(tasks, jobs, progress)))
             _write_summary(variants, folder, spelling)
     return variants
