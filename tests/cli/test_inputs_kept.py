@@ -48,7 +48,7 @@ FILES: dict[str, tuple[str, tuple[str, ...]]] = {
     "limits": ("press.csv", ()),
     "draw": ("press.svg", ("--samples", "3")),
     "describe": ("press.md", ()),
-    "export": ("press.xml", ("--mjcf",)),
+    "export": ("press.xml", ()),
 }
 """Commands that write one file, and its name."""
 STUDIES = {"sweep", "variants"}
