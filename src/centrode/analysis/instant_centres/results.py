@@ -69,7 +69,10 @@ class CentrodeResults:
 
 
 def centre_results(
-    mechanism: Mechanism, *, pairs: Sequence[Names] | None = None, instants: Sequence[float] | None = None
+    mechanism: Mechanism,
+    *,
+    pairs: Sequence[Names] | None = None,
+    instants: Sequence[float | str] | None = None,
 ) -> CentreResults:
     """Instant centres of a mechanism at some instants, from velocities and by Aronhold's and Kennedy's theorem.
 
