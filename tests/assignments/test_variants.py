@@ -17,6 +17,7 @@ from centrode.assignments import results as variant_results
 from centrode.assignments.results import VariantRow, compute_variant, spoken_variants
 from centrode.assignments.tables import read_variants
 from centrode.errors import InputError
+from centrode.files.drafts import remove_file
 from centrode.files.locks import hold_lock
 from centrode.locale import speaking
 from centrode.report.variants import folders
@@ -250,7 +251,7 @@ def test_the_lock_is_there_while_it_is_held_and_gone_afterwards(tmp_path: Path) 
     ct.write_variants(WORKED, TWO, tmp_path)
     assert not (tmp_path / ".lock").exists()
     # a refusal takes nothing from the run that holds the lock
-    with hold_lock(tmp_path / ".lock", "", remove=True):
+    with hold_lock(tmp_path / ".lock", "", remove=remove_file):
         with pytest.raises(ct.InputError, match="another run is writing"):
             nested(tmp_path)
         assert (tmp_path / ".lock").is_file()

@@ -86,7 +86,12 @@ def test_the_instants_that_are_taken_are_told(
         ("diagrams", PARALLELOGRAM, "0 deg", "deg"),
         ("diagrams", OUTSTRETCHED, "400 mm", "mm"),
         ("centres", OUTSTRETCHED, "400 mm", "mm"),
-        ("polygons", PARALLELOGRAM.replace("length = 4", "length = 4\nmass = 1\ninertia = 1"), "0 deg", "deg"),
+        (
+            "polygons",
+            PARALLELOGRAM.replace("length = 4", "length = 4\nmass = 1\ninertia = 1"),
+            "0 deg",
+            "deg",
+        ),
     ],
 )
 def test_an_initial_position_that_will_not_do(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
@@ -21,8 +21,8 @@ WINDOWS = sys.platform == "win32"
 
 
 @contextmanager
-def hold_lock(file: Path, what: str, *, remove: bool = False) -> Iterator[None]:
-    """Hold the lock in `file` while the block runs; with `remove` the file is gone afterwards.
+def hold_lock(file: Path, what: str, *, remove: Callable[[Path], None] | None = None) -> Iterator[None]:
+    """Hold the lock in `file` while the block runs; `remove`, if given, then takes the file away.
 
     Raises InputError about `what` where another process holds it. A lock left by a process that was killed does
     not hold: it belongs to the open file, not to the file's being there.
@@ -39,19 +39,15 @@ def hold_lock(file: Path, what: str, *, remove: bool = False) -> Iterator[None]:
             try:
                 yield
             finally:
-                if remove and not WINDOWS:
+                if remove is not None and not WINDOWS:
                     # while the lock is held: afterwards the file may be the lock of another process
-                    _remove(file)
+                    with suppress(OSError):  # a file that stays does no harm
+                        remove(file)
     finally:
-        if remove and WINDOWS:
+        if remove is not None and WINDOWS:
             # an open file cannot be removed there: not before it is closed, nor the lock of another process
-            _remove(file)
-
-
-def _remove(file: Path) -> None:
-    """Remove the file of a lock; a file that stays does no harm."""
-    with suppress(OSError):
-        file.unlink()
+            with suppress(OSError):
+                remove(file)
 
 
 def taken(file: Path) -> IO[bytes] | None:
