@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 
 Asked = ParamSpec("Asked")
 Found = TypeVar("Found")
@@ -24,12 +24,22 @@ def telling_what_is_missing(load: Callable[Asked, Found]) -> Callable[Asked, Fou
             library = (missing.name or "").partition(".")[0]
             if library == "matplotlib":
                 what = _("figures need matplotlib, which is not installed")
-                repair = _('install it with pip install "centrode[figures]", or pass --no-figures')
+                repair = _("{repair}, or pass --no-figures").format(repair=how_to_install("figures"))
             elif library == "xlsxwriter":
                 what = _("workbooks need XlsxWriter, which is not installed")
-                repair = _('install it with pip install "centrode[tables]", or take the CSV files')
+                repair = _("{repair}, or take the CSV files").format(repair=how_to_install("tables"))
             else:
                 raise
             raise InputError("", what, repair) from missing
 
     return loaded
+
+
+def how_to_install(*extras: str) -> str:
+    """The repair that installs extras in the folder of the source files; the quotes suit every shell."""
+    repair = ngettext(
+        'install the extra {extras}: pip install -e ".[{extras}]" in the folder with the source files',
+        'install the extras {extras}: pip install -e ".[{extras}]" in the folder with the source files',
+        len(extras),
+    )
+    return repair.format(extras=",".join(extras))

@@ -173,6 +173,6 @@ def test_mp4_without_its_library_is_told(tmp_path: Path, monkeypatch: pytest.Mon
         raise ModuleNotFoundError(name="imageio_ffmpeg")
 
     monkeypatch.setattr(video_files, "_ffmpeg", missing)
-    with pytest.raises(ct.InputError, match=r'pip install "centrode\[video\]", or name a \.gif'):
+    with pytest.raises(ct.InputError, match=r'pip install -e "\.\[video\]" .*, or name a \.gif'):
         ct.animate(ct.example("crank-rocker"), tmp_path / "a.mp4")
     assert list(tmp_path.iterdir()) == []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,8 @@ from centrode.assignments import results as variant_results
 from centrode.assignments.results import VariantRow, compute_variant, spoken_variants
 from centrode.assignments.tables import read_variants
 from centrode.errors import InputError
+from centrode.files.drafts import remove_file
+from centrode.files.locks import hold_lock
 from centrode.locale import speaking
 from centrode.report.variants import folders
 from computed_once import computed_once
@@ -237,7 +238,24 @@ def test_places_that_are_refused(tmp_path: Path) -> None:
         ct.write_variants(
             WORKED, TWO, tmp_path / "busy", progress=lambda _done, _of: nested(tmp_path / "busy")
         )
-    assert os.path.exists(tmp_path / "busy" / ".lock")
+
+
+def test_the_lock_is_there_while_it_is_held_and_gone_afterwards(tmp_path: Path) -> None:
+    seen: list[bool] = []
+    ct.write_variants(
+        WORKED, TWO, tmp_path, progress=lambda _done, _of: seen.append((tmp_path / ".lock").is_file())
+    )
+    assert seen and all(seen)
+    assert not (tmp_path / ".lock").exists()
+    (tmp_path / ".lock").touch()  # of a run that was killed
+    ct.write_variants(WORKED, TWO, tmp_path)
+    assert not (tmp_path / ".lock").exists()
+    # a refusal takes nothing from the run that holds the lock
+    with hold_lock(tmp_path / ".lock", "", remove=remove_file):
+        with pytest.raises(ct.InputError, match="another run is writing"):
+            nested(tmp_path)
+        assert (tmp_path / ".lock").is_file()
+    assert not (tmp_path / ".lock").exists()
 
 
 def nested(folder: Path) -> None:

@@ -140,7 +140,7 @@ def test_without_ezdxf_the_extra_is_named(
     cam: ct.Cam, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(dxf_files, "find_spec", lambda _name: None)
-    with pytest.raises(InputError, match=r'pip install "centrode\[drawings\]"'):
+    with pytest.raises(InputError, match=r'pip install -e "\.\[drawings\]"'):
         write_outlines_dxf(cam_outlines(cam_body(cam), 90), tmp_path / "cam.dxf")
     assert not list(tmp_path.iterdir())
 

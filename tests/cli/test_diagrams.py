@@ -70,7 +70,6 @@ def test_times_of_a_mechanism_with_several_drives(centrode: Centrode) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["crank-rocker"], "--at"),
         (["crank-rocker", *("--at", "1 rad") * 101], "at most 100"),
         (["crank-rocker", "--at", "fast"], "--at"),
         (["crank-rocker", "--at", "1 mm"], "--at"),

@@ -48,7 +48,7 @@ FILES: dict[str, tuple[str, tuple[str, ...]]] = {
     "limits": ("press.csv", ()),
     "draw": ("press.svg", ("--samples", "3")),
     "describe": ("press.md", ()),
-    "export": ("press.xml", ("--mjcf",)),
+    "export": ("press.xml", ()),
 }
 """Commands that write one file, and its name."""
 STUDIES = {"sweep", "variants"}
@@ -184,10 +184,11 @@ def test_variants_over_their_topology(centrode: Centrode, folder: Path, name: st
     assert (folder / name).read_text(encoding="utf-8") == text
 
 
-def test_variants_over_their_table(centrode: Centrode, folder: Path) -> None:
-    (folder / "summary.csv").write_text(VARIANTS)
+@pytest.mark.parametrize("name", ["summary.csv", ".lock"])
+def test_variants_over_their_table(centrode: Centrode, folder: Path, name: str) -> None:
+    (folder / name).write_text(VARIANTS)
     kept(
-        centrode, folder, VARIANTS, "variants", "summary.csv", "--topology", "slider-between-cranks", "--out", "."
+        centrode, folder, VARIANTS, "variants", name, "--topology", "slider-between-cranks", "--out", "."
     )  # fmt: skip
 
 

@@ -22,7 +22,7 @@ def test_centres_without_places_begin_where_the_motion_does(
     text = four_bar.replace("speed = 1", 'law = "0.5*sin(t)"') + "[study]\ninstants = [1.25]\n"
     (folder / "law.toml").write_text(text, encoding="utf-8")
     done = centrode("centres", "law.toml")
-    assert (done.code, done.err) == (0, "")
+    assert (done.code, done.err) == (0, "without --at, the initial position: 0 s\n")
     assert "OA 1 rad (57.2958 deg)" in done.out
 
 

@@ -60,7 +60,6 @@ def test_dark_pages(centrode: Centrode, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["six-bar-press"], "--at"),
         (["six-bar-press", *("--at", "1 rad") * 101], "at most 100"),
         (["six-bar-press", "--at", "fast"], "--at"),
         (["six-bar-press", "--at", "1 mm"], "--at"),

@@ -126,7 +126,8 @@ def test_workbooks_without_what_writes_them(words: list[str], tmp_path: Path) ->
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         "Error: workbooks need XlsxWriter, which is not installed;"
-        ' install it with pip install "centrode[tables]", or take the CSV files\n'
+        ' install the extra tables: pip install -e ".[tables]" in the folder with the source files,'
+        " or take the CSV files\n"
     )
     assert list(tmp_path.iterdir()) == []
 

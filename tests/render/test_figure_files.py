@@ -71,7 +71,7 @@ def test_missing_matplotlib_is_told_with_its_repair(monkeypatch):
     for name in ("figures_of", "figure_of", "write_pictures"):
         monkeypatch.delitem(render.__dict__, name, raising=False)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(InputError, match=r'pip install "centrode\[figures\]"'):
+    with pytest.raises(InputError, match=r'pip install -e "\.\[figures\]"'):
         _ = render.figures_of
 
 

@@ -265,6 +265,6 @@ def test_two_runs_at_once_are_refused_and_a_dead_one_is_not_feared(tmp_path: Pat
 
 def test_without_zarr_the_extra_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(ct.InputError, match=r'pip install "centrode\[sweeps\]"'):
+    with pytest.raises(ct.InputError, match=r'pip install -e "\.\[sweeps\]"'):
         ct.sweep(crank_rocker(), ct.grid(VARY), "angle", 5, store=tmp_path / "r.zarr")
     assert list(tmp_path.iterdir()) == []

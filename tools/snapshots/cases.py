@@ -55,7 +55,7 @@ def linkage_cases(name: str, text: str, language: str) -> Iterator[Case]:
     for command in ("check", "describe", "equations", "rotatability", "examples"):
         yield Case(command, [command, name])
     yield Case("limits", ["limits", name])
-    yield Case("export", ["export", name, "--mjcf"])
+    yield Case("export", ["export", name, "--format", "mjcf"])
     yield Case("draw dxf", ["draw", name, "--out", "drawing.dxf"])
     yield Case("draw svg", ["draw", name, "--path", "all", "--out", "drawing.svg"])
     yield Case("run", ["run", name, *out, *spelled, *few])

@@ -23,10 +23,10 @@ from centrode.analysis.rotatability.causes import least_of, transmission_at_ends
 from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, monitored_function
 from centrode.errors import InputError
 from centrode.kinematics.motion import dataset_of, vocabulary_variable
-from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import MotionOnPath
-from centrode.kinematics.solve import requested_grid, solve
+from centrode.kinematics.solve import grid_of, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
@@ -190,8 +190,8 @@ Lines: TypeAlias = npt.NDArray[np.complex128]
 def transmission_angles(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
 ) -> xr.Dataset:
     """Transmission and pressure angles of every dyad over the motion.
@@ -214,11 +214,7 @@ def transmission_angles(
     AB-DB                        54.3147                           90.0000                       35.6853
     """
     prepared = ready(mechanism)
-    span = (
-        requested_grid(prepared, samples, start, stop)
-        if at is None
-        else grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
-    )
+    span = grid_of(prepared, samples, start, stop, at)
     data = dataset_of(solve(prepared, span))
     structure = prepared.structure
     by_group, numbered = {}, []

@@ -154,8 +154,8 @@ def animate(
     shown: Shown | None = None,
     pace: Pace | None = None,
     *,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     size: Sequence[int] | str = SIZE,
     dark: bool = False,
     said: Said = no_progress,
@@ -175,7 +175,7 @@ def animate(
         What is shown beside the links; the paths of the points if left out. A cam takes none.
     pace : Pace
         Frames, frames a second, duration or speed.
-    start, stop : float [rad or m, or s]
+    start, stop : float [rad or m, or s], or texts with a unit
         Values of the drive, as for `motion`.
     size : (width, height) or "800x600"
         In pixels; MP4 takes even ones, odd ones are made greater by one.

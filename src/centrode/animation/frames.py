@@ -78,8 +78,8 @@ class Course:
 def course_of(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
 ) -> Course:
     """The motion over a range, or over what the drive reaches if none is asked for.
 

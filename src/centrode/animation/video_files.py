@@ -23,6 +23,7 @@ from centrode.animation.stage import Palette, Pixels, Stage
 from centrode.errors import InputError
 from centrode.files.drafts import draft_file
 from centrode.locale import _
+from centrode.optional_packages import how_to_install
 
 Said = Callable[[int, int], None]
 
@@ -47,7 +48,7 @@ def need_video() -> None:
         raise InputError(
             "",
             _("MP4 needs imageio-ffmpeg, which is not installed"),
-            _('install it with pip install "centrode[video]", or name a .gif'),
+            _("{repair}, or name a .gif").format(repair=how_to_install("video")),
         ) from missing
 
 

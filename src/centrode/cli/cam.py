@@ -24,6 +24,7 @@ from centrode.cli.topic_command import (
 )
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
+from centrode.optional_packages import how_to_install
 from centrode.topics.registry import TOPICS
 from centrode.topics.topic import Command, RangeOptions, Topic
 
@@ -75,7 +76,7 @@ def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given:
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
         if any(sheet.outlines for sheet in sheets) and not render.writes_dxf():
-            click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
+            click.echo(_("no DXF: it needs ezdxf; {repair}").format(repair=how_to_install("drawings")))
     failures = [_failure(sheet, description) for sheet in sheets if sheet.failure is not None]
     if failures:
         raise MotionError(cam, "; ".join(failures))

@@ -10,13 +10,18 @@ import centrode as ct
 from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
-from centrode.errors import InputError
 from centrode.locale import _, mark
 
 
 @click.command(help=mark("Write a mechanism for another program."))
 @mechanism_argument
-@click.option("--mjcf", is_flag=True, help=mark("A model for MuJoCo, its loops closed by constraints."))
+@click.option(
+    "--format",
+    "kind",
+    type=click.Choice(["mjcf"]),
+    default="mjcf",
+    help=mark("mjcf (the rule): a model for MuJoCo, its loops closed by constraints."),
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -24,10 +29,8 @@ from centrode.locale import _, mark
     help=mark("Write FILE instead of printing."),
 )
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
-def export(mechanism: str, mjcf: bool, out: Path | None, force: bool) -> None:
+def export(mechanism: str, kind: str, out: Path | None, force: bool) -> None:
     """Print or write the mechanism in its initial position as another program reads it."""
-    if not mjcf:
-        raise InputError("", _("nothing says for which program"), _("say --mjcf for MuJoCo"))
     description = library.load(mechanism)
     with about(mechanism):
         text = library.mjcf_text(description, ct.motion(description, at=[library.initial_place(description)]))

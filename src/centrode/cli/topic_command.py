@@ -23,6 +23,7 @@ from centrode.cli.arguments import (
     stop_option,
     written_option,
 )
+from centrode.cli.instants import default_instants
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
@@ -66,27 +67,28 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
                 _written_page(topic, command, mechanism, description, arguments, out, written["force"])
             )
             return
-        files = ""
-        if command.prints_only:
-            with about(mechanism), Progress() as progress:
-                result = _result(topic, command, description, arguments, progress)
-                sheet = sheet_with_parts(topic, result)
-        elif command.kinds:
-            result, sheet, files = _beside_file(
-                topic, command, mechanism, description, arguments, out, written["force"]
-            )
-        else:
-            folder = output.folder_of(out, mechanism, command.folder) if command.folder else out
-            result, sheet, files = _beside_folder(
-                topic, command, mechanism, description, arguments, folder, written
-            )
-        click.echo(_(description.title) or mechanism)
-        click.echo()
-        click.echo(render.sheet_text(sheet, description.display))
-        if files:
-            click.echo("\n" + files)
-        with about(mechanism):
-            _end(command, result, sheet, description.display)
+        with default_instants(topic, mechanism, description, arguments):
+            files = ""
+            if command.prints_only:
+                with about(mechanism), Progress() as progress:
+                    result = _result(topic, command, description, arguments, progress)
+                    sheet = sheet_with_parts(topic, result)
+            elif command.kinds:
+                result, sheet, files = _beside_file(
+                    topic, command, mechanism, description, arguments, out, written["force"]
+                )
+            else:
+                folder = output.folder_of(out, mechanism, command.folder) if command.folder else out
+                result, sheet, files = _beside_folder(
+                    topic, command, mechanism, description, arguments, folder, written
+                )
+            click.echo(_(description.title) or mechanism)
+            click.echo()
+            click.echo(render.sheet_text(sheet, description.display))
+            if files:
+                click.echo("\n" + files)
+            with about(mechanism):
+                _end(command, result, sheet, description.display)
 
     made = click.command(topic.name, help=command.help)(run)
     made.params = list(_parameters(command))
@@ -137,8 +139,8 @@ def option_parameters(option: Option) -> Iterator[click.Parameter]:
             )
         case FlagOption(name, text):
             yield click.Option([option_name(name)], is_flag=True, help=text)
-        case InstantsOption(text, required=required):
-            yield click.Option(["--at"], multiple=True, required=required, metavar=mark("VALUE"), help=text)
+        case InstantsOption(text):
+            yield click.Option(["--at"], multiple=True, metavar=mark("VALUE"), help=text)
         case RangeOptions():
             yield from parameters_of([start_option, stop_option, range_option])
         case _:

@@ -83,7 +83,10 @@ class MotionResults:
 
 
 def study(
-    mechanism: Mechanism, samples: int | None = None, start: float | None = None, stop: float | None = None
+    mechanism: Mechanism,
+    samples: int | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
 ) -> MotionResults:
     """Check a mechanism and compute its motion, its machine and its reactions.
 

@@ -27,12 +27,11 @@ from centrode.kinematics.motion import (
     labels_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import grid_at
 from centrode.kinematics.plan_evaluation import Event
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.several_inputs.coefficients import Partials, partials
-from centrode.kinematics.solve import GREATEST_RESULT, Solved, requested_grid, solve
+from centrode.kinematics.solve import GREATEST_RESULT, Solved, grid_of, solve
 from centrode.locale import _, mark
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
@@ -392,8 +391,8 @@ def _unit(head: str, metres: int) -> str:
 def reduce(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
 ) -> xr.Dataset:
     """Masses and loads reduced to the drive, or to several drives, at the samples of a motion.
@@ -426,10 +425,7 @@ def reduce(
     """
     prepared = ready(mechanism)
     burden = MassesAndLoads.of(mechanism)
-    if at is None:
-        span = requested_grid(prepared, samples, start, stop)
-    else:
-        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    span = grid_of(prepared, samples, start, stop, at)
     return reduction_of(solve(prepared, span), burden)
 
 

@@ -577,7 +577,7 @@ def integrate(
     method: str = "rk4",
     steps: int = 100,
     tolerance: float = FINE,
-    stop: float | None = None,
+    stop: float | str | None = None,
 ) -> xr.Dataset:
     """The motion from t = 0 by integration of the equations in Cauchy form, with its difference from the closed forms.
 
@@ -589,7 +589,7 @@ def integrate(
         Number of fixed steps; of either method the result has steps + 1 rows, evenly spaced in time.
     tolerance : float
         Of the adaptive method, relative and absolute, for each step: rad, and parts of the greatest length.
-    stop : float [rad or m, or s]
+    stop : float [rad or m, or s], or a text with a unit
         Last value of the drive, a time where the drive is a law or there are several; one turn if left out.
 
     Returns

@@ -15,6 +15,7 @@ import lazy_loader
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.optional_packages import how_to_install
 
 # Letters of formulas, and angles as sums of letters and right angles.
 
@@ -463,7 +464,7 @@ def sympy() -> Any:
         raise InputError(
             "",
             _("expressions need SymPy, which is not installed"),
-            _('install it with pip install "centrode[symbols]"'),
+            how_to_install("symbols"),
         )
     return _load()
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
@@ -17,10 +17,12 @@ if sys.platform == "win32":
 else:
     import fcntl
 
+WINDOWS = sys.platform == "win32"
+
 
 @contextmanager
-def hold_lock(file: Path, what: str) -> Iterator[None]:
-    """Hold the lock in `file` while the block runs.
+def hold_lock(file: Path, what: str, *, remove: Callable[[Path], None] | None = None) -> Iterator[None]:
+    """Hold the lock in `file` while the block runs; `remove`, if given, then takes the file away.
 
     Raises InputError about `what` where another process holds it. A lock left by a process that was killed does
     not hold: it belongs to the open file, not to the file's being there.
@@ -32,8 +34,20 @@ def hold_lock(file: Path, what: str) -> Iterator[None]:
     if stream is None:
         busy = _("another run is writing into it")
         raise InputError(what, busy, _("wait until it ends, or name another place"))
-    with stream:
-        yield
+    try:
+        with stream:
+            try:
+                yield
+            finally:
+                if remove is not None and not WINDOWS:
+                    # while the lock is held: afterwards the file may be the lock of another process
+                    with suppress(OSError):  # a file that stays does no harm
+                        remove(file)
+    finally:
+        if remove is not None and WINDOWS:
+            # an open file cannot be removed there: not before it is closed, nor the lock of another process
+            with suppress(OSError):
+                remove(file)
 
 
 def taken(file: Path) -> IO[bytes] | None:

@@ -14,13 +14,14 @@ import pandas as pd
 import xarray as xr
 
 from centrode.errors import STATUSES_OF_MOTION, InputError
-from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
-from centrode.kinematics.solve import Progress, Solved, requested_grid, solve
+from centrode.kinematics.solve import Progress, Solved, grid_of, solve
 from centrode.locale import _, speaking
-from centrode.model.files import mechanism_text
+from centrode.model.files import kind_at, mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
+from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import QUANTITIES
 from centrode.structure.assur import name_of
@@ -246,8 +247,8 @@ _many = functools.partial(importlib.import_module, "centrode.kinematics.machine_
 def motion(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
     vary: Values | None = None,
     progress: Progress | None = None,
@@ -258,12 +259,12 @@ def motion(
     ----------
     samples : int
         The description's own number, else 361 (with both ends).
-    start, stop : float [rad or m, or s]
+    start, stop : float [rad or m, or s], or texts with a unit ("60 deg")
         Values of the drive; times where the drive is a law of time or there are several drives. One turn of
         an angle drive if left out.
-    at : (n,) values of the drive [rad or m], or times [s]
+    at : (n,) values of the drive [rad or m], times [s], or texts with a unit
         Exactly these places instead of evenly spaced ones; the three arguments before it are then not used.
-    vary : path -> (batch,) values [m or rad]
+    vary : path -> (batch,) values [m or rad], or texts with a unit
         Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial
         position stay.
     progress : called with (mechanisms done, mechanisms in all)
@@ -291,11 +292,9 @@ def motion(
     samples                37: ok 37
     """
     prepared = ready(mechanism)
+    vary = _varied_numbers(mechanism, vary)
     numbers, lanes = _batch(mechanism, vary)
-    if at is None:
-        span = requested_grid(prepared, samples, start, stop)
-    else:
-        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    span = grid_of(prepared, samples, start, stop, at)
     return dataset_of(_solve_range(prepared, span, numbers, lanes, progress), vary)
 
 
@@ -305,6 +304,15 @@ def initial_place(mechanism: Mechanism) -> float:
     return float(prepared.kinematics.path.initial) if prepared.parameter.is_uniform else 0.0
 
 
+def default_instants(mechanism: Mechanism) -> tuple[float, ...]:
+    """Instants [rad, m or s] of the study, else that of the initial position.
+
+    Those of a study are values of the drive; by a law of time these may come again, and state no instant.
+    """
+    stated = mechanism.study.instants if mechanism.motion_parameter.states_instants else ()
+    return stated or (initial_place(mechanism),)
+
+
 def _solve_range(
     ready: Ready, span: SampleGrid, numbers: Dimensions | None, lanes: int, progress: Progress | None
 ) -> Solved:
@@ -312,6 +320,24 @@ def _solve_range(
         return solve(ready, span, progress=progress)
     solved: Solved = _many().solve_many(ready, span, numbers, lanes, progress)
     return solved
+
+
+def _varied_numbers(mechanism: Mechanism, vary: Values | None) -> Values | None:
+    """Values in SI, of texts by the kind of quantity that their path names."""
+    if not vary:
+        return None
+    refuses_bare = mechanism.display.refuses_bare_angles
+    return {
+        path: [
+            read_quantity(value, kind_at(mechanism, path), path, refuses_bare=refuses_bare)
+            if isinstance(value, str)
+            else value
+            for value in values
+        ]
+        if isinstance(values, Sequence) and any(isinstance(value, str) for value in values)
+        else values
+        for path, values in vary.items()
+    }
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

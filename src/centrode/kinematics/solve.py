@@ -13,7 +13,7 @@ from centrode.errors import InputError
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.path import SampleGrid, even_grid
+from centrode.kinematics.path import SampleGrid, even_grid, grid_at
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
@@ -76,9 +76,27 @@ class Solved:
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)
 
 
-def requested_grid(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> SampleGrid:
+def grid_of(
+    ready: Ready,
+    samples: int | None,
+    start: float | str | None,
+    stop: float | str | None,
+    at: npt.ArrayLike | None,
+) -> SampleGrid:
+    """Evenly spaced samples, or exactly the places `at` where there are some; numbers in SI or texts with a unit."""
+    if at is None:
+        return requested_grid(ready, samples, start, stop)
+    places = ready.parameter.instant.read_all(at, "at")
+    return grid_at(ready.kinematics.path, np.asarray(places, dtype=np.float64))
+
+
+def requested_grid(
+    ready: Ready, samples: int | None, start: float | str | None, stop: float | str | None
+) -> SampleGrid:
     """Evenly spaced samples; what is left out is what the description asks for."""
-    study = ready.mechanism.study
+    study, instant = ready.mechanism.study, ready.parameter.instant
+    start = instant.read(start, "start") if isinstance(start, str) else start
+    stop = instant.read(stop, "stop") if isinstance(stop, str) else stop
     start = study.start if start is None else start
     stop = study.stop if stop is None else stop
     # the description's number before the program's own

@@ -7,7 +7,7 @@ because a law of time may pass the same value more than once.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
@@ -56,6 +56,23 @@ class MotionVariable:
         where it may mean degrees.
         """
         return read_quantity(text, self.kind, where, refuses_bare=self.refuses_bare)
+
+    def read_all(self, values: Any, where: str) -> Any:
+        """Values [s, rad or m] where some of them are texts, or one text alone; anything else as it is.
+
+        Raises InputError as `read`.
+        """
+        if isinstance(values, str):
+            return [self.read(values, where)]
+        # an array of numbers is not walked through
+        if (
+            not isinstance(values, Sequence)
+            and getattr(getattr(values, "dtype", None), "kind", "") not in "OU"
+        ):
+            return values
+        if not any(isinstance(value, str) for value in values):
+            return values
+        return [self.read(value, where) if isinstance(value, str) else value for value in values]
 
 
 TIME = MotionVariable("time", "t")

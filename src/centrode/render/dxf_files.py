@@ -13,6 +13,7 @@ import lazy_loader
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.optional_packages import how_to_install
 
 VERSION = "R2010"
 MILLIMETRES = 4
@@ -35,7 +36,7 @@ def dxf_document(path: Path) -> Iterator[tuple[Any, Any]]:
         raise InputError(
             str(path),
             _("DXF needs ezdxf, which is not installed"),
-            _('install it with pip install "centrode[drawings]"'),
+            how_to_install("drawings"),
         )
     library = _ezdxf()
     with _without_time(library):

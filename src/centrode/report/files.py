@@ -13,6 +13,7 @@ from centrode.errors import InputError
 from centrode.files.drafts import draft_folder, refusals
 from centrode.locale import _, speaking
 from centrode.model.reading import nearest, value_text
+from centrode.optional_packages import how_to_install
 from centrode.render.document.blocks import Report
 
 # What documents need is an extra: only where they are asked for.
@@ -96,7 +97,7 @@ def check_formats(formats: Sequence[str]) -> None:
 def lacking(library: str) -> InputError:
     """The failure of a library that reports need and that is not installed."""
     what = _("reports need {library}, which is not installed").format(library=library)
-    return InputError("", what, _('install what they need with pip install "centrode[documents,figures]"'))
+    return InputError("", what, how_to_install("documents", "figures"))
 
 
 def document(report: Report, kind: str) -> bytes:

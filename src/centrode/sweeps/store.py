@@ -35,6 +35,7 @@ from centrode.files.drafts import clear_drafts, clear_folder, draft_folder, refu
 from centrode.files.inputs import keep_inputs_below
 from centrode.files.locks import hold_lock
 from centrode.locale import _, ngettext
+from centrode.optional_packages import how_to_install
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import Design, path_digests
@@ -569,7 +570,7 @@ def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -
     """
     if importlib.util.find_spec("zarr") is None:
         what = _("a store needs zarr, which is not installed")
-        raise InputError(str(path), what, _('install it with pip install "centrode[sweeps]"'))
+        raise InputError(str(path), what, how_to_install("sweeps"))
     with refusals(path):
         _refuse_other_folders(path)
         keep_inputs_below(path)

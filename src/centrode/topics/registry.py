@@ -350,6 +350,7 @@ CENTRES = Topic(
             ),
         ),
         samples=False,
+        default_instants=True,
         ending=Lazily("centrode.analysis.instant_centres.results", "centre_shortfall"),
         dark=True,
     ),
@@ -490,13 +491,16 @@ FORCE_POLYGONS = Topic(
         help=mark("Find reactions and the balancing moment by force polygons."),
         options=(
             InstantsOption(
-                mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'), required=True
+                mark(
+                    'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+                )
             ),
             ValueOption(
                 "paper", mark("SIZE"), mark("Sheet that scales are chosen for: A5, A4 (if left out) or A3.")
             ),
         ),
         samples=False,
+        default_instants=True,
         folder="polygons",
         dark=True,
     ),
@@ -545,9 +549,10 @@ DIAGRAMS = Topic(
             ValueOption(
                 "at",
                 mark("VALUE"),
-                mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'),
+                mark(
+                    'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+                ),
                 several=True,
-                required=True,
                 parameter="instants",
                 read=READ_INSTANTS,
             ),
@@ -572,6 +577,7 @@ DIAGRAMS = Topic(
         ),
         folder="diagrams",
         samples=False,
+        default_instants=True,
         dark=True,
     ),
     document=InDocuments(

@@ -93,12 +93,10 @@ class InstantsOption:
     ----------
     help : sentence, marked for the catalogues
     most : more of them are refused
-    required : the command does not begin without one
     """
 
     help: str
     most: int = 100
-    required: bool = False
 
 
 Option: TypeAlias = ChoiceOption | ValueOption | FlagOption | RangeOptions | InstantsOption
@@ -130,6 +128,7 @@ class Command:
     animation_help : what the animation shows, marked for the catalogues
     file_help : what the one file holds, marked for the catalogues; JSON or CSV if empty
     prints_only : it writes no files
+    default_instants : without `--at` it takes the instants of the study, else the initial position, and says so
     """
 
     help: str
@@ -152,6 +151,7 @@ class Command:
     animation_help: str = ""
     file_help: str = ""
     prints_only: bool = False
+    default_instants: bool = False
 
 
 @dataclass(frozen=True)

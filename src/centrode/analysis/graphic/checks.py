@@ -92,7 +92,7 @@ class GraphicCheck:
 
 def graphic_check(
     mechanism: Mechanism,
-    at: float,
+    at: float | str,
     angle_step: float | str | None = None,
     length_step: float | str | None = None,
     scales: Mapping[str, float] | None = None,

@@ -228,7 +228,7 @@ def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | st
 
 def diagrams(
     mechanism: Mechanism,
-    at: float,
+    at: float | str,
     angle_step: float | str | None = None,
     length_step: float | str | None = None,
     scales: Mapping[str, float] | None = None,
@@ -237,7 +237,7 @@ def diagrams(
 
     Parameters
     ----------
-    at : float [rad or m, or s]
+    at : float [rad or m, or s], or a text with a unit
         A value of the drive, or a time, as in `motion(at=...)`.
     angle_step : float [rad] or text ("1 deg"), optional
         Directions are read to this; exactly if left out.
@@ -264,6 +264,7 @@ def diagrams(
     refuses_bare = mechanism.display.refuses_bare_angles
     board = DrawingBoard(_step(angle_step, "angle", refuses_bare=refuses_bare), _step(length_step, "length"))
     prepared = ready(mechanism)
+    at = prepared.parameter.instant.read(at, "at") if isinstance(at, str) else at
     span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from centrode.analysis.graphic.checks import GraphicCheck, graphic_check
 from centrode.errors import CentrodeError, InputError, Status
-from centrode.kinematics.motion import initial_place, motion
+from centrode.kinematics.motion import default_instants, motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
@@ -35,7 +35,7 @@ class GraphicResults:
 def graphic_analysis(
     mechanism: Mechanism,
     *,
-    instants: Sequence[float] = (),
+    instants: Sequence[float | str] = (),
     angle_step: float | str | None = None,
     length_step: float | str | None = None,
     scales: Mapping[str, float] | None = None,
@@ -45,7 +45,8 @@ def graphic_analysis(
 
     Parameters
     ----------
-    instants : values of the drive [rad or m] or times [s], as `at` of `motion`; the initial position if left out
+    instants : values of the drive [rad or m], times [s], or texts with a unit, as `at` of `motion`; those of
+        the study if left out, else the initial position
     angle_step, length_step, scales : as of `graphic_check`
     incomplete : an instant that cannot be drawn fails alone, and the others are drawn
 
@@ -61,7 +62,8 @@ def graphic_analysis(
     >>> print(ct.summary(found).splitlines()[1])
     scales           μ_l = 0.05 m per mm, μ_v = 0.01 m/s per mm, μ_a = 0.015 m/s^2 per mm
     """
-    places = tuple(instants) or (initial_place(mechanism),)
+    instant = mechanism.motion_parameter.instant
+    places = tuple(instant.read_all(instants, "instants")) or default_instants(mechanism)
 
     def check(at: float) -> GraphicCheck:
         return graphic_check(mechanism, at, angle_step, length_step, scales)

@@ -28,10 +28,10 @@ from centrode.kinematics.motion import (
     labels_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import JETS, SampleGrid, grid_at
+from centrode.kinematics.path import JETS, SampleGrid
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import start_of
-from centrode.kinematics.solve import fit_for, solve
+from centrode.kinematics.solve import fit_for, grid_of, solve
 from centrode.locale import _
 from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Mechanism
@@ -58,7 +58,7 @@ def curvature(
         A planar mechanism, or its motion (of a batch, one mechanism).
     link, against : str
         Bodies: links, "frame", sliders ("slider C"); the paths are those that `against` sees.
-    at : (n,) values of the drive [rad or m], or times [s] where the drive is a law or there are several
+    at : (n,) values of the drive [rad or m], times [s] where it is a law or there are several, or texts with a unit
         Of a motion its samples if left out.
     points : name -> (x, y) [m], optional
         Further points of the link, in its own axes.
@@ -110,7 +110,7 @@ def curvature(
         # the motion starts anew from its description: a dataset has two derivatives, and the third is needed
         assert isinstance(source, xr.Dataset)
         places = prepared.parameter.instants(source)
-    span = grid_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
+    span = grid_of(prepared, None, None, None, places)
     solved = solve(prepared, span)
     positions = jet_positions(prepared, span)
     # behind a limit the motion does not get there, but the mechanism has its position

@@ -14,7 +14,7 @@ from centrode.analysis.instant_centres.centrodes import centrodes
 from centrode.analysis.instant_centres.curvature import curvature
 from centrode.analysis.instant_centres.kennedy import MOST_BODIES, Construction, construct_centres
 from centrode.errors import InputError, MotionError, Status
-from centrode.kinematics.motion import initial_place, motion
+from centrode.kinematics.motion import default_instants, motion
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.quantities import status_word
@@ -69,7 +69,10 @@ class CentrodeResults:
 
 
 def centre_results(
-    mechanism: Mechanism, *, pairs: Sequence[Names] | None = None, instants: Sequence[float] | None = None
+    mechanism: Mechanism,
+    *,
+    pairs: Sequence[Names] | None = None,
+    instants: Sequence[float | str] | None = None,
 ) -> CentreResults:
     """Instant centres of a mechanism at some instants, from velocities and by Aronhold's and Kennedy's theorem.
 
@@ -86,9 +89,7 @@ def centre_results(
     """
     names = body_names(mechanism)
     if instants is None:
-        # the value of a drive by a law states no instant: it may come again
-        stated = mechanism.study.instants if mechanism.motion_parameter.states_instants else ()
-        instants = stated or (initial_place(mechanism),)
+        instants = default_instants(mechanism)
     wanted = None if pairs is None else tuple(pairs)
     if wanted is None and count_of_pairs(mechanism) > MOST_CENTRES:
         wanted = tuple((name, FRAME) for name in names[1:])

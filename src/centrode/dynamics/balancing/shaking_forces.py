@@ -24,10 +24,10 @@ from centrode.kinematics.motion import (
     judgements_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import MotionOnPath
-from centrode.kinematics.solve import Solved, requested_grid, solve
+from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
@@ -521,8 +521,8 @@ ORDERS, MOST_ORDERS = 8, 60
 def shaking(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
     *,
     about: About = (0.0, 0.0),
@@ -607,8 +607,8 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
 def _sampled_range(
     mechanism: Mechanism,
     samples: int | None,
-    start: float | None,
-    stop: float | None,
+    start: float | str | None,
+    stop: float | str | None,
     at: npt.ArrayLike | None,
     speed: Speed,
 ) -> tuple[Ready, SampleGrid]:
@@ -626,10 +626,7 @@ def _sampled_range(
         )
     prepared = ready(mechanism)
     path = prepared.kinematics.path
-    if at is None:
-        span = requested_grid(prepared, samples, start, stop)
-    else:
-        span = grid_at(path, np.asarray(at, dtype=np.float64))
+    span = grid_of(prepared, samples, start, stop, at)
     if mechanism.machine is not None and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
         time = path.parameter.times(span.parameter, path.driven[0].start, rate)

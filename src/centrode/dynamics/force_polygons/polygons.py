@@ -385,12 +385,12 @@ class ForcePolygons:
         return self.levers[0]
 
 
-def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForcePolygons:
+def force_polygons(mechanism: Mechanism, at: float | str, paper: str = "A4") -> ForcePolygons:
     """Reactions and balancing moment at an instant by force polygons, group by group, and by Zhukovsky's lever.
 
     Parameters
     ----------
-    at : float [rad or m, or s]
+    at : float [rad or m, or s], or a text with a unit
         A value of the drive, or a time, as in `motion(at=...)`.
     paper : "A5", "A4" or "A3"
         The sheet that scales of forces are chosen for.
@@ -414,6 +414,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)
     prepared = ready(mechanism)
+    at = prepared.parameter.instant.read(at, "at") if isinstance(at, str) else at
     solved = solve(prepared, grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
     exact = dataset_of(solved)
     _refuse_where_it_is_not(exact, at)

@@ -10,7 +10,7 @@ import xarray as xr
 from centrode.dynamics.force_polygons.polygons import ForcePolygons, force_polygons
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.errors import MotionError
-from centrode.kinematics.motion import initial_place, motion
+from centrode.kinematics.motion import default_instants, motion
 from centrode.model.mechanism import Mechanism
 
 
@@ -55,13 +55,9 @@ def force_polygon_results(
     InputError, NotComputedYet, MotionError
         As `force_polygons`.
     """
-    parameter = mechanism.motion_parameter
     if instants is None:
-        # the value of a drive by a law states no instant: it may come again
-        instants = (mechanism.study.instants if parameter.states_instants else ()) or (
-            initial_place(mechanism),
-        )
-    named, instant = tuple(at) or tuple(instants), parameter.instant
+        instants = default_instants(mechanism)
+    named, instant = tuple(at) or tuple(instants), mechanism.motion_parameter.instant
     places = [instant.read(place, "at") for place in named]
     found: list[ForcePolygons | None] = []
     refusals: list[MotionError] = []

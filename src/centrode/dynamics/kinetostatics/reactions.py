@@ -60,9 +60,8 @@ from centrode.kinematics.motion import (
     labels_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import grid_at
 from centrode.kinematics.preparation import ready
-from centrode.kinematics.solve import Solved, requested_grid, solve
+from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Entity
@@ -485,8 +484,8 @@ SPEEDS = get_args(Speed)
 def reactions(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
     *,
     speed: Speed = "mean",
@@ -538,10 +537,7 @@ def reactions(
         prepared, span, pace = steady_grid(mechanism, samples, at)
         return reactions_at(solve(prepared, span), burden, pace, whole=at is None)
     prepared = ready(mechanism)
-    if at is None:
-        span = requested_grid(prepared, samples, start, stop)
-    else:
-        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    span = grid_of(prepared, samples, start, stop, at)
     solved = solve(prepared, span)
     return reactions_at(solved, burden, input_motion_of(solved, burden), contacts, at is None)
 

@@ -49,6 +49,7 @@ from centrode.kinematics.solve import Solved, check_size, solve
 from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
+from centrode.model.motion_parameter import TIME
 from centrode.model.simulation import MOST_TURNS, Simulation
 from centrode.numerics.executors import ARRAYS, choose_executor
 
@@ -344,7 +345,7 @@ def simulate(
     ----------
     settings : Simulation
         In place of the description's own.
-    at : (n) times [s], growing
+    at : (n) times [s] or texts with a unit, growing
         Exactly these instants instead of evenly spaced ones.
     motion : bool
         Also positions, velocities and accelerations of everything.
@@ -436,7 +437,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
 def _times(setting: Setting, course: Trajectory, at: npt.ArrayLike | None) -> Array:
     """The instants of the result, no later than the end."""
     if at is not None:
-        times = np.asarray(at, dtype=np.float64)
+        times = np.asarray(TIME.read_all(at, "at"), dtype=np.float64)
         if times.ndim != 1 or not len(times) or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
             raise InputError("at", _("it needs growing finite times, one or more, in one dimension"))
         if times[0] < 0.0:

@@ -348,7 +348,8 @@ def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLi
                 _("ask for 1 to {most}").format(most=reading.SAMPLES),
             )
         return np.linspace(0.0, cycle.period, count)
-    values = np.asarray(at, dtype=np.float64)
+    instant = found.prepared.parameter.instant
+    values = np.asarray(instant.read_all(at, "at"), dtype=np.float64)
     if values.ndim != 1 or not 1 <= len(values) <= reading.SAMPLES or not np.isfinite(values).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
     turned = cycle.sense * (values - cycle.first)

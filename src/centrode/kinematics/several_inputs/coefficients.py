@@ -26,10 +26,10 @@ from centrode.kinematics.motion import (
     labels_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import JETS, grid_at, unit_of
+from centrode.kinematics.path import JETS, unit_of
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.samples import ORDERS, SampleJudging, fill_columns, fill_number, start_of
-from centrode.kinematics.solve import GREATEST_RESULT, Solved, fit_for, requested_grid, solve
+from centrode.kinematics.solve import GREATEST_RESULT, Solved, fit_for, grid_of, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
@@ -165,8 +165,8 @@ def _solve_direction(solved: Solved, columns: Array, angles: Array, absent: Mask
 def kinematic_coefficients(
     mechanism: Mechanism,
     samples: int | None = None,
-    start: float | None = None,
-    stop: float | None = None,
+    start: float | str | None = None,
+    stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
 ) -> xr.Dataset:
     """Partial derivatives of positions, angles and displacements by the value of each drive, first and second.
@@ -197,10 +197,7 @@ def kinematic_coefficients(
     ('sample', 'drive', 'point', 'axis')
     """
     prepared = ready(mechanism)
-    if at is None:
-        span = requested_grid(prepared, samples, start, stop)
-    else:
-        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    span = grid_of(prepared, samples, start, stop, at)
     return coefficients_of(solve(prepared, span))
 
 

@@ -208,9 +208,10 @@ def write_variants(
         Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling) for variant in given
     ]
     keep_inputs(folder / SUMMARY)
+    keep_inputs(folder / LOCK)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        with hold_lock(folder / LOCK, str(folder)):
+        with hold_lock(folder / LOCK, str(folder), remove=remove_file):
             variants = Variants(topology, given, tuple(_all(tasks, jobs, progress)))
             _write_summary(variants, folder, spelling)
     return variants
