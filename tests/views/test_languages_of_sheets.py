@@ -11,10 +11,11 @@ from centrode.analysis.instant_centres.results import require_centres
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.spelling import PlainSpelling
-from centrode.sheets.sheet import Sheet, Table
-from centrode.sheets.texts import Text
+from centrode.sheets.sheet import Sheet, SymbolList, Table
+from centrode.sheets.texts import Place, Sentence, Text
 from centrode.structure.constraints import NoTurning
 from centrode.topics.presentation import sheet_of
+from centrode.views.equations import constraint_text
 
 LANGUAGES = ("en", "ru", "uk")
 CYRILLIC = str.maketrans("RP", "ВП")
@@ -33,6 +34,7 @@ def in_languages(text: Text, mechanism: ct.Mechanism) -> list[str]:
     for language in LANGUAGES:
         ct.choose_language(language)
         spelled.append(spelling.text(text))
+    ct.choose_language("en")
     return spelled
 
 
@@ -152,3 +154,36 @@ def test_redundant_constraints_name_the_frame_in_its_case(language: str) -> None
     assert REFUSED[language][3] in label and "AB" in label and "C" in label
     assert language == "en" or "frame" not in label
     assert "DE" in NoTurning("AB", "C", "DE").label
+
+
+# Coordinates, and letters of formulas in sentences.
+
+
+def test_coordinates_are_parted_as_the_decimal_mark_allows() -> None:
+    """(1.2, 3.4) in English, (1,2; 3,4) where a comma stands before decimals; the head of their column agrees."""
+    mechanism = ct.example("crank-rocker")
+    assert in_languages(Place((1.2, 3.4)), mechanism) == ["(1.2, 3.4) m", "(1,2; 3,4) m", "(1,2; 3,4) m"]
+    heads = in_languages(Sentence("through $(x, y)$"), mechanism)
+    assert [head.partition("$")[2] for head in heads] == ["(x, y)$", "(x; y)$", "(x; y)$"]
+
+
+def test_letters_in_sentences_are_formulas_in_documents() -> None:
+    """Terminals print x_C, documents set it; names of constraints that are no coordinates stay names."""
+    mechanism = ct.example("slider-between-cranks")
+    assert in_languages(constraint_text("x_C"), mechanism) == ["$x_(C)$"] * 3
+    assert PlainSpelling(None).text(constraint_text("x_C")) == "x_C"
+    assert in_languages(constraint_text("x_C (second)"), mechanism) == ["x_C (second)"] * 3
+    (drift,) = (
+        fact.value
+        for fact in sheet_of(ct.integrate(mechanism, steps=20)).facts
+        if fact.label == Sentence("greatest drift")
+    )
+    assert all("$y_(" in text or "$x_(" in text for text in in_languages(drift, mechanism))
+    sections = sheet_of(ct.equations(mechanism)).chapters["equations"].sections
+    (listed,) = (block for section in sections for block in section.blocks if isinstance(block, SymbolList))
+    meanings = [one.meaning for one in listed.symbols]
+    constants = [text for text in map(PlainSpelling(None).text, meanings) if text.startswith("constant of ")]
+    assert constants and all(text.removeprefix("constant of ")[:2] in ("x_", "y_") for text in constants)
+    spelled = [in_languages(one, mechanism) for one in meanings]
+    assert sum("$y_(" in english for english, _russian, _ukrainian in spelled) > 0
+    assert all(("$y_(" in russian) == ("$y_(" in english) for english, russian, _ukrainian in spelled)

@@ -51,6 +51,11 @@ def decimal_mark() -> str:
     return "." if chosen_language() == "en" else ","
 
 
+def coordinate_separator() -> str:
+    """What parts coordinates: a comma, but a semicolon where a comma stands before decimals."""
+    return ", " if decimal_mark() == "." else "; "
+
+
 def mark(message: str) -> str:
     """Mark a sentence for the catalogues where it is written down, to be translated where it is shown."""
     return message

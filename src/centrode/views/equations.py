@@ -143,6 +143,12 @@ def _letter(letter: Letter | str) -> SumFormula:
     return SumFormula(Sum.letter(Letter(0, letter) if isinstance(letter, str) else letter))
 
 
+def constraint_text(name: str) -> Text:
+    """A constraint by its name: one along an axis by the letter of that coordinate ("x_C"), any other as it is."""
+    along_axis = name.startswith(("x_", "y_", "n_")) and "(" not in name
+    return _letter(name) if along_axis else Name(name)
+
+
 # What the letters stand for, in words and numbers.
 
 # Translators: {first}, {second}, {third} are names of links, points and guides; names do not change.
@@ -201,7 +207,7 @@ def _meaning(meaning: Meaning, equations: Equations) -> Text:
         kind, first = _constant(_constraint_of(meaning.symbol, equations))
     origin = kind.startswith("offset") and not third
     return MEANINGS[kind].fill(
-        first=Name(first),
+        first=constraint_text(first) if kind == "constant" else Name(first),
         second=Name(second),
         third=Sentence("the origin") if origin else Name(third),
         body=Sentence("the frame") if second == "frame" else Sentence("link {link}", link=Name(second)),

@@ -26,6 +26,7 @@ from centrode.sheets.sheet import (
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Symbol, Text, Title
 from centrode.views.abscissa import events_of, over_time
 from centrode.views.columns import columns_of, counted_statuses, numeric_columns
+from centrode.views.equations import constraint_text
 from centrode.views.instants import place_number
 from centrode.views.motion_plots import (
     PlottedMotion,
@@ -172,7 +173,7 @@ def _constraint(name: str) -> Text:
         return Sentence("gear {name}", name=Name(name.removeprefix(GEAR)))
     if name.startswith(ROLLING):
         return Sentence("wheel {name}", name=Name(name.removeprefix(ROLLING)))
-    return Name(name)
+    return constraint_text(name)
 
 
 def _small(value: float, unit: str = "1") -> Number:

@@ -177,7 +177,7 @@ def _guides(mechanism: Mechanism) -> Iterator[Table]:
         own = tuple(NOTHING if guide.link is None else Name(guide.link) for guide in guides)
         columns = (
             *_kept(guides),
-            Column("through", through, head=Sentence("through $(x; y)$")),
+            Column("through", through, head=Sentence("through $(x, y)$")),
             _cells([guide.direction_angle for guide in guides], "rad", Sentence("direction")),
             Column("link", own, head=Sentence("link that does not turn against it")),
         )

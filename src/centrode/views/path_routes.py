@@ -111,17 +111,17 @@ def _facts(results: PathRoutesResults) -> Iterator[Fact]:
 
 def _series(results: PathRoutesResults) -> Sentence:
     """The cut series and its greatest error."""
-    terms, zero = Number(int(results.dataset.attrs["terms"]), digits="d"), Number(0.0)
+    term, zero = Symbol("a", str(int(results.dataset.attrs["terms"])), slanted=True), Number(0.0)
     if math.isnan(results.series_error):
         return Sentence(
-            "power series about φ = {zero}, cut after a_{terms}: no sample to compare it at",
+            "power series about φ = {zero}, cut after {term}: no sample to compare it at",
             zero=zero,
-            terms=terms,
+            term=term,
         )
     return Sentence(
-        "power series about φ = {zero}, cut after a_{terms}: greatest error of ρ {error}",
+        "power series about φ = {zero}, cut after {term}: greatest error of ρ {error}",
         zero=zero,
-        terms=terms,
+        term=term,
         error=Number(results.series_error, "m", ".3g"),
     )
 

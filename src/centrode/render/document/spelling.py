@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
+from centrode.locale import coordinate_separator
 from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.document.typst import TypstSpelling, quote, shown, word
@@ -96,9 +97,9 @@ class DocumentSpelling(Spelling):
         return spelled_unit(unit)
 
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
-        """A place, its coordinates apart by semicolons: a comma may be their decimal mark."""
+        """A place, its coordinates parted as the decimal mark of the language allows."""
         label = self.numbers.shown(unit)[1]
-        return f"({'; '.join(map(self.number, coordinates))}) {label}".rstrip()
+        return f"({coordinate_separator().join(map(self.number, coordinates))}) {label}".rstrip()
 
     def part(self, text: str) -> str:
         """What belongs to the entry above it, behind a dash."""
