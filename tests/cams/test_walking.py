@@ -200,7 +200,9 @@ def test_unevenness_is_that_of_a_fine_mesh(three: WheelMover) -> None:
 
 def test_a_law_that_is_not_symmetric_walks_too_and_its_jump_is_told() -> None:
     cam = exchanged(
-        ("symmetric = true\n", ""), ("k1 = 0.75", "k1 = 0.3"), ('to = "90 deg"', 'to = "1 rad"\nfrom = "-1 rad"')
+        ("symmetric = true\n", ""),
+        ("k1 = 0.75", "k1 = 0.3"),
+        ('to = "90 deg"', 'to = "1 rad"\nfrom = "-1 rad"'),
     )
     wheel = ct.walking_wheel(cam)
     found = rolling(wheel)

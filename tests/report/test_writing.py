@@ -79,9 +79,7 @@ def test_a_library_that_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.M
         raise ModuleNotFoundError("No module named 'typst'", name="typst")
 
     monkeypatch.setattr(files, "FORMATS", {"pdf": missing})
-    with pytest.raises(
-        InputError, match=r'reports need typst, .* pip install -e "\.\[documents,figures\]"'
-    ):
+    with pytest.raises(InputError, match=r'reports need typst, .* pip install -e "\.\[documents,figures\]"'):
         ct.write_report(REPORT, tmp_path, ("pdf",))
 
 
