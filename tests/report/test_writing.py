@@ -79,9 +79,7 @@ def test_a_library_that_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.M
         raise ModuleNotFoundError("No module named 'typst'", name="typst")
 
     monkeypatch.setattr(files, "FORMATS", {"pdf": missing})
-    with pytest.raises(
-        InputError, match=r'reports need typst, .* pip install -e "\.\[documents,figures\]"'
-    ):
+    with pytest.raises(InputError, match=r'reports need typst, .* pip install -e "\.\[documents,figures\]"'):
         ct.write_report(REPORT, tmp_path, ("pdf",))
 
 
@@ -96,4 +94,4 @@ def test_what_figures_need_is_told(library: str) -> None:
     done = subprocess.run([sys.executable, "-c", program, "never"], capture_output=True, text=True)
     assert done.returncode == 2
     assert f"reports need {library}, which is not installed" in done.stderr
-    assert "centrode[documents,figures]" in done.stderr
+    assert 'pip install -e ".[documents,figures]"' in done.stderr
