@@ -94,4 +94,4 @@ def test_what_figures_need_is_told(library: str) -> None:
     done = subprocess.run([sys.executable, "-c", program, "never"], capture_output=True, text=True)
     assert done.returncode == 2
     assert f"reports need {library}, which is not installed" in done.stderr
-    assert "centrode[documents,figures]" in done.stderr
+    assert 'pip install -e ".[documents,figures]"' in done.stderr
