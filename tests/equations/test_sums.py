@@ -170,5 +170,5 @@ def test_names_fall_into_letter_index_and_dots(name: str, parts: tuple[str, str,
 
 def test_without_sympy_the_repair_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.modules[expression.__module__], "find_spec", lambda _name: None)
-    with pytest.raises(Exception, match=r"need SymPy.*centrode\[symbols\]"):
+    with pytest.raises(Exception, match=r"need SymPy.*pip install.*\[symbols\]"):
         expression(length(1))
