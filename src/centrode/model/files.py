@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache, reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,7 +21,7 @@ from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
 from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
-from centrode.model.values import BareAngles
+from centrode.model.values import BareAngles, Radians
 
 AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
 
@@ -106,9 +108,48 @@ def mechanism_text(mechanism: Mechanism) -> str:
     """
     tables = document(mechanism)
     if mechanism.display.refuses_bare_angles:
-        # Which numbers are angles depends on the space and on what is driven: reading them again finds out.
-        tables = with_unit(document(mechanism_from(tables, bare_angles="marked")))
+        for *parents, key in _places_of_angles(_ByForm(tables)):
+            container = reduce(getitem, parents, tables)
+            container[key] = with_unit(Radians(container[key]))
     return in_short_lines("\n".join(_sections(tables)))
+
+
+class _ByForm:
+    """Tables that count as the same when they differ in numbers only."""
+
+    def __init__(self, tables: dict[str, Any]) -> None:
+        self.tables = tables
+        self.form = _form(tables)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _ByForm) and self.form == other.form
+
+    def __hash__(self) -> int:
+        return hash(self.form)
+
+
+def _form(value: Any) -> Any:
+    """Keys, texts and switches of tables and lists; a number is only that."""
+    if isinstance(value, dict):
+        return ("table", *((key, _form(entry)) for key, entry in value.items()))
+    if isinstance(value, list):
+        return ("list", *map(_form, value))
+    return float if isinstance(value, float) else (type(value), value)
+
+
+# Results carry the text of their mechanism: thousands of mechanisms of one form are read once, not each again.
+@lru_cache(maxsize=16)
+def _places_of_angles(description: _ByForm) -> tuple[tuple[Any, ...], ...]:
+    """Keys and indices that lead to each angle, found by reading: they depend on the space and on what is driven."""
+    return tuple(_angles_in(document(mechanism_from(description.tables, bare_angles="marked")), ()))
+
+
+def _angles_in(value: Any, place: tuple[Any, ...]) -> Iterator[tuple[Any, ...]]:
+    if isinstance(value, Radians):
+        yield place
+    elif isinstance(value, dict | list):
+        for key, entry in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _angles_in(entry, (*place, key))
 
 
 def _sections(tables: Mapping[str, Any]) -> Iterator[str]:
