@@ -11,8 +11,7 @@ from centrode.render.latex import LatexSpelling, aligned_relations, escape, line
 from centrode.render.spelling import PlainSpelling
 from centrode.render.symbolic import spell_symbolic
 from centrode.render.terminal import notes_of, sheet_text, symbol_texts, table_cells
-from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer, WheelPlayer
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,

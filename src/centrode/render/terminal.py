@@ -11,8 +11,7 @@ from centrode.quantities import typeset_unit
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
 from centrode.render.plain_table import WIDTH, aligned, listing
 from centrode.render.spelling import PlainSpelling
-from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer, WheelPlayer
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.sheet import (
     Block,
     Check,

@@ -51,11 +51,3 @@ class PathsPicture:
     motion: xarray.Dataset
     points: tuple[str, ...]
     abscissa: Abscissa
-
-
-@dataclass(frozen=True)
-class MotionPlayer:
-    """A motion that a page plays, and of which paper shows the initial position."""
-
-    mechanism: Mechanism
-    motion: xarray.Dataset

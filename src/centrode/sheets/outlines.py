@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from centrode.sheets.texts import Sentence, Text, Title
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.profiles import CamOutline
     from centrode.cams.walking_wheel import WheelMover
 
@@ -184,31 +183,3 @@ class WheelPositions:
     mechanism: Title
     wheel: WheelMover
     turned: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class CamPlayer:
-    """A cam that turns under its follower: a page plays it, paper shows how it begins.
-
-    Attributes
-    ----------
-    title : of the cam
-    body : the cam with its follower
-    """
-
-    title: Title
-    body: FollowerCam
-
-
-@dataclass(frozen=True)
-class WheelPlayer:
-    """A wheel that walks: a page plays it, paper shows how it begins.
-
-    Attributes
-    ----------
-    title : of its cam
-    wheel : what moves
-    """
-
-    title: Title
-    wheel: WheelMover

@@ -11,48 +11,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
-from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
-from centrode.sheets.outlines import (
-    CamPlayer,
-    OutlineDrawing,
-    OutlineSet,
-    PathDrawing,
-    WheelPlayer,
-    WheelPositions,
-)
-from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
-from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
-from centrode.sheets.scenes import Scene
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.texts import NOTHING, Joined, Leaf, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = (
-    Plot
-    | CurveDiagram
-    | PanelGrid
-    | VectorPage
-    | Hodograph
-    | BarChart
-    | LinkageWithDiscs
-    | AreaDiagram
-    | Scene
-    | SpanPlot
-    | GroupPage
-    | LeverPage
-    | PositionsPage
-    | InstantPage
-    | VectorDiagramPage
-    | MechanismPicture
-    | PathsPicture
-    | OutlineDrawing
-    | PathDrawing
-    | WheelPositions
-    | FrontDiagram
-)
+    # A sheet without pictures loads none of their kinds: a command that only prints starts sooner.
+    from centrode.sheets.outlines import OutlineSet
+    from centrode.sheets.pictures import Picture
+
 Part = TypeVar("Part")
 
 

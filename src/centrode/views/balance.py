@@ -33,7 +33,6 @@ from centrode.sheets.sheet import (
     Illustration,
     Items,
     Paragraph,
-    Picture,
     Section,
     Sheet,
     Table,
@@ -62,6 +61,7 @@ if TYPE_CHECKING:
     from centrode.dynamics.balancing.counterweights import Counterweight
     from centrode.dynamics.balancing.methods import Loop, Share
     from centrode.dynamics.balancing.results import ShakingResults
+    from centrode.sheets.pictures import Picture
 
 Array: TypeAlias = NDArray[np.float64]
 ORDERS_SHOWN = (1.0, 2.0)

@@ -20,7 +20,6 @@ from centrode.sheets.sheet import (
     FactTable,
     Formula,
     Paragraph,
-    Picture,
     Scalar,
     Section,
     Sheet,
@@ -57,6 +56,7 @@ if TYPE_CHECKING:
 
     from centrode.dynamics.steady_motion.flywheel import Flywheel
     from centrode.dynamics.steady_motion.machine import MachineResults
+    from centrode.sheets.pictures import Picture
 
 UNITS = {
     "mean_speed": "rad/s",

@@ -20,7 +20,6 @@ from centrode.cams.followers.profile_results import (
 )
 from centrode.quantities import QUANTITIES
 from centrode.sheets.outlines import (
-    CamPlayer,
     DrawnBaseCircle,
     DrawnFollower,
     DrawnLines,
@@ -31,6 +30,7 @@ from centrode.sheets.outlines import (
     OutlineSet,
     Shape,
 )
+from centrode.sheets.players import CamPlayer
 from centrode.sheets.plots import AxisLabel, Curve, SpanPanel, SpanPlot
 from centrode.sheets.sheet import (
     Block,

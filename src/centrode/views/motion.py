@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.errors import STATUSES_OF_MOTION, CentrodeError, Status
-from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
+from centrode.sheets.linkages import MechanismPicture, PathsPicture
+from centrode.sheets.players import MotionPlayer
 from centrode.sheets.plots import Plot
 from centrode.sheets.sheet import (
     Chapter,
@@ -46,8 +47,9 @@ if TYPE_CHECKING:
     from centrode.dynamics.motion_results import MotionResults
     from centrode.kinematics.check import MechanismCheck
     from centrode.model.mechanism import Mechanism
+    from centrode.sheets.pictures import Picture
     from centrode.sheets.plots import Abscissa
-    from centrode.sheets.sheet import Block, Picture, Table
+    from centrode.sheets.sheet import Block, Table
     from centrode.views.motion_plots import Rows
 
 EVENT_NAMES = {LIMIT: "limit", CHANGE_POINT: "change_point"}

@@ -23,7 +23,6 @@ from centrode.sheets.plots import (
     VectorOnBody,
     VectorPage,
 )
-from centrode.sheets.sheet import Picture
 from centrode.sheets.texts import Joined, Name, Number, Sentence, Symbol, Text, Title
 from centrode.views.abscissa import motion_abscissa
 from centrode.views.motion_plots import deal_to_panels
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
 
     from centrode.dynamics.bearings.results import ReactionResults
     from centrode.model.mechanism import Mechanism
+    from centrode.sheets.pictures import Picture
 
 Array: TypeAlias = NDArray[np.float64]
 Curves: TypeAlias = dict[str, tuple[Text, Array]]

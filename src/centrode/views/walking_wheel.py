@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from centrode.cams.profiles import shoe_outlines
-from centrode.sheets.outlines import OutlineSet, WheelPlayer, WheelPositions
+from centrode.sheets.outlines import OutlineSet, WheelPositions
+from centrode.sheets.players import WheelPlayer
 from centrode.sheets.sheet import (
     Block,
     Chapter,

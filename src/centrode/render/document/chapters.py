@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias, assert_never
+from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,9 +21,8 @@ from centrode.render.pages.force_polygons import drawing_end, group_scales
 from centrode.render.pages.instants import DRAWING as INSTANT
 from centrode.render.pages.positions import DRAWING as POSITIONS
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer, WheelPlayer
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
     Block,
@@ -37,14 +36,16 @@ from centrode.sheets.sheet import (
     LinearEquations,
     Listing,
     Paragraph,
-    Picture,
     Section,
     Sheet,
     SymbolList,
     Table,
 )
 
-Pictures: TypeAlias = Mapping[str, Picture]
+if TYPE_CHECKING:
+    from centrode.sheets.pictures import Picture
+
+    Pictures: TypeAlias = Mapping[str, Picture]
 
 
 def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.ChapterBlocks:

@@ -43,7 +43,7 @@ from centrode.sheets.scenes import Scene
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
-    from centrode.sheets.sheet import Picture
+    from centrode.sheets.pictures import Picture
 
 
 def figures_of(pictures: Mapping[str, Picture], display: Display) -> dict[str, Figure]:

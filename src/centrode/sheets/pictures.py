@@ -1,0 +1,37 @@
+"""Every kind of picture that a sheet may hold."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
+from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.linkages import MechanismPicture, PathsPicture
+from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
+from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
+from centrode.sheets.scenes import Scene
+
+Picture: TypeAlias = (
+    Plot
+    | CurveDiagram
+    | PanelGrid
+    | VectorPage
+    | Hodograph
+    | BarChart
+    | LinkageWithDiscs
+    | AreaDiagram
+    | Scene
+    | SpanPlot
+    | GroupPage
+    | LeverPage
+    | PositionsPage
+    | InstantPage
+    | VectorDiagramPage
+    | MechanismPicture
+    | PathsPicture
+    | OutlineDrawing
+    | PathDrawing
+    | WheelPositions
+    | FrontDiagram
+)
