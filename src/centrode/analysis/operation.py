@@ -13,6 +13,7 @@ from centrode.analysis.rotatability.rotatability import LimitFound, Rotatability
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.preparation import ready
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
@@ -102,7 +103,7 @@ class PrincipleOfOperation:
     first_limits: tuple[LimitFound, ...]
 
 
-def principle_of_operation(mechanism: Mechanism) -> PrincipleOfOperation:
+def principle_of_operation(mechanism: MechanismSource) -> PrincipleOfOperation:
     """How a mechanism works: its parts, what follows what, and what bounds the motion.
 
     Extents (strokes, angles of swing) are those over the description's own range, one turn of the drive if it names
@@ -114,6 +115,7 @@ def principle_of_operation(mechanism: Mechanism) -> PrincipleOfOperation:
     >>> print(ct.summary(ct.principle_of_operation(ct.example("crank-rocker"))).splitlines()[-1])
     The mobility is 1: one drive determines the place of every link. The drive can turn fully.
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     roles, turning = roles_of(mechanism), rotatability(mechanism)
     limits = first_limits(turning, forward=prepared.kinematics.path.forward > 0)

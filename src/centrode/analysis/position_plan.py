@@ -14,6 +14,7 @@ import xarray as xr
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.search import interpolated_roots
 
@@ -53,7 +54,7 @@ class PositionPlan:
 
 
 def plan_of_positions(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     positions: int | None = None,
     link: str | None = None,
     points: Sequence[str] | None = None,
@@ -90,6 +91,7 @@ def plan_of_positions(
     >>> plan.link, plan.closed
     ('DB', True)
     """
+    mechanism = mechanism_of(mechanism)
     if mechanism.space != "plane":
         raise InputError("space", _("a plan of positions is drawn in the plane only"), _("draw the motion"))
     positions = USUAL if positions is None else positions

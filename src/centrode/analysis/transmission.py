@@ -28,6 +28,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.solve import grid_of, solve
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
 from centrode.structure.dimensions import Dimensions
@@ -188,7 +189,7 @@ Lines: TypeAlias = npt.NDArray[np.complex128]
 
 
 def transmission_angles(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -213,6 +214,7 @@ def transmission_angles(
     group  least transmission angle, deg  greatest transmission angle, deg  greatest pressure angle, deg
     AB-DB                        54.3147                           90.0000                       35.6853
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     span = grid_of(prepared, samples, start, stop, at)
     data = dataset_of(solve(prepared, span))

@@ -31,6 +31,7 @@ from centrode.animation.video_files import (
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.cam import Cam
+from centrode.model.examples.catalogue import DescriptionSource, description_of
 from centrode.model.follower_cam import PlateCam
 from centrode.model.labels import place_words
 from centrode.model.mechanism import FRAME
@@ -149,7 +150,7 @@ _of_cams = functools.partial(importlib.import_module, "centrode.animation.cams")
 
 
 def animate(
-    described: Mechanism | Cam | PlateCam,
+    described: DescriptionSource,
     path: str | Path,
     shown: Shown | None = None,
     pace: Pace | None = None,
@@ -196,6 +197,7 @@ def animate(
     >>> animation.loop
     'back'
     """
+    described = description_of(described)
     path, pace = Path(path), pace or Pace()
     kind = kind_of(path)
     if kind == ".mp4":

@@ -15,6 +15,7 @@ from centrode.equations.integration import integrate
 from centrode.errors import InputError
 from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, speaking
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
 from centrode.sheets.texts import Joined, Name, Number, Sentence
@@ -167,7 +168,7 @@ class Variants:
     answers: Mapping[str, VariantAnswers] = field(default_factory=dict)
 
 
-def variants(topology: Mechanism, table: Table, progress: Progress | None = None) -> Variants:
+def variants(topology: MechanismSource, table: Table, progress: Progress | None = None) -> Variants:
     """The study, the rotatability and the integrated motion of every variant of a topology.
 
     Parameters
@@ -190,6 +191,7 @@ def variants(topology: Mechanism, table: Table, progress: Progress | None = None
     >>> [row.turns_fully for row in ct.variants(ct.example("crank-rocker"), rows).rows]
     [True, True]
     """
+    topology = mechanism_of(topology)
     given = read_variants(topology, table)
     results = []
     for number, variant in enumerate(given, start=1):

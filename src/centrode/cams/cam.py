@@ -39,6 +39,7 @@ from centrode.errors import CentrodeError, Status
 from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam, cam_text, require_curvature_cam
+from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import Extremes
 from centrode.version import __version__
@@ -46,7 +47,7 @@ from centrode.version import __version__
 Array = npt.NDArray[np.float64]
 
 
-def cam(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
+def cam(cam: CamSource, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
     """The path of a cam's roller, by series expanded anew step by step; or the motion of a cam's follower.
 
     Parameters
@@ -79,6 +80,7 @@ def cam(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None
     >>> print(ct.summary(path).splitlines()[5])
     radius ρ                      50 mm at 0 deg to 61.0092 mm at 79.1402 deg
     """
+    cam = cam_of(cam)
     phi = angles_of(cam, samples, at)
     if isinstance(cam, PlateCam):
         return dataset_of_motion(cam, follower_motion(cam), phi)

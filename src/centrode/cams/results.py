@@ -26,6 +26,7 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam, cam_text, require_curvature_cam
+from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.follower_cam import PlateCam
 
 DEFAULT_SAMPLES = 361
@@ -34,7 +35,7 @@ SAME = 1e-9
 """Angles [rad] that are nearer than this are one."""
 
 
-def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
+def cam_profile(cam: CamSource, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
     """The closed profile of a cam.
 
     Parameters
@@ -65,6 +66,7 @@ def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False
     >>> round(float(profile.profile_radius.min()), 6)
     0.024
     """
+    cam = cam_of(cam)
     if isinstance(cam, PlateCam):
         if groove:
             what = _("a groove is made for a cam that is given by its roller's path")
@@ -210,7 +212,7 @@ def shoe_dataset(cam: Cam, wheel: WheelMover, samples: int) -> xr.Dataset:
     return xr.Dataset(variables, coords={"axis": AXES}, attrs=facts)
 
 
-def walking_wheel(cam: AnyCam) -> WheelMover:
+def walking_wheel(cam: CamSource) -> WheelMover:
     """The walking wheel of a description.
 
     Raises
@@ -227,6 +229,7 @@ def walking_wheel(cam: AnyCam) -> WheelMover:
     >>> wheel.legs
     4
     """
+    cam = cam_of(cam)
     return wheel_of(require_curvature_cam(cam), cam_body(cam))
 
 
@@ -382,7 +385,7 @@ def has_contact(cam: AnyCam) -> bool:
     return isinstance(cam, Cam) and cam.contact is not None
 
 
-def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
+def cam_contact(cam: CamSource, samples: int | None = None) -> xr.Dataset:
     """Contact of roller and cam over the working arc.
 
     Parameters
@@ -412,6 +415,7 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     >>> print(ct.summary(contact).splitlines()[2])
     greatest contact stress  626.262 MPa at ±45 deg, more than the admissible 600 MPa
     """
+    cam = cam_of(cam)
     cam = require_curvature_cam(cam)
     contact = contact_of(cam)
     if contact is None:

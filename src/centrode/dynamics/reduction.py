@@ -33,6 +33,7 @@ from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.several_inputs.coefficients import Partials, partials
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, grid_of, solve
 from centrode.locale import _, mark
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.expressions import EXPRESSIONS
@@ -389,7 +390,7 @@ def _unit(head: str, metres: int) -> str:
 
 
 def reduce(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -423,6 +424,7 @@ def reduce(
     >>> print(ct.summary(reduced).splitlines()[3])
     loads                  force H, weight AB, weight CD, weight DH, weight slider
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     burden = MassesAndLoads.of(mechanism)
     span = grid_of(prepared, samples, start, stop, at)

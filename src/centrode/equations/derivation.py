@@ -24,6 +24,7 @@ from centrode.equations.symbols import ZERO, Letter, Meaning, Sum
 from centrode.errors import InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import assur_groups, roman
 from centrode.structure.constraints import FRAME
@@ -225,7 +226,7 @@ class Equations:
         return velocity_of(point, self.board.points[point], self.board, self.given, closed)
 
 
-def equations(mechanism: Mechanism, points: Sequence[str] | None = None) -> Equations:
+def equations(mechanism: MechanismSource, points: Sequence[str] | None = None) -> Equations:
     """Constraint equations of a mechanism in symbols, differentiated and solved group by group.
 
     Parameters
@@ -245,6 +246,7 @@ def equations(mechanism: Mechanism, points: Sequence[str] | None = None) -> Equa
     >>> print(ct.summary(ct.equations(ct.example("crank-rocker"))).splitlines()[2])
       φ₂(0) = 0.94797 rad   angle of link AB
     """
+    mechanism = mechanism_of(mechanism)
     made = ready(mechanism)
     board, drafts = assemble_chains(made) if made.mechanism.space == "plane" else laid_on_sphere(made)
     given = given_of(board)

@@ -31,6 +31,7 @@ from centrode.kinematics.path import DrivenBy
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
@@ -573,7 +574,7 @@ TOLERANCES = (1e-13, 1e-2)
 
 
 def integrate(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     method: str = "rk4",
     steps: int = 100,
     tolerance: float = FINE,
@@ -611,6 +612,7 @@ def integrate(
     >>> print(ct.summary(found).splitlines()[2])
     rows                 201: ok 201
     """
+    mechanism = mechanism_of(mechanism)
     _check(method, steps, tolerance)
     prepared = ready(mechanism)
     form = form_of(prepared)

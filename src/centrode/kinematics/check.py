@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from centrode.kinematics.preparation import Ready, ready
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import AssurGroup, assur_groups, structural_formula
 from centrode.structure.rank import Count, count
@@ -36,7 +37,7 @@ class MechanismCheck:
     initial_residual: float
 
 
-def check(mechanism: Mechanism) -> MechanismCheck:
+def check(mechanism: MechanismSource) -> MechanismCheck:
     """Structure, mobility and plan of a mechanism; raises as `motion` does before it computes.
 
     Examples
@@ -45,6 +46,7 @@ def check(mechanism: Mechanism) -> MechanismCheck:
     >>> ct.check(ct.example("crank-rocker")).mobility
     1
     """
+    mechanism = mechanism_of(mechanism)
     return check_of(ready(mechanism))
 
 

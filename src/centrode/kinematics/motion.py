@@ -18,6 +18,7 @@ from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Progress, Solved, grid_of, solve
 from centrode.locale import _, speaking
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import kind_at, mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
@@ -245,7 +246,7 @@ _many = functools.partial(importlib.import_module, "centrode.kinematics.machine_
 
 
 def motion(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -291,6 +292,7 @@ def motion(
     >>> print(ct.summary(motion).splitlines()[-2])
     samples                37: ok 37
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     vary = _varied_numbers(mechanism, vary)
     numbers, lanes = _batch(mechanism, vary)

@@ -8,8 +8,7 @@ from typing import TypeAlias
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
-from centrode.model.cam_files import AnyCam
-from centrode.model.mechanism import Mechanism
+from centrode.model.examples.catalogue import DescriptionSource, description_of
 from centrode.render.document.blocks import ChapterBlocks, Report
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
@@ -20,7 +19,7 @@ Said: TypeAlias = Callable[[str, int, int], None]
 
 
 def report(
-    description: Mechanism | AnyCam,
+    description: DescriptionSource,
     options: ReportOptions | None = None,
     *,
     language: str | None = None,
@@ -59,6 +58,7 @@ def report(
     >>> [chapter.name for chapter in made.chapters]
     ['structure']
     """
+    description = description_of(description)
     with nullcontext() if language is None else speaking(language):
         study = ReportStudy(description, settle_options(description, options or ReportOptions(), CHAPTERS))
         study.assemble()

@@ -16,7 +16,7 @@ from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
-from centrode.model.examples.catalogue import load
+from centrode.model.examples.catalogue import MechanismSource, load, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, read_file, value_text
 from centrode.model.toml import toml_tables
@@ -44,7 +44,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 
 def sweep(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     vary: Mapping[str, Any] | Grid | Sample,
     outputs: Sequence[str] | str | None = None,
     samples: int | None = None,
@@ -100,6 +100,7 @@ def sweep(
     >>> found.sizes["mechanism"]
     2
     """
+    mechanism = mechanism_of(mechanism)
     name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)

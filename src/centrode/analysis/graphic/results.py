@@ -11,6 +11,7 @@ from centrode.analysis.graphic.checks import GraphicCheck, graphic_check
 from centrode.errors import CentrodeError, InputError, Status
 from centrode.kinematics.motion import default_instants, motion
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 
 MOST_INSTANTS = 100
@@ -33,7 +34,7 @@ class GraphicResults:
 
 
 def graphic_analysis(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     *,
     instants: Sequence[float | str] = (),
     angle_step: float | str | None = None,
@@ -62,6 +63,7 @@ def graphic_analysis(
     >>> print(ct.summary(found).splitlines()[1])
     scales           μ_l = 0.05 m per mm, μ_v = 0.01 m/s per mm, μ_a = 0.015 m/s^2 per mm
     """
+    mechanism = mechanism_of(mechanism)
     instant = mechanism.motion_parameter.instant
     places = tuple(instant.read_all(instants, "instants")) or default_instants(mechanism)
 

@@ -33,6 +33,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import start_of
 from centrode.kinematics.solve import fit_for, grid_of, solve
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
@@ -44,7 +45,7 @@ ORDER = 3
 
 
 def curvature(
-    source: Mechanism | xr.Dataset,
+    source: MechanismSource | xr.Dataset,
     link: str,
     at: npt.ArrayLike | None = None,
     against: str = "frame",
@@ -55,7 +56,7 @@ def curvature(
     Parameters
     ----------
     source : Mechanism or Dataset
-        A planar mechanism, or its motion (of a batch, one mechanism).
+        A planar mechanism, its file or the name of a built-in one, or its motion (of a batch, one mechanism).
     link, against : str
         Bodies: links, "frame", sliders ("slider C"); the paths are those that `against` sees.
     at : (n,) values of the drive [rad or m], times [s] where it is a law or there are several, or texts with a unit
@@ -129,14 +130,14 @@ def curvature(
 
 
 def _source_mechanism(
-    source: Mechanism | xr.Dataset, at: npt.ArrayLike | None
+    source: MechanismSource | xr.Dataset, at: npt.ArrayLike | None
 ) -> tuple[Mechanism, npt.ArrayLike | None]:
-    if isinstance(source, Mechanism):
-        if at is None:
-            raise InputError("at", _("it needs values of the drive"), _("give one or more"))
-        return source, at
-    refuse_batch(source)
-    return mechanism_of_motion(source), at
+    if isinstance(source, xr.Dataset):
+        refuse_batch(source)
+        return mechanism_of_motion(source), at
+    if at is None:
+        raise InputError("at", _("it needs values of the drive"), _("give one or more"))
+    return mechanism_of(source), at
 
 
 def _check_body(mechanism: Mechanism, name: str) -> None:

@@ -29,6 +29,7 @@ from centrode.kinematics.dyads import loci_of, solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import Display
 from centrode.model.units import read_quantity
@@ -391,7 +392,7 @@ class Repair:
 
 
 def repair(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     vary: Sequence[str] | None = None,
     bounds: Bounds | None = None,
     least_transmission_angle: Value | None = None,
@@ -432,6 +433,7 @@ def repair(
     >>> print(ct.summary(found).splitlines()[3])
     verified            turns fully, least transmission angle 1 deg
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     _check_repairable(prepared)
     least_angle = _angle(least_transmission_angle, mechanism.display)

@@ -41,6 +41,7 @@ from centrode.kinematics.plan_evaluation import Event
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import name_of
 
@@ -156,7 +157,7 @@ class Rotatability:
         return self.drives[0]
 
 
-def rotatability(mechanism: Mechanism) -> Rotatability:
+def rotatability(mechanism: MechanismSource) -> Rotatability:
     """Whether a mechanism turns fully, what stops it and why, and how its members move.
 
     Returns
@@ -181,6 +182,7 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
     >>> ct.rotatability(ct.example("crank-rocker")).turns_fully
     True
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     values = initial_values(prepared)
     turnings = []

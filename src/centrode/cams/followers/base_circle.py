@@ -32,6 +32,7 @@ from centrode.cams.profiles import Undercut
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cam_files import AnyCam, with_follower
+from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import root, roots
 
@@ -437,7 +438,7 @@ def best_offset(layout: FollowerLayout, motion: ContactMotion, kept: Admissible)
     return least_base_radius(replace(layout, offset=float(found.x)), motion, kept)
 
 
-def follower_cam(cam: AnyCam) -> FollowerCam:
+def follower_cam(cam: CamSource) -> FollowerCam:
     """The cam of a description with a follower.
 
     Where `[cam] base_radius` is left out it is the least that `[bounds]` admits.
@@ -457,6 +458,7 @@ def follower_cam(cam: AnyCam) -> FollowerCam:
     >>> ct.follower_cam(ct.example("valve-cam")).base_radius
     0.024
     """
+    cam = cam_of(cam)
     plate = with_follower(cam)
     body = _body(plate)
     if body.undercuts and not plate.study.show_undercut:

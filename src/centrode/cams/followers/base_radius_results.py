@@ -22,7 +22,8 @@ from centrode.cams.followers.geometry import FollowerCam
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
 from centrode.cams.nodes import nodes_of
 from centrode.errors import CentrodeError, MotionError
-from centrode.model.cam_files import AnyCam, with_follower
+from centrode.model.cam_files import with_follower
+from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.follower_cam import PlateCam
 
 SHARES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0)
@@ -87,7 +88,7 @@ class SizedCam:
 
 
 def choose_base_radius(
-    cam: AnyCam, samples: int | None = None, *, instants: Sequence[float] | None = None
+    cam: CamSource, samples: int | None = None, *, instants: Sequence[float] | None = None
 ) -> BaseRadiusResults:
     """What decides the base radius of a cam with a follower.
 
@@ -105,6 +106,7 @@ def choose_base_radius(
     >>> round(chosen.least.base_radius, 4), chosen.least.by
     (0.0337, 'pressure angle')
     """
+    cam = cam_of(cam)
     del samples, instants
     plate = with_follower(cam)
     motion = follower_motion(plate)

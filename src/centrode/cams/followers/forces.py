@@ -22,6 +22,7 @@ from centrode.errors import Status
 from centrode.kinematics.motion import Variable, vocabulary_variable
 from centrode.model.cam import Material as DescribedMaterial
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
+from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import tops
 from centrode.version import __version__
@@ -572,7 +573,7 @@ def _pressure(strip: Pressed | None, phi: Array) -> Array:
 # Forces between cam and follower as a labelled result.
 
 
-def cam_forces(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
+def cam_forces(cam: CamSource, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
     """Forces between a cam and its follower over a turn.
 
     Parameters
@@ -605,6 +606,7 @@ def cam_forces(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None
     >>> print(ct.summary(forces).splitlines()[3])
     contact of cam and follower  kept: at least 180 N along the follower at 0 deg
     """
+    cam = cam_of(cam)
     plate = with_follower(cam)
     return dataset_of_forces(plate, follower_forces(plate), angles_of(plate, samples, at))
 

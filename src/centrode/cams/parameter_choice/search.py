@@ -28,6 +28,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import CONSTANT, POINT, Cam, vary_cam
 from centrode.model.cam_files import AnyCam, require_curvature_cam
+from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.reading import FrozenMap
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
@@ -728,7 +729,7 @@ class CamChoice:
 
 
 def choose_cam(
-    cam: AnyCam,
+    cam: CamSource,
     points: int = POINTS,
     *,
     front: bool = True,
@@ -764,6 +765,7 @@ def choose_cam(
     >>> chosen.choice.admissible  # doctest: +SKIP
     True
     """
+    cam = cam_of(cam)
     cam = require_curvature_cam(cam)
     family = family_of(cam)
     assert cam.choose is not None

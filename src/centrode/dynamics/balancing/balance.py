@@ -42,6 +42,7 @@ from centrode.dynamics.balancing.shaking_forces import (
 from centrode.errors import InputError
 from centrode.kinematics.motion import motion
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 
 To: TypeAlias = Literal["full", "least", "fraction"]
@@ -99,7 +100,7 @@ class Balance:
 
 
 def balance(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     on: Sequence[str] | None = None,
     *,
     to: To = "full",
@@ -165,6 +166,7 @@ def balance(
     >>> print(ct.summary(found).splitlines()[0])
     balance             shaking force zero
     """
+    mechanism = mechanism_of(mechanism)
     if mechanism.space == "sphere":
         raise on_sphere()
     _check(to, speed, moment)

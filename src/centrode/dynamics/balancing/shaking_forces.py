@@ -29,6 +29,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _, speaking
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.numerics.jets import Jet
@@ -519,7 +520,7 @@ ORDERS, MOST_ORDERS = 8, 60
 
 
 def shaking(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -561,6 +562,7 @@ def shaking(
     >>> print(ct.summary(ct.shaking(ct.example("six-bar-press"), 37)).splitlines()[0])
     greatest shaking force                        2669.34 N
     """
+    mechanism = mechanism_of(mechanism)
     if mechanism.space == "sphere":
         raise on_sphere()
     check_speed(speed)

@@ -45,6 +45,7 @@ from centrode.kinematics.path import grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.round_scales import FORCE_SCALES, round_scale
@@ -385,7 +386,7 @@ class ForcePolygons:
         return self.levers[0]
 
 
-def force_polygons(mechanism: Mechanism, at: float | str, paper: str = "A4") -> ForcePolygons:
+def force_polygons(mechanism: MechanismSource, at: float | str, paper: str = "A4") -> ForcePolygons:
     """Reactions and balancing moment at an instant by force polygons, group by group, and by Zhukovsky's lever.
 
     Parameters
@@ -411,6 +412,7 @@ def force_polygons(mechanism: Mechanism, at: float | str, paper: str = "A4") -> 
     >>> [str(name) for name in found.balancing]
     ['OA']
     """
+    mechanism = mechanism_of(mechanism)
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)
     prepared = ready(mechanism)

@@ -63,6 +63,7 @@ from centrode.kinematics.motion import (
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Entity
 
@@ -482,7 +483,7 @@ SPEEDS = get_args(Speed)
 
 
 def reactions(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -524,6 +525,7 @@ def reactions(
     >>> print(ct.summary(forces).splitlines()[4])
     samples               37: ok 37
     """
+    mechanism = mechanism_of(mechanism)
     mechanism = mechanism if friction else without_friction(mechanism)
     burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
     if speed not in SPEEDS:

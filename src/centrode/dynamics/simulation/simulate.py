@@ -47,6 +47,7 @@ from centrode.kinematics.plan_evaluation import layout_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, check_size, solve
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
@@ -331,7 +332,7 @@ Executor: TypeAlias = Literal["auto", "arrays", "machine code"]
 
 
 def simulate(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     settings: Simulation | None = None,
     *,
     at: npt.ArrayLike | None = None,
@@ -374,6 +375,7 @@ def simulate(
     >>> run.attrs["ended"]
     'duration'
     """
+    mechanism = mechanism_of(mechanism)
     if executor not in get_args(Executor):
         raise InputError(
             "executor",

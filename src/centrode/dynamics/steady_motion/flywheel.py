@@ -10,6 +10,7 @@ from centrode.dynamics.steady_motion.speed import MeanSpeed, Tangents, with_iner
 from centrode.dynamics.steady_motion.steady import SteadySolution, in_other_mean, solution_of
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import FlywheelShape
 
@@ -175,7 +176,7 @@ class Flywheel:
     source_disc: Wheel | None = None
 
 
-def flywheel(mechanism: Mechanism, mean: MeanSpeed = "middle") -> Flywheel:
+def flywheel(mechanism: MechanismSource, mean: MeanSpeed = "middle") -> Flywheel:
     """The flywheel that gives a machine the fluctuation its `[machine]` asks for.
 
     Parameters
@@ -206,6 +207,7 @@ def flywheel(mechanism: Mechanism, mean: MeanSpeed = "middle") -> Flywheel:
     >>> round(ct.flywheel(ct.example("six-bar-press")).added, 2)
     1456.73
     """
+    mechanism = mechanism_of(mechanism)
     need_fluctuation(mechanism)
     return flywheel_of(solution_of(mechanism, mean))
 

@@ -40,6 +40,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.locale import _
 from centrode.model import reading
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import DRIVING_VARIABLES, Machine
 from centrode.numerics.text_formula import compile_formula
@@ -292,7 +293,7 @@ METHODS = get_args(Method)
 
 
 def steady_motion(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     at: npt.ArrayLike | None = None,
     *,
@@ -331,6 +332,7 @@ def steady_motion(
     >>> print(ct.summary(steady).splitlines()[0])
     cycle                1 turn of the drive, 0.922005 s
     """
+    mechanism = mechanism_of(mechanism)
     solution = solution_of(mechanism, mean)
     return steady_dataset(solution, turned_at(solution, samples, at), method)
 

@@ -31,7 +31,7 @@ from centrode.kinematics.preparation import ready
 from centrode.kinematics.samples import ORDERS, SampleJudging, fill_columns, fill_number, start_of
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, fit_for, grid_of, solve
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.quantities import QUANTITIES
@@ -163,7 +163,7 @@ def _solve_direction(solved: Solved, columns: Array, angles: Array, absent: Mask
 
 
 def kinematic_coefficients(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -196,6 +196,7 @@ def kinematic_coefficients(
     >>> ct.kinematic_coefficients(arm, 9).velocity_coefficient.dims
     ('sample', 'drive', 'point', 'axis')
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     span = grid_of(prepared, samples, start, stop, at)
     return coefficients_of(solve(prepared, span))

@@ -22,6 +22,7 @@ from centrode.kinematics.samples import ORDERS, Samples, evaluate_columns
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.laws import Uniform
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.arrays import ARRAYS
@@ -231,7 +232,7 @@ class Limits:
 
 
 def limits(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     drive: str | None = None,
     held: Mapping[str, Value] | None = None,
     about: Value | None = None,
@@ -273,6 +274,7 @@ def limits(
     to             1.79991242 rad (103.127 deg), limit of group CB-BD (point B)
     change points  none
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     moving = chosen_drive(mechanism, drive)
     others = held_values(prepared, (moving,), held)

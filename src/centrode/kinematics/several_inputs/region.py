@@ -31,6 +31,7 @@ from centrode.kinematics.several_inputs.limits import (
     value_of,
 )
 from centrode.locale import _, speaking
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.numerics.jets import Jet
@@ -307,7 +308,7 @@ DEFAULT_NODES = 181
 
 
 def reachable_region(
-    mechanism: Mechanism,
+    mechanism: MechanismSource,
     drives: Sequence[str] | None = None,
     ranges: Ranges | None = None,
     samples: int = DEFAULT_NODES,
@@ -349,6 +350,7 @@ def reachable_region(
     >>> print(ct.summary(region).splitlines()[0])
     drive OA              -3.14159265 rad (-180 deg) to 3.14159265 rad (180 deg)
     """
+    mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     _refuse_what_is_not_computed(prepared)
     first, second = _two_drives(mechanism, drives)

@@ -18,6 +18,10 @@ from centrode.model.toml import is_cam, toml_tables
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
+MechanismSource: TypeAlias = Mechanism | str | Path
+"""A mechanism, or the name of its file or of a built-in one: what every function of a mechanism takes."""
+CamSource: TypeAlias = AnyCam | str | Path
+DescriptionSource: TypeAlias = Mechanism | AnyCam | str | Path
 
 
 @overload
@@ -72,6 +76,36 @@ def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     text = read_file(path)
     reads = parse_cam if is_cam(toml_tables(text, path.name)) else parse_mechanism
     return reads(text, path.name, path.parent)
+
+
+def mechanism_of(source: MechanismSource) -> Mechanism:
+    """The mechanism itself, or the one that `load` finds under a name; InputError for anything else."""
+    source = load(source) if isinstance(source, str | Path) else source
+    if not isinstance(source, Mechanism):
+        raise _refusal(_("this function takes a mechanism, its file or the name of a built-in one"), source)
+    return source
+
+
+def cam_of(source: CamSource) -> AnyCam:
+    """The cam itself, or the one that `load_cam` finds under a name; InputError for anything else."""
+    source = load_cam(source) if isinstance(source, str | Path) else source
+    if not isinstance(source, Cam | PlateCam):
+        raise _refusal(_("this function takes a cam, its file or the name of a built-in one"), source)
+    return source
+
+
+def description_of(source: DescriptionSource) -> Mechanism | AnyCam:
+    """The mechanism or the cam itself, or what `load_either` finds under a name; InputError for anything else."""
+    source = load_either(source) if isinstance(source, str | Path) else source
+    if not isinstance(source, Mechanism | Cam | PlateCam):
+        raise _refusal(
+            _("this function takes a mechanism or a cam, its file or the name of a built-in one"), source
+        )
+    return source
+
+
+def _refusal(takes: str, given: object) -> InputError:
+    return InputError("", takes, _("it got a value of type {kind}").format(kind=type(given).__name__))
 
 
 def _file(file_or_example: str | Path) -> Path | None:

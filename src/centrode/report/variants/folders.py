@@ -23,8 +23,8 @@ from centrode.files.drafts import clear_folder, draft_folder, refusals, remove_f
 from centrode.files.inputs import Input, carry_on, inputs_read, keep_inputs
 from centrode.files.locks import hold_lock
 from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text, parse_mechanism
-from centrode.model.mechanism import Mechanism
 from centrode.render.table_spelling import PLAIN, TableSpelling
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
@@ -155,7 +155,7 @@ MOST_JOBS = 256
 
 
 def write_variants(
-    topology: Mechanism,
+    topology: MechanismSource,
     table: Table,
     folder: str | Path,
     jobs: int = 1,
@@ -198,6 +198,7 @@ def write_variants(
     >>> found.rows[0].status
     'ok'
     """
+    topology = mechanism_of(topology)
     _check_jobs(jobs)
     folder = Path(folder)
     spelling = spelling or PLAIN
