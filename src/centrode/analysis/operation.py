@@ -14,6 +14,7 @@ from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.preparation import ready
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
+from centrode.printing import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
@@ -80,8 +81,8 @@ class LinkRoles:
         return link in wheels and not points & joined
 
 
-@dataclass(frozen=True)
-class PrincipleOfOperation:
+@dataclass(frozen=True, repr=False)
+class PrincipleOfOperation(PrintsSummary):
     """How a mechanism works.
 
     Attributes

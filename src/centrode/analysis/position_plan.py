@@ -17,6 +17,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.search import interpolated_roots
+from centrode.printing import PrintsSummary
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -27,8 +28,8 @@ SAME = 1e-9
 """Part of a turn within which its end and its beginning are one place."""
 
 
-@dataclass(frozen=True)
-class PositionPlan:
+@dataclass(frozen=True, repr=False)
+class PositionPlan(PrintsSummary):
     """A mechanism in numbered positions.
 
     Attributes

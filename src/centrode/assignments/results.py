@@ -17,6 +17,7 @@ from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
+from centrode.printing import PrintsSummary
 from centrode.quantities import display_unit
 from centrode.sheets.texts import Joined, Name, Number, Sentence
 from centrode.views.rotatability import cause_text
@@ -148,8 +149,8 @@ class VariantResults:
     note: str = ""
 
 
-@dataclass(frozen=True)
-class Variants:
+@dataclass(frozen=True, repr=False)
+class Variants(PrintsSummary):
     """Every variant of a table.
 
     Attributes

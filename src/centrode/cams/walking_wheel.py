@@ -22,6 +22,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.numerics.jets import Jet, quotient
 from centrode.numerics.search import Extremes, extremes, maxima_between
+from centrode.printing import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.cam import Cam
@@ -235,8 +236,8 @@ class WheelPose:
         return np.asarray(self.hub - places)
 
 
-@dataclass(frozen=True)
-class WheelMover:
+@dataclass(frozen=True, repr=False)
+class WheelMover(PrintsSummary):
     """A walking wheel.
 
     Attributes

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from centrode.kinematics.preparation import Ready, ready
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
+from centrode.printing import PrintsSummary
 from centrode.structure.assur import AssurGroup, assur_groups, structural_formula
 from centrode.structure.rank import Count, count
 
 
-@dataclass(frozen=True)
-class MechanismCheck:
+@dataclass(frozen=True, repr=False)
+class MechanismCheck(PrintsSummary):
     """Structure of a mechanism that assembles and can be driven.
 
     Attributes

@@ -13,12 +13,13 @@ from centrode.kinematics.motion import default_instants, motion
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
+from centrode.printing import PrintsSummary
 
 MOST_INSTANTS = 100
 
 
-@dataclass(frozen=True)
-class GraphicResults:
+@dataclass(frozen=True, repr=False)
+class GraphicResults(PrintsSummary):
     """Graph-analytic checks of a mechanism at some instants.
 
     Attributes

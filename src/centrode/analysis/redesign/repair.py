@@ -34,6 +34,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.settings import Display
 from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
+from centrode.printing import PrintsSummary
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, Newton
 
@@ -356,8 +357,8 @@ class Change:
     size: float
 
 
-@dataclass(frozen=True)
-class Repair:
+@dataclass(frozen=True, repr=False)
+class Repair(PrintsSummary):
     """Result of a repair: the mechanism found, its changes, and what was tried.
 
     Attributes

@@ -43,6 +43,7 @@ from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
+from centrode.printing import PrintsSummary
 from centrode.structure.assur import name_of
 
 
@@ -132,8 +133,8 @@ class LinkTurning:
     circuits_missing: Uncounted | None
 
 
-@dataclass(frozen=True)
-class Rotatability:
+@dataclass(frozen=True, repr=False)
+class Rotatability(PrintsSummary):
     """Rotatability of a mechanism by its geometry.
 
     Attributes

@@ -25,6 +25,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import Extremes, Function, extremes, roots
+from centrode.printing import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.follower_cam import PlateCam
@@ -394,8 +395,8 @@ class Corner:
         return self.step < 0.0 or (self.turn > 0.0 and roller > 0.0)
 
 
-@dataclass(frozen=True)
-class FollowerCam:
+@dataclass(frozen=True, repr=False)
+class FollowerCam(PrintsSummary):
     """A plate cam that moves a follower.
 
     Attributes

@@ -30,6 +30,7 @@ from centrode.model.cam import CONSTANT, POINT, Cam, vary_cam
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.reading import FrozenMap
+from centrode.printing import PrintsSummary
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
 #
@@ -700,8 +701,8 @@ MORE = 3
 """So often the search goes on from a neighbour that is better, as there are where a law is not smooth."""
 
 
-@dataclass(frozen=True)
-class CamChoice:
+@dataclass(frozen=True, repr=False)
+class CamChoice(PrintsSummary):
     """A cam with chosen parameters.
 
     Attributes

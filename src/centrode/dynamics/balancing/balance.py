@@ -44,13 +44,14 @@ from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
+from centrode.printing import PrintsSummary
 
 To: TypeAlias = Literal["full", "least", "fraction"]
 KINDS = get_args(To)
 
 
-@dataclass(frozen=True)
-class Balance:
+@dataclass(frozen=True, repr=False)
+class Balance(PrintsSummary):
     """Counterweights of a mechanism with one drive, and what they do.
 
     Attributes

@@ -49,6 +49,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.round_scales import FORCE_SCALES, round_scale
+from centrode.printing import PrintsSummary
 from centrode.quantities import status_word
 from centrode.structure.plan import Structure
 
@@ -328,8 +329,8 @@ class GroupForces:
     marks: tuple[tuple[str, complex], ...] = ()
 
 
-@dataclass(frozen=True)
-class ForcePolygons:
+@dataclass(frozen=True, repr=False)
+class ForcePolygons(PrintsSummary):
     """Forces of a mechanism at an instant, by hand.
 
     Attributes

@@ -13,6 +13,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import FlywheelShape
+from centrode.printing import PrintsSummary
 
 # Sizes of flywheels of a given moment of inertia: a rim on thin spokes, a disc.
 #
@@ -104,8 +105,8 @@ def by_source(inertia: float, speed: float, *, rim: bool) -> Wheel:
     return Wheel(outer, inner, width, mass, real, 0.5 * speed * outer)
 
 
-@dataclass(frozen=True)
-class Flywheel:
+@dataclass(frozen=True, repr=False)
+class Flywheel(PrintsSummary):
     """A machine's energies over a cycle and the flywheel it needs; what is None belongs to a fluctuation not given.
 
     Angles turned [rad] count from the initial position in the sense in which the drive turns.

@@ -26,6 +26,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.arrays import ARRAYS
+from centrode.printing import PrintsSummary
 from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
 
@@ -189,8 +190,8 @@ class End:
     group: str
 
 
-@dataclass(frozen=True)
-class Limits:
+@dataclass(frozen=True, repr=False)
+class Limits(PrintsSummary):
     """Between which values a drive can move while the others are held.
 
     Attributes
