@@ -67,15 +67,15 @@ def test_names_come_out_character_by_character(other: str, hostile: str, tmp_pat
     rotatability = ct.rotatability(mechanism)
     printed = ct.summary(rotatability)
     assert (
-        f"{other} and {hostile} fall in line, stretched out (C and D are 2 m apart): sin(phi3 - phi4) = 0"
+        f"{other} and {hostile} are collinear, extended (C and D are 2 m apart): sin(phi3 - phi4) = 0"
         in printed
     )
     assert f"driven at {hostile}: " in printed and f"loop frame-{hostile}-{other}-C" in printed
     assert f"\nlinks.{hostile}.angle  " in ct.summary(found.repair)
     data = recorded(rotatability, tmp_path)
-    assert data["limits"][0]["cause"].startswith(f"{other} and {hostile} fall in line, stretched out")
+    assert data["limits"][0]["cause"].startswith(f"{other} and {hostile} are collinear, extended")
     assert data["limits"][0]["condition"] == "sin(phi3 - phi4) = 0"
-    for language, line in (("en", "fall in line"), ("ru", ""), ("uk", "")):
+    for language, line in (("en", "are collinear"), ("ru", ""), ("uk", "")):
         choose_language(language)
         chapter = document_chapter("rotatability", ROTATABILITY.view(found), Numbers(mechanism.display))
         cells = [text.replace(r"\$", "$") for text in texts_of((chapter,))]

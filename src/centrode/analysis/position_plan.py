@@ -96,8 +96,8 @@ def plan_of_positions(
     if isinstance(positions, bool) or not 2 <= positions <= MOST:
         raise InputError(
             "positions",
-            _("{count} positions were asked for").format(count=positions),
-            _("ask for 2 to {most}").format(most=MOST),
+            _("{count} positions are given").format(count=positions),
+            _("give 2 to {most}").format(most=MOST),
         )
     path = motion(mechanism, SAMPLES)
     ok = path["status"].to_numpy() == Status.OK
@@ -140,7 +140,7 @@ def _open_plan(
     reached = np.flatnonzero(ok)
     if reached.size < 2:
         raise MotionError(
-            "positions", _("the mechanism is reached nowhere in its range"), _("see the limits")
+            "positions", _("no position of the mechanism is reached in its range"), _("see the limits")
         )
     start = reached[np.argmin(np.abs(path["time"].to_numpy()[reached]))]
     # from the initial position outwards: what is reached beyond a gap belongs to another stretch of the
@@ -161,7 +161,7 @@ def _refuse_unknown(mechanism: Mechanism, link: str) -> None:
     if link not in known:
         raise InputError(
             "link",
-            _("{link} is no link and no guide of the mechanism").format(link=link),
+            _("{link} is neither a link nor a guide of the mechanism").format(link=link),
             _("one of: {names}").format(names=", ".join(known)),
         )
 
@@ -181,8 +181,8 @@ def _extremes(
     if not stops:
         raise InputError(
             "link",
-            _("{link} never stands still: it has no extreme position").format(link=link),
-            _("name a rocker or a guide, or leave it out"),
+            _("the velocity of {link} never vanishes: it has no extreme position").format(link=link),
+            _("name a rocker or a guide, or omit it"),
         )
     return link, stops
 

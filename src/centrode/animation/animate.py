@@ -116,8 +116,8 @@ def check_shown(mechanism: Mechanism, shown: Shown) -> None:
     }
     for name, (given, kinds) in needs.items():
         if given and not set(kinds) & set(shown.what):
-            what = _("it says how to show {kinds}, which are not shown").format(kinds=", ".join(kinds))
-            raise InputError(name, what, _("show them, or take it out"))
+            what = _("it controls how {kinds} are shown, which are not shown").format(kinds=", ".join(kinds))
+            raise InputError(name, what, _("show them, or remove it"))
 
 
 def layers_of(film: Film, scene: LinkageScene | Globe, shown: Shown) -> list[Layer]:
@@ -140,7 +140,7 @@ def coupler(mechanism: Mechanism, against: str) -> str:
     others = [name for name in mechanism.link_names if name != against]
     free = [name for name in others if not fixed & set(mechanism.links[name].coordinates)]
     if not others:
-        raise InputError("link", _("there is no link that could roll"), _("take centrodes out"))
+        raise InputError("link", _("there is no link that could roll"), _("remove centrodes"))
     return (free or others)[0]
 
 
@@ -202,7 +202,7 @@ def animate(
         need_video()
     if isinstance(described, Cam | PlateCam):
         if shown is not None or start is not None or stop is not None:
-            raise InputError("show", _("a cam is shown as a whole"), _("take it out"))
+            raise InputError("show", _("a cam is shown as a whole"), _("remove it"))
         found: Animation = _of_cams().animate_cam(described, path, pace, size, dark, said)
         return found
     shown = shown or Shown()
@@ -246,7 +246,7 @@ def _about(course: Course) -> list[str]:
     if course.turns > 1:
         found.append(
             ngettext(
-                "{n} turn of the drive in a round", "{n} turns of the drive in a round", course.turns
+                "{n} turn of the drive in a loop", "{n} turns of the drive in a loop", course.turns
             ).format(n=course.turns)
         )
     return found
@@ -311,7 +311,7 @@ def animate_centrodes(
     """Write an animation (GIF or MP4) of one centrode rolling on the other; raises InputError where nothing rolls."""
     if int((centrodes["centrode_piece"].to_numpy() >= 0).sum()) < 2:
         raise InputError(
-            "link", _("there is no centrode in this range"), _("ask for another link or another range")
+            "link", _("there is no centrode in this range"), _("choose another link or another range")
         )
     film = film_from(course_from(mechanism, motion), FRAMES)
     scene = scene_of_film(film)

@@ -275,7 +275,7 @@ def equations(mechanism: Mechanism, points: Sequence[str] | None = None) -> Equa
 def _check_moving(board: Lettering, point: str) -> None:
     if point not in board.moving:
         known = ", ".join(board.moving)
-        raise InputError(point, _("it is no moving point"), _("one of: {points}").format(points=known))
+        raise InputError(point, _("this is not a moving point"), _("one of: {points}").format(points=known))
 
 
 def _rates(board: Lettering, draft: Draft, given: Given) -> LinearSystem:

@@ -83,7 +83,9 @@ def cam_from(
         return parse_tables(Cam, mapping, where, folder, bare_angles)
     other = [key for key in _OF_CURVATURE if key in mapping]
     if other:
-        what = _("{one} and {other} do not go together: a cam has a curvature law, or a follower's lift")
+        what = _(
+            "{one} and {other} exclude each other: a cam has either a curvature law or a follower's lift"
+        )
         told = what.format(
             one=f"[{other[0]}]", other="[follower]" if given[0] == "follower" else "[[segments]]"
         )

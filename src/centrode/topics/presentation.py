@@ -233,6 +233,6 @@ def open(path: str | Path) -> xarray.Dataset:
     """
     dataset = render.read_dataset(Path(path))
     if not is_result(dataset):
-        what = _("it is no result: it names no topic, or no description")
+        what = _("it is not a result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))
     return dataset

@@ -86,6 +86,6 @@ def need_few_instants(_mechanism: Mechanism, *, instants: Sequence[float] = (), 
     if len(instants) > MOST_INSTANTS:
         raise InputError(
             "--at",
-            _("{count} instants were asked for").format(count=len(instants)),
-            _("ask for at most {most}").format(most=MOST_INSTANTS),
+            _("{count} instants are given").format(count=len(instants)),
+            _("give at most {most}").format(most=MOST_INSTANTS),
         )

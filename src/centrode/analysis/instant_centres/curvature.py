@@ -96,14 +96,14 @@ def curvature(
     mechanism, places = _source_mechanism(source, at)
     if mechanism.space == "sphere":
         raise NotComputedYet(
-            "space", _("curvature is not computed on the sphere"), _("ask for a planar mechanism")
+            "space", _("curvature is not computed on the sphere"), _("choose a planar mechanism")
         )
     for name in (link, against):
         _check_body(mechanism, name)
     if link == against:
-        what = _("{name} does not move against itself")
+        what = _("{name} does not move relative to itself")
         if link == FRAME:
-            what = _("the frame does not move against itself")
+            what = _("the frame does not move relative to itself")
         raise InputError("link", what.format(name=link))
     prepared = ready(mechanism)
     if places is None:

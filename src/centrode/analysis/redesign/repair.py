@@ -475,7 +475,7 @@ def _angle(given: Value | None, display: Display) -> float:
     if not 0.0 < value < pi / 2:
         raise InputError(
             "least_transmission_angle",
-            _("it lies between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
+            _("it must lie between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
             _('write "20 deg"'),
         )
     return value
@@ -486,7 +486,7 @@ def _check_repairable(prepared: Ready) -> None:
     if len(mechanism.drives) != 1:
         raise InputError(
             "[[drives]]",
-            _("a repair makes one drive turn; {n} are given").format(n=len(mechanism.drives)),
+            _("a repair is computed for one drive; {n} are given").format(n=len(mechanism.drives)),
             _("give one drive"),
         )
     if mechanism.drives[0].kind != "angle":
@@ -504,7 +504,7 @@ def _check_repairable(prepared: Ready) -> None:
     for present, what in lacking:
         if present:
             raise NotComputedYet(
-                "--repair", _("no repair is computed of {what}").format(what=what), _("change it by hand")
+                "--repair", _("no repair is computed for {what}").format(what=what), _("change it by hand")
             )
 
 

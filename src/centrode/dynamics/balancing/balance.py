@@ -219,9 +219,9 @@ def balance(
 
 def _check(to: str, speed: str, moment: bool) -> None:
     if to not in KINDS:
-        what = _("{name} is no way to balance").format(name=f'"{to}"')
+        what = _("{name} is not a balancing method").format(name=f'"{to}"')
         raise InputError("to", what, _("use one of {known}").format(known=", ".join(KINDS)))
     check_speed(speed)
     if moment and to != "full":
-        what = _("discs balance the shaking moment only where the force is balanced fully")
+        what = _("discs balance the shaking moment only if the shaking force is balanced fully")
         raise InputError("moment", what, _('use to = "full"'))

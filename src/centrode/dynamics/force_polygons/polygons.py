@@ -182,7 +182,7 @@ def scale_of(vectors: Sequence[PolygonVector], room: Size) -> float:
 def sheet_of(paper: str) -> Size:
     """Width and height [mm] of a sheet across; InputError for a name that is none."""
     if paper not in PAPERS:
-        what = _("{paper} is no size of paper here").format(paper=f'"{paper}"')
+        what = _("{paper} is not a supported paper size").format(paper=f'"{paper}"')
         known = _("one of: {names}").format(names=", ".join(PAPERS))
         raise InputError("paper", what, nearest(paper, PAPERS) or known)
     return PAPERS[paper]

@@ -240,7 +240,7 @@ def _settle(
         return settled
     raise MotionError(
         "[machine]",
-        _("loads that depend on the speed and the speed itself do not settle after {count} rounds").format(
+        _("speed-dependent loads and the speed do not converge in {count} iterations").format(
             count=MOST_ITERATIONS
         ),
         _("give more inertia, or a smaller fluctuation"),
@@ -344,8 +344,8 @@ def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLi
         if isinstance(count, bool) or not 1 <= count <= reading.SAMPLES:
             raise InputError(
                 _("samples"),
-                _("{samples} samples were asked for").format(samples=count),
-                _("ask for 1 to {most}").format(most=reading.SAMPLES),
+                _("{samples} samples are given").format(samples=count),
+                _("give 1 to {most}").format(most=reading.SAMPLES),
             )
         return np.linspace(0.0, cycle.period, count)
     instant = found.prepared.parameter.instant
@@ -361,7 +361,7 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
     if method not in METHODS:
         raise InputError(
             "method",
-            _("{name} is not a way to compute the speed").format(name=f'"{method}"'),
+            _("{name} is not a method of computing the speed").format(name=f'"{method}"'),
             _("use one of {known}").format(known=", ".join(METHODS)),
         )
     cycle = found.cycle

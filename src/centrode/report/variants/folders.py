@@ -226,8 +226,8 @@ def _write_summary(variants: Variants, folder: Path, spelling: TableSpelling) ->
 
 def _check_jobs(jobs: object) -> None:
     if isinstance(jobs, bool) or not isinstance(jobs, int) or not 1 <= jobs <= MOST_JOBS:
-        what = _("{jobs} processes were asked for").format(jobs=jobs)
-        raise InputError("jobs", what, _("ask for 1 to {most}").format(most=MOST_JOBS))
+        what = _("{jobs} processes are given").format(jobs=jobs)
+        raise InputError("jobs", what, _("give 1 to {most}").format(most=MOST_JOBS))
 
 
 def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[VariantRow]:
@@ -254,9 +254,9 @@ def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
             for future in as_completed(futures):
                 yield future.result()
         except BrokenProcessPool as broken:
-            what = _("a process was ended from outside")
+            what = _("a process was killed")
             raise InputError(
-                "", what, _("what is finished stays; the same command goes on from there")
+                "", what, _("finished results are kept; the same command resumes from there")
             ) from broken
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
