@@ -63,13 +63,13 @@ def plan_of_positions(
     Parameters
     ----------
     positions : int
-        How many, 2 to 36; courseworks ask for 12 or 24. 12 if left out.
+        How many, 2 to 36; courseworks use 12 or 24. 12 by default.
     link : str, optional
         A link, or a guide by its id, whose velocity vanishes in position 0; the last that swings to and fro if
-        left out. Where the drive makes no full turn, positions run from one end of the range to the other instead.
+        omitted. Where the drive makes no full turn, positions run from one end of the range to the other instead.
 
     points : sequence of names, optional
-        Points whose places a document lists; those on guides of the frame if left out, without such all that move.
+        Points whose places a document lists; those on guides of the frame by default, without such all that move.
 
     Raises
     ------

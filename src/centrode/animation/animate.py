@@ -162,7 +162,7 @@ def animate(
 ) -> Animation:
     """Write an animation, GIF or MP4 by the ending of its name, that runs on without a jump.
 
-    A drive that turns fully runs round; where the mechanism is limited, or a range is asked for that does not close,
+    A drive that turns fully runs round; where the mechanism is limited, or a range is requested that does not close,
     the motion runs there and back. View and scales of vectors stay the same over the whole animation.
 
     Parameters
@@ -172,7 +172,7 @@ def animate(
     path : str or Path
         The file; it appears whole or not at all, and replaces one that is there.
     shown : Shown
-        What is shown beside the links; the paths of the points if left out. A cam takes none.
+        What is shown beside the links; the paths of the points by default. A cam takes none.
     pace : Pace
         Frames, frames a second, duration or speed.
     start, stop : float [rad or m, or s], or texts with a unit

@@ -447,7 +447,7 @@ def loads_of(
     InputError
         A weight without direction or amount.
     NotComputedYet
-        Friction by a coefficient.
+        Coulomb friction.
     """
     loads = mechanism.loads if described is None else described
     labels = _labels(loads, mechanism, masses)
@@ -633,7 +633,7 @@ class MassesAndLoads:
         InputError
             Neither masses nor loads, or some that are not complete.
         NotComputedYet
-            Friction by a coefficient.
+            Coulomb friction.
         """
         return cls._of(mechanism, given, m, mechanism.loads)
 

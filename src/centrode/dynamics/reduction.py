@@ -414,7 +414,7 @@ def reduce(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction by a coefficient.
+        Coulomb friction.
 
     Examples
     --------

@@ -231,7 +231,7 @@ def equations(mechanism: Mechanism, points: Sequence[str] | None = None) -> Equa
     Parameters
     ----------
     points : names of points, optional
-        Whose velocities are written out; those on guides of the frame if left out.
+        Whose velocities are written out; those on guides of the frame by default.
 
     Raises
     ------

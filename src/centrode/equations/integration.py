@@ -590,7 +590,7 @@ def integrate(
     tolerance : float
         Of the adaptive method, relative and absolute, for each step: rad, and parts of the greatest length.
     stop : float [rad or m, or s], or a text with a unit
-        Last value of the drive, a time where the drive is a law or there are several; one turn if left out.
+        Last value of the drive, a time where the drive is a law or there are several; one turn by default.
 
     Returns
     -------

@@ -49,7 +49,7 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
     where : str
         What messages call the text, such as the name of its file.
     folder : Path
-        Where the points of a spline lie; the current folder if left out.
+        Where the points of a spline lie; the current folder by default.
 
     Raises
     ------

@@ -55,14 +55,14 @@ class Drive(DescriptionPart):
     relative_to : str
         The link an angle is measured from.
     start : float [rad or m]
-        Value at t = 0, without the law's own value there; from the initial position if left out.
+        Value at t = 0, without the law's own value there; from the initial position by default.
     speed, law, table, segments, cam : float [rad/s or m/s], formula in t, rows of (time, value), Segments, PlateCam
         One of them. In a file, `table` may be the path of a CSV file beside it, `cam` that of a cam's description or
         the name of a built-in one.
     repeat : bool
         Whether the segments follow each other again and again.
     cam_speed : float [rad/s]
-        Of the cam; its description's own if left out.
+        Of the cam; its description's own by default.
     cam_angle : float [rad]
         Of the cam at t = 0.
     cam_point : str

@@ -39,7 +39,7 @@ class ReportOptions:
     ----------
     chapters : names of chapters, in any order; all that apply if nobody chooses
     instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives]
-    points : names of points whose velocities and paths are told
+    points : names of points whose velocities and paths are given
     digits : significant digits of numbers
 
     Examples

@@ -222,7 +222,7 @@ def write(result: Any, folder: str | Path) -> None:
 def open(path: str | Path) -> xarray.Dataset:
     """A dataset of a result from the netCDF file that a command or `ct.write` wrote.
 
-    Raises InputError for a file that cannot be read, and for one that is no result of centrode.
+    Raises InputError for a file that cannot be read, and for one that is not a result of centrode.
 
     Examples
     --------

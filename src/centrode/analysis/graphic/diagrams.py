@@ -253,7 +253,7 @@ def diagrams(
         The sphere, where diagrams do not apply; a group that needs more than two trials; steps out of range; scales
         with which a drawing does not go on the page.
     MotionError
-        The mechanism does not close there, or stands at a limit, a change point or a dead point.
+        The mechanism does not close there, or stands at a limit, a change point or a dead position.
     """
     if mechanism.space != "plane":
         raise InputError(

@@ -46,7 +46,7 @@ def graphic_analysis(
     Parameters
     ----------
     instants : values of the drive [rad or m], times [s], or texts with a unit, as `at` of `motion`; those of
-        the study if left out, else the initial position
+        the study by default, else the initial position
     angle_step, length_step, scales : as of `graphic_check`
     incomplete : an instant that cannot be drawn fails alone, and the others are drawn
 

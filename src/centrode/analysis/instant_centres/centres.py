@@ -314,7 +314,7 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
         As `motion` returns it; a batch too.
     pairs : sequence of (body, body), optional
         Names of links, "frame", or sliders ("slider C": a point on a guide without a link of its own). All
-        pairs if left out, each the later body against the earlier one.
+        pairs by default, each the later body against the earlier one.
 
     Returns
     -------

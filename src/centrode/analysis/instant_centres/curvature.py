@@ -59,7 +59,7 @@ def curvature(
     link, against : str
         Bodies: links, "frame", sliders ("slider C"); the paths are those that `against` sees.
     at : (n,) values of the drive [rad or m], times [s] where it is a law or there are several, or texts with a unit
-        Of a motion its samples if left out.
+        Of a motion its samples by default.
     points : name -> (x, y) [m], optional
         Further points of the link, in its own axes.
 

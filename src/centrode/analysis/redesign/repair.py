@@ -408,7 +408,7 @@ def repair(
         Left out: half a turn to both sides, half to double of a length, half the greatest length to both sides of
         a coordinate.
     least_transmission_angle : float [rad] or text
-        What every dyad keeps all over the turn; 1 degree if left out.
+        What every dyad keeps all over the turn; 1 degree by default.
     progress : called with (candidates evaluated, candidates in all at most)
 
     Returns
@@ -421,7 +421,7 @@ def repair(
     Raises
     ------
     InputError
-        A path or bound is wrong, the drive is no angle or not the only one.
+        A path or bound is wrong, the drive is not an angle or not the only one.
     NotComputedYet
         Groups of higher class, gears and rolling wheels.
 

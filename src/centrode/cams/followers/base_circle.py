@@ -444,16 +444,16 @@ def best_offset(layout: FollowerLayout, motion: ContactMotion, kept: Admissible)
 def follower_cam(cam: AnyCam) -> FollowerCam:
     """The cam of a description with a follower.
 
-    Where `[cam] base_radius` is left out it is the least that `[bounds]` admits.
+    Where `[cam] base_radius` is omitted it is the least that `[bounds]` admits.
 
     Raises
     ------
     InputError
         A cam that is given by a curvature law; neither a base radius nor bounds that decide one; a follower that
         cannot be led; a profile that is undercut, unless `[study] show_undercut` is set: the least radius that is not
-        is told.
+        is given.
     MotionError
-        No base radius keeps the bounds.
+        No base radius satisfies the bounds.
 
     Examples
     --------
@@ -497,7 +497,7 @@ def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
     InputError
         A cam that is given by a curvature law; an oscillating follower has no offset.
     MotionError
-        No base radius keeps the bounds.
+        No base radius satisfies the bounds.
     """
     plate = with_follower(cam)
     find = best_offset if offset else least_base_radius

@@ -750,7 +750,7 @@ def choose_cam(
     Returns
     -------
     CamChoice
-        Also where no design keeps all bounds: then with the one whose worst miss is least.
+        Also where no design satisfies all bounds: then with the one whose worst miss is least.
 
     Raises
     ------

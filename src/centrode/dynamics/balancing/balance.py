@@ -123,9 +123,9 @@ def balance(
         Left out: those hinged to the frame; for "full" as few as are enough, and others where these are not.
     to : "full", "least" or "fraction"
         Shaking force zero; the least greatest effects; for a slider-crank, what turns with the crank's pin and a
-        `fraction` of what moves to and fro.
+        `fraction` of the reciprocating masses.
     radius : length, or link -> length
-        From the point to the counterweight's centre; half the way to the link's farthest point if left out.
+        From the point to the counterweight's centre; half the way to the link's farthest point by default.
     most : mass, or link -> mass
         Greatest mass of a counterweight.
     thickness, density : length, density

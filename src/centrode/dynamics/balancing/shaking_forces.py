@@ -540,7 +540,7 @@ def shaking(
     samples, start, stop, at
         As for `motion`; in steady motion as for `steady_motion`, over its cycle.
     about : name of a point of the frame, or (x, y) [m]
-        What moments are taken about; the frame's origin if left out.
+        Reference point of moments; the frame's origin by default.
     speed : "mean" or "steady"
         The machine's mean speed, or the drive's own where there is none; or the real one of `steady_motion`.
     orders : int

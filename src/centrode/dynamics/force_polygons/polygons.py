@@ -402,7 +402,7 @@ def force_polygons(mechanism: Mechanism, at: float | str, paper: str = "A4") -> 
     NotComputedYet
         The sphere; friction; constraints that repeat each other, so that reactions are not determined.
     MotionError
-        The mechanism does not close there, or stands at a limit, a change point or a dead point.
+        The mechanism does not close there, or stands at a limit, a change point or a dead position.
 
     Examples
     --------

@@ -500,7 +500,7 @@ def reactions(
     speed : "mean" or "steady"
         The speed of `reduce`, or the real one of a machine in steady motion.
     friction
-        Whether friction by coefficients counts; where there is any, `friction_moment`, `friction_force`,
+        Whether Coulomb friction counts; where there is any, `friction_moment`, `friction_force`,
         `friction_power`, `efficiency` and more tell it (docs: friction).
 
     Returns
@@ -515,7 +515,7 @@ def reactions(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction by a coefficient on the sphere, and at the real speed.
+        Coulomb friction on the sphere, and at the real speed.
 
     Examples
     --------

@@ -364,7 +364,7 @@ def simulate(
     Raises
     ------
     InputError
-        No settings, several drives, nothing with mass, a start at a dead point.
+        No settings, several drives, nothing with mass, a start at a dead position.
     MotionError
         Nothing sets it in motion, or a formula has no value on the way.
 

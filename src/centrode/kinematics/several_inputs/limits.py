@@ -241,11 +241,11 @@ def limits(
     Parameters
     ----------
     drive : str
-        Which drive moves; may be left out where there is one.
+        Which drive moves; may be omitted where there is one.
     held : drive -> value [rad or m, or a text with a unit]
         Values of the others; those not named keep their initial ones.
     about : float or text
-        The value from which it moves; its initial one if left out.
+        The value from which it moves; its initial one by default.
 
     Returns
     -------

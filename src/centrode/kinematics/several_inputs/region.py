@@ -316,7 +316,7 @@ def reachable_region(
     Parameters
     ----------
     drives : two names
-        May be left out where there are two.
+        May be omitted where there are two.
     ranges : drive -> (first, last) [rad or m, or texts with units]
         They hold the initial values. Left out: one turn about the initial value of an angle; the limits of a
         displacement with the other drives at their initial values, and a little beyond. A range of one turn goes

@@ -177,7 +177,7 @@ def write_variants(
         Draw the figures of each.
     progress : called with (variants done, variants in all)
     more : writes further files of each variant into its folder
-    spelling : workbooks, decimal commas; plain CSV alone if left out
+    spelling : workbooks, decimal commas; plain CSV alone by default
 
     Returns
     -------
