@@ -65,8 +65,8 @@ def plan_of_positions(
     positions : int
         How many, 2 to 36; courseworks use 12 or 24. 12 by default.
     link : str, optional
-        A link, or a guide by its id, whose velocity vanishes in position 0; the last that swings to and fro if
-        omitted. Where the drive makes no full turn, positions run from one end of the range to the other instead.
+        A link, or a guide by its id, whose velocity vanishes in position 0; the last that swings by
+        default. Where the drive makes no full turn, positions run from one end of the range to the other instead.
 
     points : sequence of names, optional
         Points whose places a document lists; those on guides of the frame by default, without such all that move.

@@ -197,7 +197,7 @@ class Uncounted(Enum):
     """Why the circuits of a mechanism are not counted."""
 
     HIGHER_CLASS = mark(
-        "not counted: the assembly modes of a group of higher class cannot be told apart by signs"
+        "not counted: the assembly modes of a group of higher class cannot be distinguished by signs"
     )
     WHEELS = mark("not counted: wheels may mesh in any position")
     TOO_MANY = mark("not counted: more than {most} groups with two sides")

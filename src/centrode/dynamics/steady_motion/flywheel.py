@@ -113,7 +113,7 @@ class Flywheel:
     ----------
     mechanism : the machine
     mean : "middle" or "time"
-        What the mean speed is: half of greatest plus least, or turns over time.
+        What the mean speed is: half of greatest plus least, or the average over time.
     mean_speed, fluctuation : float [rad/s], [1]
     turns : int
         Of the drive in a cycle.
@@ -176,12 +176,12 @@ class Flywheel:
 
 
 def flywheel(mechanism: Mechanism, mean: MeanSpeed = "middle") -> Flywheel:
-    """The flywheel that gives a machine the fluctuation its `[machine]` asks for.
+    """The flywheel that gives a machine the fluctuation its `[machine]` requires.
 
     Parameters
     ----------
     mean : "middle" or "time"
-        What `mean_speed` is: half of greatest plus least speed, or turns over time.
+        What `mean_speed` is: half of greatest plus least speed, or the average over time.
 
     Returns
     -------

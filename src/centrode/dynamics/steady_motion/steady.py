@@ -308,7 +308,7 @@ def steady_motion(
     at : (n,) values of the drive [rad]
         Exactly these places instead; whole cycles are taken out of them.
     mean : "middle" or "time"
-        What the mean speed is: half of greatest plus least, or turns over time.
+        What the mean speed is: half of greatest plus least, or the average over time.
     method : "exact" or "first-order"
         The speed by the energy equation, or by the coursework's first-order formula.
 
