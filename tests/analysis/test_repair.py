@@ -242,7 +242,11 @@ def test_none_found_claims_nothing(tmp_path: Path) -> None:
         ("triple-rocker", {"bounds": {"links.AB.length": (-1, 4)}}, "a length must be positive"),
         ("triple-rocker", {"bounds": {"links.AB.length": (4, 2)}}, "its lower bound is above its upper one"),
         ("triple-rocker", {"bounds": {"links.AB.length": ("1 kg", 4)}}, "links.AB.length"),
-        ("triple-rocker", {"vary": ["links.OA.length"], "bounds": {"links.AB.length": (1, 4)}}, "not among"),
+        (
+            "triple-rocker",
+            {"vary": ["links.OA.length"], "bounds": {"links.AB.length": (1, 4)}},
+            "not one of the varied numbers",
+        ),
         ("triple-rocker", {"vary": ["drives.OA.speed"]}, "names no dimension"),
         ("triple-rocker", {"vary": ["links.AB.length"] * 2 + ["frame.points.D.x"] * 20}, None),
         ("triple-rocker", {"least_transmission_angle": "95 deg"}, "between 0 and 90 deg"),

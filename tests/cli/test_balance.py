@@ -112,7 +112,7 @@ def test_dark_pictures(centrode: Centrode, folder: Path) -> None:
         (("single-cylinder-engine", "--weights", "1,0,0"), 2, "are used with --least-maximum only"),
         (("single-cylinder-engine", "--least-maximum", "--weights", "1;0"), 2, "weights"),
         (("single-cylinder-engine", "--moment", "--least-maximum"), 2, "balanced fully"),
-        (("single-cylinder-engine", "--moment"), 3, "the inertia of rod is"),
+        (("single-cylinder-engine", "--moment"), 3, "the moment of inertia of rod is"),
         (("single-cylinder-engine", "--radius", "crank=0"), 2, "must be positive"),
         (("single-cylinder-engine", "--radius", "crank=1", "--radius", "crank=2"), 2, "given twice"),
         (("single-cylinder-engine", "--radius", "1 mm", "--radius", "2 mm"), 2, "NAME=VALUE"),

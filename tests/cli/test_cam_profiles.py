@@ -87,7 +87,7 @@ def test_what_is_impossible_ends_with_3_and_is_told_once(centrode: Centrode, whe
         ("legs = 4", 'legs = 4\nworking_arc = ["-1 rad", "0.5 rad"]', "the same angle on both sides"),
         ('"15 mm"', '"15 kg"', "kg"),
         ('"15 mm"', '"-15 mm"', "positive"),
-        ("symmetric = true", "symmetric = false", "the path from 0 to 90 deg"),
+        ("symmetric = true", "symmetric = false", "the path 0 to 90 deg"),
     ],
 )
 def test_wrong_input_ends_with_2_without_a_traceback(

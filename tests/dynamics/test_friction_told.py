@@ -181,7 +181,11 @@ REFUSED: dict[str, tuple[Any, Any, str]] = {
         {"kind": "friction", "point": "A", "value": 3},
         "is used with Coulomb friction only",
     ),
-    "value and pin": (FOUR, {"kind": "friction", "link": "AB", "value": 3, "pin": "OA"}, '"pin" belongs to'),
+    "value and pin": (
+        FOUR,
+        {"kind": "friction", "link": "AB", "value": 3, "pin": "OA"},
+        '"pin" is used with',
+    ),
     "unknown guide": (FOUR, guide(guide="Z"), "unknown guide"),
     "radius in a guide": (SLIDER, guide(radius=1), "is used with friction in a hinge only"),
     "both": (SLIDER, guide(point="B"), "acts on one of"),

@@ -208,7 +208,7 @@ LOADS: dict[str, tuple[dict[str, Any], str]] = {
     "negative": ({"kind": "friction", "link": "AB", "value": -1}, "value must not be negative"),
     "backwards": ({"kind": "friction", "link": "AB", "quadratic": -1}, "quadratic must not be negative"),
     "two ways": ({"kind": "friction", "link": "AB", "value": 1, "coefficient": 0.1}, "are given together"),
-    "plain": ({"kind": "friction", "link": "AB", "value": 1, "form": "plain sum"}, "a plain sum is used"),
+    "plain": ({"kind": "friction", "link": "AB", "value": 1, "form": "plain sum"}, "the plain sum is used"),
     "form": ({"kind": "friction", "link": "AB", "value": 1, "form": "sum"}, 'expected one of "virtual work"'),
     "unknown axis": ({"kind": "torque", "link": "AB", "value": 1, "axis": "Q"}, 'unknown point "Q"'),
     "no axis": ({"kind": "torque", "link": "AB", "value": 1, "axis": [0, 0, 0]}, "a direction must not be zero"),

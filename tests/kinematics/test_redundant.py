@@ -73,7 +73,9 @@ def test_a_bar_of_wrong_length_is_refused_with_its_residual(bar: str, length: fl
     with pytest.raises(ct.InputError, match="the residual of this constraint is") as caught:
         ct.motion(double_parallelogram(**{bar: length + off}))
     assert f"length of link {bar}: " in str(caught.value)
-    assert f"off by {abs(off):.3g} m; it repeats other constraints" in str(caught.value)
+    assert f"residual of this constraint is {abs(off):.3g} m; it repeats other constraints" in str(
+        caught.value
+    )
 
 
 def test_bars_of_wrong_length_in_a_batch_are_open() -> None:

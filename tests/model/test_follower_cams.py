@@ -239,7 +239,7 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
         ('contact = "roller"\nroller_radius = "10 mm"', 'contact = "roller"', '"roller_radius" is missing'),
         ('contact = "roller"', 'contact = "knife"', '"roller_radius" is used with a roller only; remove it'),
         ('contact = "roller"', 'contact = "ball"', 'expected one of "knife", "roller", "flat"'),
-        ('offset = "-6 mm"', 'arm = "6 mm"', '"arm" is used with an oscillating follower only'),
+        ('offset = "-6 mm"', 'arm = "6 mm"', '"arm" is used with an oscillating follower'),
         ('mass = "500 g"', 'inertia = "500 kg*mm^2"', '"inertia" is used with an oscillating follower only'),
         (
             'stiffness = "5 N/mm"',
