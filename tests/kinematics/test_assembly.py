@@ -89,7 +89,7 @@ def test_initial_angles_hold_to_five_degrees(off: float, refused: bool) -> None:
     parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0, assembly={}))
     parts["links"]["DB"]["angle"] = float(right["angle"].sel(link="DB")[0]) + np.radians(off)
     if refused:
-        with pytest.raises(ct.InputError, match=rf"it has .* deg, a difference of {abs(off):.3g} deg off"):
+        with pytest.raises(ct.InputError, match=rf"it has .* deg, a difference of {abs(off):.3g} deg"):
             started(ct.Mechanism(**parts))
     else:
         found = started(ct.Mechanism(**parts))
@@ -113,7 +113,7 @@ def test_an_initial_angle_that_contradicts_the_side_is_a_mistake() -> None:
     parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0))
     right = started(four_bar(1.0, 3.5, 3.0, 4.0))
     parts["links"]["DB"]["angle"] = float(right["angle"].sel(link="DB")[0]) + np.radians(46.0)
-    with pytest.raises(ct.InputError, match="46 deg off"):
+    with pytest.raises(ct.InputError, match="a difference of 46 deg"):
         started(ct.Mechanism(**parts))
 
 
@@ -139,7 +139,7 @@ def test_a_flat_triangle_does_not_tell_its_side() -> None:
     flat = four_bar(1.0, 1.5, 1.5, 4.0, assembly={}, drives=[{"link": "OA", "start": 0.0, "speed": 1.0}])
     with pytest.raises(ct.InputError, match="its triangle is degenerate in the initial position"):
         started(flat)
-    with pytest.raises(ct.InputError, match="flat"):
+    with pytest.raises(ct.InputError, match="degenerate"):
         parts = parts_of(ct.example("kite"))
         parts["drives"][0]["start"] = np.pi
         parts["links"]["AB"]["angle"] = 0.0
