@@ -21,7 +21,7 @@ def test_what_stops_a_mechanism_is_printed_and_written(centrode: Centrode, folde
     assert done.out.startswith("Slider between two cranks, locking\n\n")
     assert done.rows["turns fully"] == "no"
     assert done.rows["upper limit"] == "OA = 1.79991242 rad (103.127 deg), group CB-BD (point B)"
-    assert "CB and BD are collinear, extended (C and D are 2 m apart): sin(phi3 - phi4) = 0" in done.out
+    assert "CB and BD are collinear, extended (distance of C and D: 2 m): sin(phi3 - phi4) = 0" in done.out
     assert done.rows["loop frame-OA-AC-C"] == "slider-crank, the crank turns fully"
     assert done.out.endswith("wrote found.json\n")
     data = json.loads((folder / "found.json").read_text(encoding="utf-8"))

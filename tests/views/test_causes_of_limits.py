@@ -67,7 +67,7 @@ def test_names_come_out_character_by_character(other: str, hostile: str, tmp_pat
     rotatability = ct.rotatability(mechanism)
     printed = ct.summary(rotatability)
     assert (
-        f"{other} and {hostile} are collinear, extended (C and D are 2 m apart): sin(phi3 - phi4) = 0"
+        f"{other} and {hostile} are collinear, extended (distance of C and D: 2 m): sin(phi3 - phi4) = 0"
         in printed
     )
     assert f"driven at {hostile}: " in printed and f"loop frame-{hostile}-{other}-C" in printed
@@ -92,5 +92,5 @@ def test_lengths_of_a_record_are_in_si(tmp_path: Path) -> None:
     arm = ct.rotatability(ct.example("excavator-arm"))
     assert "(O and K are 710.634 mm apart)" in ct.summary(arm)
     data = recorded(arm, tmp_path)
-    assert data["limits"][0]["cause"].endswith("(O and K are 0.710634 m apart)")
+    assert data["limits"][0]["cause"].endswith("(distance of O and K: 0.710634 m)")
     assert data["four_bars"][0]["inequality"].startswith("1.04426 m > 1.02407 m: ")
