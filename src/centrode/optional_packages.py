@@ -27,7 +27,7 @@ def telling_what_is_missing(load: Callable[Asked, Found]) -> Callable[Asked, Fou
                 repair = _("{repair}, or pass --no-figures").format(repair=how_to_install("figures"))
             elif library == "xlsxwriter":
                 what = _("workbooks need XlsxWriter, which is not installed")
-                repair = _("{repair}, or take the CSV files").format(repair=how_to_install("tables"))
+                repair = _("{repair}, or use the CSV files").format(repair=how_to_install("tables"))
             else:
                 raise
             raise InputError("", what, repair) from missing

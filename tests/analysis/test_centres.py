@@ -137,7 +137,7 @@ def test_the_worked_mechanism_translates_at_a_quarter_turn() -> None:
     c = np.sqrt(1.0 - (np.sin(0.5) - 0.5) ** 2) + 1j * np.sin(0.5)
     d = 0.5 + np.exp(0.5j) + 1.2 * np.exp(1.9j) + 0.8 * np.exp(3.5j)
     b = point(motion, "B")[0]
-    above = d + (b - d) * (c - d).real / (b - d).real  # on the line DB, square to the guide
+    above = d + (b - d) * (c - d).real / (b - d).real  # on the line DB, perpendicular to the guide
     np.testing.assert_allclose(third.centre, [above.real, above.imag], rtol=1e-13)
     distance = above.imag - c.imag
     assert abs(float(motion.velocity.sel(point="C", axis="x")[0]) / distance) == pytest.approx(

@@ -38,7 +38,7 @@ def antiparallelogram() -> Any:
 
 
 def test_hyperbolas_of_the_antiparallelogram() -> None:
-    """The coupler against the frame: foci O and D, and A and B, vertices a crank's length apart."""
+    """The coupler relative to the frame: foci O and D, and A and B, vertices a crank's length apart."""
     motion = antiparallelogram()
     found = ct.centrodes(motion, "AB")
     fixed, moving = curve(found, "fixed_centrode"), curve(found, "moving_centrode")
@@ -289,15 +289,15 @@ def test_wrong_questions_about_centrodes_and_curvature() -> None:
     motion = ct.motion(mechanism, samples=3)
     with pytest.raises(ct.InputError, match='no link "AC"'):
         ct.centrodes(motion, "AC")
-    with pytest.raises(ct.InputError, match="no centre against itself"):
+    with pytest.raises(ct.InputError, match="no centre relative to itself"):
         ct.centrodes(motion, "AB", "AB")
     with pytest.raises(ct.InputError, match='no link "AC"'):
         ct.curvature(motion, "AC")
-    with pytest.raises(ct.InputError, match="does not move against itself"):
+    with pytest.raises(ct.InputError, match="does not move relative to itself"):
         ct.curvature(motion, "AB", against="AB")
     with pytest.raises(ct.InputError, match="needs values of the drive"):
         ct.curvature(mechanism, "AB")
-    with pytest.raises(ct.InputError, match="asked of one mechanism"):
+    with pytest.raises(ct.InputError, match="computed for one mechanism only"):
         ct.curvature(ct.motion(mechanism, samples=3, vary={"links.AB.length": [3.5]}), "AB")
     with pytest.raises(ct.NotComputedYet, match="on the sphere"):
         ct.curvature(ct.example("spherical-four-bar"), "BC", [0])

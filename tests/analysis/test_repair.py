@@ -226,7 +226,7 @@ def test_none_found_claims_nothing(tmp_path: Path) -> None:
     assert not found.found and found.impossible is None and found.turning == 0
     said = ct.summary(found).splitlines()[1]
     assert said.split("  ", 1)[0] == "found"
-    assert said.endswith("none within the bounds; that does not say that there is none")
+    assert said.endswith("none found within the bounds; this does not prove that none exists")
     data = recorded(found, tmp_path)
     assert data["found"] is False and data["after"] is None and data["impossible"] == ""
 
@@ -237,12 +237,16 @@ def test_none_found_claims_nothing(tmp_path: Path) -> None:
         ("slider-between-cranks-locked", {"vary": ["links.XY.angle"]}, 'there is no "XY"'),
         ("slider-between-cranks-locked", {"vary": ["links.OA.angle"]}, "the drive gives this angle"),
         ("slider-between-cranks-locked", {"vary": ["frame.points.D.x"]}, "placed by the initial angles"),
-        ("triple-rocker", {"vary": ["links.AB.angle"]}, "changes no dimension"),
-        ("triple-rocker", {"bounds": {"links.AB.length": (3, 4)}}, "have to hold its present value"),
-        ("triple-rocker", {"bounds": {"links.AB.length": (-1, 4)}}, "a length stays positive"),
+        ("triple-rocker", {"vary": ["links.AB.angle"]}, "determines no dimension"),
+        ("triple-rocker", {"bounds": {"links.AB.length": (3, 4)}}, "must contain its present value"),
+        ("triple-rocker", {"bounds": {"links.AB.length": (-1, 4)}}, "a length must be positive"),
         ("triple-rocker", {"bounds": {"links.AB.length": (4, 2)}}, "its lower bound is above its upper one"),
         ("triple-rocker", {"bounds": {"links.AB.length": ("1 kg", 4)}}, "links.AB.length"),
-        ("triple-rocker", {"vary": ["links.OA.length"], "bounds": {"links.AB.length": (1, 4)}}, "not among"),
+        (
+            "triple-rocker",
+            {"vary": ["links.OA.length"], "bounds": {"links.AB.length": (1, 4)}},
+            "not one of the varied numbers",
+        ),
         ("triple-rocker", {"vary": ["drives.OA.speed"]}, "names no dimension"),
         ("triple-rocker", {"vary": ["links.AB.length"] * 2 + ["frame.points.D.x"] * 20}, None),
         ("triple-rocker", {"least_transmission_angle": "95 deg"}, "between 0 and 90 deg"),

@@ -101,7 +101,7 @@ def test_slider_cranks_have_the_stroke_and_the_time_ratio_of_the_textbook() -> N
 
 
 def test_dead_points_are_the_limits_of_the_mechanism_driven_there() -> None:
-    """A rocker as the drive stops where the crank and the coupler fall in line: its own extreme values."""
+    """A rocker as the drive stops where the crank and the coupler are collinear: its own extreme values."""
     mechanism = four_bar(1.0, 3.5, 3.0, 4.0)
     found = ct.rotatability(mechanism)
     points = [point for point in found.one.dead_points if point.driver == "DB"]
@@ -135,8 +135,8 @@ def test_change_points_have_causes_and_are_no_limits() -> None:
     ]
     assert all(cause.bodies == ((Tracer.LINK, "AB"), (Tracer.LINK, "DB")) for cause in causes)
     printed = ct.summary(found)
-    assert "AB and DB fall in line, stretched out (" in printed
-    assert "AB and DB fall in line, folded over each other (" in printed
+    assert "AB and DB are collinear, extended (" in printed
+    assert "AB and DB are collinear, folded (" in printed
     assert found.one.transmissions[0].least == 0.0
     assert ct.rotatability(ct.example("galloway")).one.period == 2
 
@@ -250,7 +250,7 @@ def test_a_mechanism_that_hardly_moves_between_two_dead_points(short: float, tmp
     lines = [line.split("  ", 1) for line in ct.summary(found).splitlines() if not line.startswith(" ")]
     rows = {label: text.strip() for label, text in lines}
     assert rows["turns fully"].startswith("no")
-    assert ("stops above" in rows) == bool(found.limits)
+    assert ("upper limit" in rows) == bool(found.limits)
     assert recorded(found, tmp_path)["turns_fully"] is False
 
 

@@ -43,7 +43,7 @@ def test_limits_are_those_of_ct_limits_to_the_last_bit(name: str) -> None:
 
 
 def test_the_locked_mechanism_of_the_source() -> None:
-    """CB and BD fall in line where C is 2 m away from D, C on its guide and D where the initial angles put it."""
+    """CB and BD are collinear where C is 2 m away from D, C on its guide and D where the initial angles put it."""
     found = ct.rotatability(ct.example("slider-between-cranks-locked"))
     height = math.sin(0.5)
     c0 = complex(0.5 + math.cos(0.5), height)

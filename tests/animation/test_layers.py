@@ -155,7 +155,7 @@ def test_vectors_that_run_away_do_not_make_the_others_small() -> None:
     lengths = [np.hypot(*layer.arrows(sample)[1].T) for sample in range(layer.count)]
     extent = float(np.max(np.ptp(layer.reach(), axis=0)))
     assert max(float(one.max(initial=0.0)) for one in lengths) <= 0.22 * extent
-    assert any("too long to be drawn" in note for note in layer.notes())
+    assert any("too long to draw" in note for note in layer.notes())
     hidden = int((sizes > layer.greatest).sum())
     assert sum(map(len, lengths)) == sizes.size - hidden - int((sizes == 0.0).sum())
 
@@ -292,9 +292,9 @@ def test_samples_that_are_not_there_are_not_drawn() -> None:
         (Shown(("speeds",)), '"speeds" cannot be shown; show any of accelerations, centres'),
         (Shown(("paths",), ["Z"]), 'there is no moving point "Z"'),
         (Shown(("paths",), ["O"]), 'there is no moving point "O"'),
-        (Shown(("centres",), ["A"]), "points: it says how to show paths, velocities, accelerations"),
-        (Shown(("paths",), link="AB"), "link: it says how to show centrodes, which are not shown"),
-        (Shown((), growing=True), "growing: it says how to show paths"),
+        (Shown(("centres",), ["A"]), "points: it controls how paths, velocities, accelerations"),
+        (Shown(("paths",), link="AB"), "link: it controls how centrodes are shown, which are not shown"),
+        (Shown((), growing=True), "growing: it controls how paths"),
         (Shown(("centres",), pairs=[("AB", "XY")]), "XY"),
         (Shown(("centrodes",), link="XY"), "XY"),
     ],

@@ -53,20 +53,20 @@ def test_delays_do_not_drift(per_second: float) -> None:
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        ({"frames": 1}, "ask for 2 to 3000 frames"),
-        ({"frames": MOST_FRAMES + 1}, "ask for 2 to 3000 frames"),
-        ({"frames": True}, "ask for 2 to 3000 frames"),
-        ({"fps": 0.0}, "ask for 0.1 to 50 frames a second"),
-        ({"fps": 51.0}, "ask for 0.1 to 50 frames a second"),
-        ({"fps": float("nan")}, "ask for 0.1 to 50 frames a second"),
+        ({"frames": 1}, "give 2 to 3000 frames"),
+        ({"frames": MOST_FRAMES + 1}, "give 2 to 3000 frames"),
+        ({"frames": True}, "give 2 to 3000 frames"),
+        ({"fps": 0.0}, "give 0.1 to 50 frames per second"),
+        ({"fps": 51.0}, "give 0.1 to 50 frames per second"),
+        ({"fps": float("nan")}, "give 0.1 to 50 frames per second"),
         ({"duration": 0.0}, "duration: it must be greater than zero"),
         ({"duration": float("inf")}, "duration: it must be greater than zero"),
         ({"speed": -1.0}, "speed: it must be greater than zero"),
-        ({"speed": 1.0, "duration": 1.0}, "take one of the two out"),
-        ({"frames": 10, "fps": 10.0, "duration": 1.0}, "take one of the three out"),
-        ({"frames": 100, "duration": 1.0}, "100 frames in 1 s are 100 a second"),
-        ({"duration": 1e6}, "frames; ask for 2 to 3000 frames"),
-        ({"duration": 0.05}, "1 frames; ask for 2 to 3000 frames"),
+        ({"speed": 1.0, "duration": 1.0}, "remove one of the two"),
+        ({"frames": 10, "fps": 10.0, "duration": 1.0}, "remove one of the three"),
+        ({"frames": 100, "duration": 1.0}, "100 frames in 1 s are 100 per second"),
+        ({"duration": 1e6}, "frames; give 2 to 3000 frames"),
+        ({"duration": 0.05}, "1 frames; give 2 to 3000 frames"),
     ],
 )
 def test_what_does_not_go_together_is_refused(asked: dict[str, Any], told: str) -> None:
@@ -76,7 +76,7 @@ def test_what_does_not_go_together_is_refused(asked: dict[str, Any], told: str) 
 
 
 def test_a_motion_without_a_time_has_no_speed() -> None:
-    with pytest.raises(InputError, match="the motion takes no time of its own"):
+    with pytest.raises(InputError, match="the motion has no duration of its own"):
         timing_of(".gif", 0.0, speed=1.0)
 
 
@@ -103,9 +103,9 @@ def test_sizes(size: Any, kind: str, found: tuple[int, int]) -> None:
     [
         ("800", 60, 'expected WIDTHxHEIGHT, got "800"'),
         ("800x-600", 60, "expected WIDTHxHEIGHT"),
-        ("63x600", 60, "ask for 64 to 4096 pixels each way"),
-        ("800x99999", 60, "ask for 64 to 4096 pixels each way"),
-        ("4000x4000", MOST_PIXELS // 16_000_000 + 1, "ask for at most 62 frames of this size"),
+        ("63x600", 60, "give 64 to 4096 pixels in each direction"),
+        ("800x99999", 60, "give 64 to 4096 pixels in each direction"),
+        ("4000x4000", MOST_PIXELS // 16_000_000 + 1, "give at most 62 frames of this size"),
     ],
 )
 def test_sizes_out_of_bounds_are_refused(size: str, frames: int, told: str) -> None:

@@ -150,7 +150,7 @@ def test_limits_stand_in_the_summary(tmp_path: Path) -> None:
         row = next(csv.DictReader(file))
     assert (row["variant"], row["turns_fully"], row["status"]) == ("6'", "no", "locks")
     assert float(row["limit [rad]"]) == pytest.approx(1.79991241652444, abs=1e-12)
-    assert "CB and BD fall in line" in row["cause"] and "sin(phi3 - phi4) = 0" in row["cause"]
+    assert "CB and BD are collinear" in row["cause"] and "sin(phi3 - phi4) = 0" in row["cause"]
 
 
 def test_finished_variants_are_not_computed_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -224,7 +224,7 @@ def test_figures_of_each(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("jobs", [0, -1, 1.5, True, 10**6])
 def test_jobs_that_are_refused(jobs: Any, tmp_path: Path) -> None:
-    with pytest.raises(ct.InputError, match="ask for 1 to 256"):
+    with pytest.raises(ct.InputError, match="give 1 to 256"):
         ct.write_variants(WORKED, TWO, tmp_path / "out", jobs=jobs)
     assert not (tmp_path / "out").exists()
 

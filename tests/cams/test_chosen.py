@@ -277,7 +277,7 @@ def test_wrong_letters(curvature: str, what: str) -> None:
 
 
 def test_nothing_to_choose() -> None:
-    with pytest.raises(ct.InputError, match="nothing is to be chosen"):
+    with pytest.raises(ct.InputError, match="no parameter is given to choose"):
         choose_cam(ct.example("cam-from-curvature"))
 
 

@@ -135,6 +135,6 @@ def test_the_places_without_a_meaning_are_told() -> None:
     (said,) = [text for _label, text in rows if "(15)" in text]
     assert said.endswith("the comparison has no meaning: φ = 0 rad (0 deg), 3.14159 rad (180 deg)")
     apart = np.abs(results.dataset.parting.values)
-    assert float(re.findall(r"part by up to (\S+) m;", said)[0]) == float(f"{np.nanmax(apart):.3g}")
+    assert float(re.findall(r"differ by up to (\S+) m;", said)[0]) == float(f"{np.nanmax(apart):.3g}")
     # by its neighbours, not by rounding over rounding
     assert np.nanmax(apart) < 10.0

@@ -154,7 +154,7 @@ def test_a_knife_edge_leaves_corners() -> None:
     """About an outward corner of the profile the cutter rolls; into a sharp inner one none comes."""
     motion = lift_of((90, 0.01, "cycloidal"), (90, 0.0, "uniform"), (180, None, "dwell"))
     cam = FollowerCam(motion, translating_follower(0.04), Point(0.0), 0.04)
-    with pytest.raises(InputError, match="no cutter comes into a sharp inner corner"):
+    with pytest.raises(InputError, match="no cutter fits into a sharp inner corner"):
         follower_outlines(cam, 1e-6, 0.01)
     fall = SegmentedLaw(
         (

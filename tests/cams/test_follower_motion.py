@@ -154,7 +154,7 @@ def test_orders_are_bounded(order: object) -> None:
     if order is True:
         assert motion.lift(0.5, True).shape == (2,)
         return
-    with pytest.raises(InputError, match="order 0 to 20"):
+    with pytest.raises(InputError, match="derivatives from 0 to 20"):
         motion.lift(0.5, order)  # type: ignore[arg-type]
 
 

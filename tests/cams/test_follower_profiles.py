@@ -285,7 +285,7 @@ def test_a_follower_that_misses_the_base_circle_is_refused() -> None:
         translating_follower(0.02, -0.02)
     with pytest.raises(InputError, match=r"starts between 20 and 140 mm, not at 150"):
         oscillating_follower(0.15, 0.06, 0.08)
-    with pytest.raises(InputError, match="put the pivot farther away"):
+    with pytest.raises(InputError, match="move the pivot farther away"):
         oscillating_face(0.05, 0.04)
 
 

@@ -156,11 +156,11 @@ def test_oscillating_followers(sense: float) -> None:
 def test_what_no_cam_can_keep_is_told() -> None:
     motion = rise_dwell_fall_dwell(math.radians(25))
     layout = FollowerLayout("oscillating", Point(0.008), arm=0.08, distance=0.09)
-    with pytest.raises(MotionError, match=r"the pressure angle is broken at .* deg at least"):
+    with pytest.raises(MotionError, match=r"the pressure angle is always violated at .* deg"):
         least_base_radius(layout, motion, Admissible(0.1, 0.1))
     uniform = lift_of((90, 0.01, "uniform"), (90, None, "dwell"), (90, 0.0, "uniform"), (90, None, "dwell"))
     with pytest.raises(
-        MotionError, match="at 90 deg the speed of the lift jumps: every radius leaves a sharp"
+        MotionError, match="at 90 deg the velocity of the lift jumps: every base radius leaves a sharp"
     ):
         least_base_radius(FollowerLayout("translating", Point(0.008)), uniform, Admissible())
     edge = FollowerLayout("translating", Point(0.0))

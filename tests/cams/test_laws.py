@@ -117,24 +117,24 @@ def test_stalls_come_before_what_the_law_does_behind_them() -> None:
 REFUSED: list[tuple[str, dict[str, object], str]] = [
     ("10-9*phi", {"stop": 1.5}, "the curvature is not positive from 63.662 deg on"),
     ("10+9*phi", {"start": -1.5}, "the curvature is not positive from -63.662 deg on"),
-    ("-3", {}, "the curvature is not positive at the start (-3 1/m)"),
-    ("0", {}, "the curvature is not positive at the start (0 1/m)"),
+    ("-3", {}, "the curvature at the start is not positive (-3 1/m)"),
+    ("0", {}, "the curvature at the start is not positive (0 1/m)"),
     ("1/phi", {}, "the curvature is not a finite number at 0 deg"),
     ("log(phi-1)", {}, "the curvature is not a finite number at 0 deg"),
     ("10+sqrt(phi)", {}, "the path has no Taylor series at 0 deg"),
     ("10+sqrt(abs(phi-0.3))", {}, "the path has no Taylor series at 17.18"),
-    ("1e-9", {"stop": 1.6}, "the path runs away from the cam's centre"),
+    ("1e-9", {"stop": 1.6}, "the path diverges from the cam's centre"),
     ("1e9", {}, "check the units of the curvature"),
-    ("15+abs(sin(1200*phi))", {}, "the formula bends at more than 1000 places"),
-    ("15+sin(50000*phi)", {}, "the path takes more than 5000 steps"),
-    ("15", {"start": 0.1}, "the range has to hold the start phi = 0"),
-    ("15", {"stop": -0.1}, "the range has to hold the start phi = 0"),
-    ("15", {"stop": 0.0}, "the range has to hold the start phi = 0"),
+    ("15+abs(sin(1200*phi))", {}, "the formula has corners at more than 1000 places"),
+    ("15+sin(50000*phi)", {}, "the path needs more than 5000 steps"),
+    ("15", {"start": 0.1}, "the range must contain the start phi = 0"),
+    ("15", {"stop": -0.1}, "the range must contain the start phi = 0"),
+    ("15", {"stop": 0.0}, "the range must contain the start phi = 0"),
     ("15", {"stop": 100.0}, "the range is longer than 10 turns"),
     ("15", {"stop": math.nan}, "finite numbers are needed"),
     ("15", {"rho0": -1.0}, "the radius at the start has to be positive"),
-    ("15", {"gamma0": 1.57}, "the pressure angle at the start has to lie within 89 deg"),
-    ("15", {"tolerance": 1.0}, "the tolerance lies between"),
+    ("15", {"gamma0": 1.57}, "the pressure angle at the start must lie within 89 deg"),
+    ("15", {"tolerance": 1.0}, "the tolerance must lie between"),
 ]
 
 
@@ -151,9 +151,11 @@ def test_other_refusals() -> None:
         InputError, match=r"the curvature is known from 0 to 57\.\d+ deg, the range is 0 to 90 deg"
     ):
         check_span(SplineCurvature((0.0, 0.5, 1.0), (10.0, 11.0, 12.0)), 0.0, math.pi / 2)
-    with pytest.raises(InputError, match="2001 terms were asked for; ask for 2 to 2000"):
+    with pytest.raises(InputError, match="2001 terms are given; give 2 to 2000"):
         series_path(ConstantCurvature(12.0), 0.05, terms=2001)
-    with pytest.raises(InputError, match="the coefficients of the series leave the range of numbers"):
+    with pytest.raises(
+        InputError, match="the coefficients of the series exceed the range of floating-point numbers"
+    ):
         series_path(ExponentialCurvature(5000.0, 3.0), 0.05, terms=2000)
     for value in (0.0, -1.0, math.inf, math.nan):
         with pytest.raises(InputError, match="a curvature has to be positive and finite"):

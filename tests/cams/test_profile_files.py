@@ -185,5 +185,5 @@ def test_a_profile_needs_a_roller() -> None:
 
 @pytest.mark.parametrize("samples", [1, 0, -5, True])
 def test_a_number_of_samples_is_sensible(cam: ct.Cam, samples: int) -> None:
-    with pytest.raises(InputError, match="samples were asked for"):
+    with pytest.raises(InputError, match="samples are given"):
         ct.cam_profile(cam, samples)

@@ -241,9 +241,9 @@ def test_a_shoe_with_a_cusp_is_refused_with_what_it_lacks() -> None:
         ([('"120 mm"', '"10 mm"')], "a post of 10 mm lets the roller of 15 mm reach the ground"),
         (
             [('to = "90 deg"', 'to = "40 deg"')],
-            "the working arc goes from -45 to 45 deg, the path from -40 to 40 deg",
+            "the working arc covers -45 to 45 deg, the path -40 to 40 deg",
         ),
-        ([("legs = 4", 'legs = 4\nworking_arc = ["-40 deg", "40 deg"]')], "a leg works to 45 deg"),
+        ([("legs = 4", 'legs = 4\nworking_arc = ["-40 deg", "40 deg"]')], "a leg works up to 45 deg"),
         ([("legs = 4", 'legs = 4\nworking_arc = ["-40 deg", "50 deg"]')], "the same angle on both sides"),
     ],
 )

@@ -86,7 +86,7 @@ def test_a_range_that_is_not_all_reached_ends_with_3(centrode: Centrode, folder:
     words = ("--from", "0 deg", "--to", "3 rad", *SMALL, "--out", "part.gif")
     done = centrode("animate", "slider-between-cranks-locked", *words)
     assert done.code == 3
-    assert "samples of the range are not reached; ask for a range between the limits" in done.err
+    assert "samples of the range are not reached; choose a range between the limits of the drive" in done.err
     assert frames(folder / "part.gif")[0] == 6
 
 
@@ -111,7 +111,7 @@ def test_a_file_that_is_there_is_kept(centrode: Centrode, folder: Path) -> None:
     (folder / "old.gif").write_text("old")
     done = centrode("animate", "crank-rocker", *SMALL, "--out", "old.gif")
     assert done.code == 2
-    assert "exists already; say --force to replace it" in done.err
+    assert "exists already; add --force to replace it" in done.err
     assert (folder / "old.gif").read_text() == "old"
     assert centrode("animate", "crank-rocker", *SMALL, "--out", "old.gif", "--force").code == 0
     assert frames(folder / "old.gif")[0] == 6
@@ -125,25 +125,25 @@ def test_a_file_that_is_there_is_kept(centrode: Centrode, folder: Path) -> None:
         (("crank-rocker", "--out", "."), "an animation is a .gif or a .mp4"),
         (("crank-rocker", "--show", "speeds"), '"speeds" cannot be shown'),
         (("crank-rocker", "--points", "Z"), 'there is no moving point "Z"'),
-        (("crank-rocker", "--link", "AB"), "it says how to show centrodes, which are not shown"),
-        (("crank-rocker", "--against", "AB"), "it says how to show centrodes, which are not shown"),
-        (("crank-rocker", "--show", "none", "--growing"), "it says how to show paths"),
+        (("crank-rocker", "--link", "AB"), "it controls how centrodes are shown, which are not shown"),
+        (("crank-rocker", "--against", "AB"), "it controls how centrodes are shown, which are not shown"),
+        (("crank-rocker", "--show", "none", "--growing"), "it controls how paths"),
         (("crank-rocker", "--pair", "AB"), 'expected LINK,LINK, got "AB"'),
         (("crank-rocker", "--show", "centres", "--pair", "AB,XY"), "XY"),
         (("crank-rocker", "--show", "forces"), "there are neither masses nor loads"),
         (("crank-rocker", "--size", "800"), "expected WIDTHxHEIGHT"),
-        (("crank-rocker", "--size", "10x10"), "ask for 64 to 4096 pixels each way"),
+        (("crank-rocker", "--size", "10x10"), "give 64 to 4096 pixels in each direction"),
         (
             ("crank-rocker", "--size", "4096x4096", "--frames", "3000"),
-            "ask for at most 59 frames of this size",
+            "give at most 59 frames of this size",
         ),
-        (("crank-rocker", "--frames", "1"), "ask for 2 to 3000 frames"),
+        (("crank-rocker", "--frames", "1"), "give 2 to 3000 frames"),
         (("crank-rocker", "--frames", "many"), "many"),
-        (("crank-rocker", "--fps", "1000"), "ask for 0.1 to 50 frames a second"),
+        (("crank-rocker", "--fps", "1000"), "give 0.1 to 50 frames per second"),
         (("crank-rocker", "--duration", "-1"), "it must be greater than zero"),
         (("crank-rocker", "--speed", "nan"), "it must be greater than zero"),
-        (("crank-rocker", "--speed", "1", "--duration", "1"), "take one of the two out"),
-        (("crank-rocker", "--frames", "9", "--fps", "9", "--duration", "1"), "take one of the three out"),
+        (("crank-rocker", "--speed", "1", "--duration", "1"), "remove one of the two"),
+        (("crank-rocker", "--frames", "9", "--fps", "9", "--duration", "1"), "remove one of the three"),
         (("crank-rocker", "--from", "1 kg"), "kg"),
         (("crank-rocker", "--from", "1", "--to", "1"), "only one position is reached: nothing moves"),
         (("walking-wheel-four-legs", "--show", "paths"), "a cam is shown as a whole"),

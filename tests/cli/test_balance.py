@@ -81,7 +81,7 @@ def test_options_reach_the_balance(centrode: Centrode) -> None:
 def test_no_bound_is_told_where_the_least_force_is_none(centrode: Centrode) -> None:
     done = centrode("balance", "in-line-four-bar", "--least-maximum")
     assert done.code == 0, done
-    assert done.rows["proved"] == "no counterweights on these links, with these radii, do better"
+    assert done.rows["proved"] == "no better counterweights exist on these links with these radii"
     assert centrode("balance", "in-line-four-bar", "--full").rows["balance"] == "shaking force zero"
 
 
@@ -101,18 +101,18 @@ def test_dark_pictures(centrode: Centrode, folder: Path) -> None:
         (("in-line-four-bar", "--on", "XY"), 2, "there is no link"),
         (("in-line-four-bar", "--on", "OA@"), 2, "has no point"),
         (("in-line-four-bar", "--on", "OA@B"), 2, "has no point"),
-        (("in-line-four-bar", "--on", "OA"), 3, "do not balance its force"),
+        (("in-line-four-bar", "--on", "OA"), 3, "do not balance the shaking force"),
         (("in-line-four-bar", "--fraction", "1/2"), 2, "slider-cranks only"),
         (("single-cylinder-engine", "--fraction", "2"), 2, "from 0 to 1"),
         (("single-cylinder-engine", "--fraction", "half"), 2, "fraction"),
         (("single-cylinder-engine", "--least-maximum", "--fraction", "1/2"), 2, "given together"),
         (("single-cylinder-engine", "--full", "--least-maximum"), 2, "given together"),
         (("single-cylinder-engine", "--full", "--fraction", "1/2"), 2, "given together"),
-        (("single-cylinder-engine", "--density", "8000"), 2, "belongs to --thickness"),
-        (("single-cylinder-engine", "--weights", "1,0,0"), 2, "belong to --least-maximum"),
+        (("single-cylinder-engine", "--density", "8000"), 2, "is used with --thickness only"),
+        (("single-cylinder-engine", "--weights", "1,0,0"), 2, "are used with --least-maximum only"),
         (("single-cylinder-engine", "--least-maximum", "--weights", "1;0"), 2, "weights"),
         (("single-cylinder-engine", "--moment", "--least-maximum"), 2, "balanced fully"),
-        (("single-cylinder-engine", "--moment"), 3, "the inertia of rod is"),
+        (("single-cylinder-engine", "--moment"), 3, "the moment of inertia of rod is"),
         (("single-cylinder-engine", "--radius", "crank=0"), 2, "must be positive"),
         (("single-cylinder-engine", "--radius", "crank=1", "--radius", "crank=2"), 2, "given twice"),
         (("single-cylinder-engine", "--radius", "1 mm", "--radius", "2 mm"), 2, "NAME=VALUE"),

@@ -59,7 +59,10 @@ def test_the_example_is_printed(centrode: Centrode, folder: Path) -> None:
     assert said["greatest pressure angle"] == "12.4091 deg at 43.0527 deg"
     assert said["stall"] == "none in the range; with this law the follower would stall at 126.01619 deg"
     assert said["closure"] == "mirrored at 90 deg the path has a kink of 18.373 deg"
-    assert said["(a) one series"] == "power series about φ = 0, cut after a_20: greatest error of ρ 0.0576 mm"
+    assert (
+        said["(a) one series"]
+        == "power series about φ = 0, truncated after a_20: greatest error of ρ 0.0576 mm"
+    )
     assert "it converges up to 87.29346 deg" in done.out
     last = done.out.splitlines()[-1].split()
     assert last[:5] == ["90", "60.190", "60.132", "-0.159650", "-0.966032"]
@@ -130,9 +133,9 @@ def test_a_follower_that_stalls_ends_with_3_and_is_written(centrode: Centrode, c
 LAWS = {
     "constant": (
         '"constant"\nk0 = "0.012 1/mm"',
-        "formula (16) says nothing where the curvature is constant",
+        "formula (16) does not apply where the curvature is constant",
     ),
-    "round": ('"constant"\nk0 = "0.02 1/mm"', "it ends by itself: its coefficients vanish"),
+    "round": ('"constant"\nk0 = "0.02 1/mm"', "the series terminates: its further coefficients vanish"),
     "linear": ('"linear"\nk0 = "0.012 1/mm"\nk1 = "0.004 1/mm/rad"', "K = k0 + k1 φ"),
     "spline": ('"spline"\npoints = [[0, 12], ["50 deg", 14], ["95 deg", 22]]', "the law has a break"),
     "formula": ('"formula"\nformula = "12+5*abs(phi-0.4)"', "the law has a break"),
@@ -167,11 +170,11 @@ REFUSED = [
         "not positive from 63.662 deg on",
     ),
     (('"90 deg"', '"4000 deg"'), (), "the range is longer than 10 turns"),
-    (('radius = "50 mm"', 'radius = "50 mm"\npressure_angle = "90 deg"'), (), "has to lie within 89 deg"),
-    (("", ""), ("--terms", "1"), "1 terms were asked for"),
-    (("", ""), ("--terms", "5000"), "5000 terms were asked for"),
-    (("", ""), ("--samples", "1"), "1 samples were asked for"),
-    (("", ""), ("--samples", "100000000"), "100000000 samples were asked for"),
+    (('radius = "50 mm"', 'radius = "50 mm"\npressure_angle = "90 deg"'), (), "must lie within 89 deg"),
+    (("", ""), ("--terms", "1"), "1 terms are given"),
+    (("", ""), ("--terms", "5000"), "5000 terms are given"),
+    (("", ""), ("--samples", "1"), "1 samples are given"),
+    (("", ""), ("--samples", "100000000"), "100000000 samples are given"),
     (('kind = "cam"', 'kind = "gear"'), (), "expected one of"),
     (('kind = "cam"', "kind = cam"), (), "not TOML"),
 ]

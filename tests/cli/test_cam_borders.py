@@ -35,14 +35,14 @@ def test_no_profile_leads_to_a_stall(centrode: Centrode, folder: Path, symmetric
     written(folder, ALONE.replace("symmetric = true\n", symmetric).replace('"90 deg"', '"170 deg"') + more)
     done = centrode("cam", "cam.toml", "--samples", "31", "--out", "out")
     assert done.code == 3
-    assert "no profile leads a roller to 126.016 deg, where the follower stalls" in done.err
+    assert "no profile can guide a roller to 126.016 deg, where the follower stalls" in done.err
     assert "nan" not in done.out and "Warning" not in done.err
     assert {"cam-path.csv", "cam-path.png", "summary.json"} <= {
         one.name for one in (folder / "out").iterdir()
     }
     assert not (folder / "out" / "cam-profile.csv").exists()
     if more == CONTACT:
-        assert done.rows["greatest contact stress"].startswith("without bound towards 126.016 deg")
+        assert done.rows["greatest contact stress"].startswith("unbounded towards 126.016 deg")
         assert "greatest_contact_stress" not in json.loads((folder / "out" / "summary.json").read_text())
 
 
@@ -101,13 +101,13 @@ def test_rollers_of_neighbouring_legs_do_not_overlap(centrode: Centrode, folder:
             WHEEL.replace("legs = 4", 'legs = 4\nworking_arc = ["50 deg", "-50 deg"]'),
             "[mover] working_arc: a wor",
         ),
-        (WHEEL.replace('"90 deg"', '"40 deg"'), "[range]: the working arc goes from -45 to 45 deg"),
+        (WHEEL.replace('"90 deg"', '"40 deg"'), "[range]: the working arc covers -45 to 45 deg"),
         (
             WHEEL.replace(
                 'law = "exponential"\nk0 = "0.01 1/mm"\nk1 = 0.75',
                 'law = "spline"\npoints = [["0 deg", 10], ["90 deg", 20], ["45 deg", 15]]',
             ),
-            "[curvature] points: the angles of a spline increase, point 3 does not: 90, then 45 deg; sort the points",
+            "[curvature] points: the angles of a spline must increase; they do not at point 3: 90, then 45",
         ),
     ],
 )

@@ -70,11 +70,11 @@ def test_what_is_printed(centrode: Centrode, pressed: Path) -> None:
         f"{1e-6 * facts['greatest_stress_by_source']:.6g} MPa by the source's formula, with 0.418" in done.out
     )
     found = ct.choose_cam(cam)
-    assert done.rows["made least"] == "contact stress"
+    assert done.rows["minimised"] == "contact stress"
     for name, value in found.choice.chosen.parameters.items():
         assert name in done.out
         assert f"{value / 1000:.6g} 1/mm" in done.out or f"{value:.6g} 1/rad" in done.out
-    assert "none of them is better" in done.rows["other designs"]
+    assert "none is better" in done.rows["other designs"]
     assert list(pressed.iterdir()) == [pressed / "pressed.toml"]
 
 
@@ -139,7 +139,7 @@ def test_no_design_keeps_the_bounds(centrode: Centrode, pressed: Path) -> None:
     )
     done = centrode("cam", "pressed.toml", "--out", "made", "--samples", "5", "--no-figures")
     assert done.code == 3
-    assert "no design keeps all bounds; the nearest misses contact stress by" in done.err
+    assert "no design satisfies all bounds; the closest one violates contact stress by" in done.err
     assert "move a bound, or widen the ranges of the parameters" in done.err
     assert not (pressed / "made" / "chosen.toml").exists()
     assert [row["admissible"] for row in rows(pressed / "made" / "cam-choice.csv")] == ["no", "no"]
@@ -182,7 +182,7 @@ def test_a_cam_turns_below_its_roller(
             ("cam-from-curvature", "--animate", "--out", "w"),
             "--animate: a profile needs a roller; give [roller] radius",
         ),
-        (("walking-wheel-four-legs", "--animate"), "there is no folder to write into; name one with --out"),
+        (("walking-wheel-four-legs", "--animate"), "no output folder is given; name one with --out"),
     ],
 )
 def test_no_animation(centrode: Centrode, folder: Path, words: tuple[str, ...], told: str) -> None:
@@ -202,7 +202,7 @@ def test_no_animation(centrode: Centrode, folder: Path, words: tuple[str, ...], 
         (
             '"curvature.k0" = ["12 1/m", "30 1/m"]',
             '"curvature.k0" = ["-12 1/m", "30 1/m"]',
-            "an end of a range",
+            "an end of the range",
         ),
         ('"curvature.k1" = [-0.5, 1.5]', '"curvature.points.2" = [1, 2]', "the cam has no"),
         ('minimise = "stress"', 'minimise = "weight"', "expected one of"),

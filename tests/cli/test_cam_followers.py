@@ -98,8 +98,8 @@ def test_the_profile_is_told(centrode: Centrode, write: Callable[..., str]) -> N
         "undercut                            none",
         "greatest roller                     below 31.3414 mm on this path of its centre",
         "cutter                              radius 6 mm, at most 121.434 mm",
-        "least base radius  22.0811 mm, decided by the pressure angle at 206.781 deg",
-        "best offset        5.60656 mm: base radius from 19.2172 mm on",
+        "least base radius  22.0811 mm, determined by the pressure angle at 206.781 deg",
+        "best offset        5.60656 mm: base radius of at least 19.2172 mm",
     ):
         assert said in done.out
 
@@ -107,8 +107,11 @@ def test_the_profile_is_told(centrode: Centrode, write: Callable[..., str]) -> N
 @pytest.mark.parametrize(
     ("pairs", "said"),
     [
-        (FLAT, ("0 deg: the face is square to its way", "from the follower's axis, ", "best offset  ")),
-        (SWINGING, ("from the pivot, ", "decided by the radius of curvature")),
+        (
+            FLAT,
+            ("0 deg: the face is perpendicular to its motion", "from the follower's axis, ", "best offset  "),
+        ),
+        (SWINGING, ("from the pivot, ", "determined by the radius of curvature")),
         ((('contact = "roller"\nroller_radius = "10 mm"', 'contact = "knife"'),), ("undercut  ",)),
     ],
 )
@@ -168,11 +171,11 @@ def test_bounds_that_are_broken(centrode: Centrode, write: Callable[..., str]) -
     done = centrode("cam", write(('"30 mm"', '"20 mm"'), more=BOUNDS))
     assert done.code == 3
     assert "the pressure angle is not admissible at 207.147 deg" in done.err
-    assert "take a base radius from 22.0811 mm on" in done.err and "Profile of the cam" in done.out
+    assert "choose a base radius of at least 22.0811 mm" in done.err and "Profile of the cam" in done.out
     uniform = ('curve = "cycloidal"', 'curve = "uniform"')
     done = centrode("cam", write(('[cam]\nbase_radius = "30 mm"\n', ""), uniform, more=BOUNDS))
     assert done.code == 3
-    assert "at 100 deg the speed of the lift jumps: every radius leaves a sharp corner" in done.err
+    assert "at 100 deg the velocity of the lift jumps: every base radius leaves a sharp corner" in done.err
     done = centrode("cam", "cam.toml", "--out", "out", "--no-figures", "--animate")
     assert done.code == 3 and "Choice of the base radius" in done.out  # there is nothing to animate
 
@@ -184,7 +187,7 @@ def test_undercut_is_refused_or_shown(
     said = refuses(write(*UNDERCUT))
     for one in (
         "[cam] base_radius: the follower undercuts the profile at 26.6717 to 36.5583 deg",
-        "take a base radius above 37.5568 mm or a roller below 10.3295 mm",
+        "choose a base radius above 37.5568 mm or a roller below 10.3295 mm",
         "[study] show_undercut = true shows it",
     ):
         assert one in said
@@ -270,11 +273,11 @@ def test_bounds_that_decide_no_base_radius(
 ) -> None:
     # s + s'' is h/2 everywhere: no cam is too small, as the face is square to its way whatever the cam.
     (folder / "slow.toml").write_text(SLOW, encoding="utf-8")
-    assert "[cam] base_radius: no bound decides the base radius" in refuses("slow.toml")
+    assert "[cam] base_radius: no bound limits the base radius" in refuses("slow.toml")
     (folder / "slow.toml").write_text('cam = { base_radius = "5 mm" }\n' + SLOW, encoding="utf-8")
     done = centrode("cam", "slow.toml", "--out", "out", "--samples", "19", "--no-figures")
     assert done.code == 0, done.err
-    assert done.rows["least base radius"] == "none: no bound decides it"
+    assert done.rows["least base radius"] == "none: no bound limits it"
     numbers = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
     assert "cam_least_base_radius" not in numbers
     assert str(numbers["cam_greatest_pressure_angle"]["value"]) == "0.0"  # not -0.0

@@ -118,8 +118,8 @@ def test_no_figures_are_drawn_where_none_are_wanted(centrode: Centrode, cam: Pat
 @pytest.mark.parametrize(
     ("curve", "told"),
     [
-        ("uniform", "the lift; the velocity jumps: the follower takes blows"),
-        ("harmonic", "up to the velocity; the acceleration jumps: the jerk has no bound"),
+        ("uniform", "the lift only; the velocity jumps: rigid impacts"),
+        ("harmonic", "up to the velocity; the acceleration jumps: soft impacts, unbounded jerk"),
         ("4-5-6-7", "up to the acceleration; the jerk jumps"),
     ],
 )
@@ -147,7 +147,7 @@ def test_a_smooth_motion_is_called_so_and_one_below_zero_is_told(centrode: Centr
     [
         (("--terms", "30"), "--terms: this cam is given by its follower's lift and has no curvature law"),
         (("--groove",), "--groove: this cam is given by its follower's lift"),
-        (("--samples", "1"), "1 samples were asked for"),
+        (("--samples", "1"), "1 samples are given"),
     ],
 )
 def test_options_that_mean_nothing_are_refused(

@@ -140,7 +140,7 @@ def test_curvature_at_a_place_that_is_not_reached_ends_with_3(centrode: Centrode
 def test_the_way_to_a_pair_is_told(centrode: Centrode) -> None:
     done = centrode("centres", "five-bar-two-drives", "--pair", "AB,EC")
     assert done.code == 0
-    assert "by way of: " in done.out and "velocity field" in done.out.partition("by way of")[2]
+    assert "through: " in done.out and "velocity field" in done.out.partition("through: ")[2]
 
 
 def test_a_link_that_translates_has_no_centrode(centrode: Centrode, folder: Path) -> None:
@@ -148,7 +148,9 @@ def test_a_link_that_translates_has_no_centrode(centrode: Centrode, folder: Path
         "centrodes", "rack-and-pinion", "--link", "rack", "--samples", "5", "--no-figures", "--out", "r"
     )
     assert done.code == 3
-    assert "rack-and-pinion: rack has no centre against the frame in this range: it translates" in done.err
+    assert (
+        "rack-and-pinion: rack has no centre relative to the frame in this range: it translates" in done.err
+    )
     assert "--against" in done.err
 
 
@@ -165,16 +167,16 @@ def test_centrodes_of_links_against_each_other(centrode: Centrode, folder: Path)
 REFUSED = {
     ("centres", "crank-rocker", "--pair", "AB"): '--pair: expected LINK,LINK, got "AB"; write "AC,frame"',
     ("centres", "crank-rocker", "--pair", "AB,XY"): 'crank-rocker, pair: there is no link "XY"',
-    ("centres", "crank-rocker", "--pair", "AB,AB"): "AB has no centre against itself; name two bodies",
+    ("centres", "crank-rocker", "--pair", "AB,AB"): "AB has no centre relative to itself; name two bodies",
     ("centres", "crank-rocker", "--at", "1 m"): "crank-rocker, --at: expected an angle",
-    ("centres", "crank-rocker", "--at", "1e9"): "crank-rocker, range: it reaches too far",
+    ("centres", "crank-rocker", "--at", "1e9"): "crank-rocker, range: it is too long",
     ("centres", "spherical-four-bar", "--pair", "AB,XY"): 'there is no link "XY"',
     ("centres", "nowhere"): "nowhere: no such file",
     ("centres", "crank-rocker", "--out", "taken"): "taken is not a folder",
     ("centrodes", "crank-rocker"): "--link",
     ("centrodes", "crank-rocker", "--link", "XY"): 'there is no link "XY"',
-    ("centrodes", "crank-rocker", "--link", "AB", "--against", "AB"): "AB has no centre against itself",
-    ("centrodes", "crank-rocker", "--link", "AB", "--samples", "0"): "0 samples were asked for",
+    ("centrodes", "crank-rocker", "--link", "AB", "--against", "AB"): "AB has no centre relative to itself",
+    ("centrodes", "crank-rocker", "--link", "AB", "--samples", "0"): "0 samples are given",
     (
         "centrodes",
         "spherical-four-bar",

@@ -72,7 +72,7 @@ def test_an_example_does_not_replace_a_file(centrode: Centrode, folder: Path) ->
     (folder / "kite.toml").write_text("mine")
     done = centrode("examples", "kite", "--out", "kite.toml")
     assert done.code == 2
-    assert done.err == "Error: kite.toml: exists already; say --force to replace it\n"
+    assert done.err == "Error: kite.toml: exists already; add --force to replace it\n"
     assert (folder / "kite.toml").read_text() == "mine"
     assert centrode("examples", "kite", "--out", "kite.toml", "--force").code == 0
 

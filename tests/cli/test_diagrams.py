@@ -84,7 +84,7 @@ def test_times_of_a_mechanism_with_several_drives(centrode: Centrode) -> None:
         (["crank-rocker", "--at", "1 rad", "--scale", "length=small"], "expected a number"),
         (["crank-rocker", "--at", "1 rad", "--scale", "length=-1"], "has to be positive"),
         (["crank-rocker", "--at", "1 rad", "--scale", "length=nan"], "has to be positive"),
-        (["crank-rocker", "--at", "1 rad", "--scale", "length=0.001"], "take at least"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "length=0.001"], "use at least"),
         (["crank-rocker", "--at", "1 rad", "--scale", "force=1"], "one of: length"),
         (["spherical-four-bar", "--at", "1 rad"], "do not apply on the sphere"),
         (["no-such-mechanism", "--at", "1 rad"], "no-such-mechanism"),
@@ -102,7 +102,7 @@ def test_wrong_input_of_diagrams(centrode: Centrode, folder: Path, arguments: li
     ("name", "at", "told"),
     [
         ("slider-between-cranks-locked", "2.5 rad", "the mechanism is open"),
-        ("parallelogram", "pi rad", "dead point"),
+        ("parallelogram", "pi rad", "dead position"),
     ],
 )
 def test_where_the_mechanism_cannot_be_drawn(
@@ -119,7 +119,7 @@ def test_a_plan(centrode: Centrode, folder: Path) -> None:
     done = centrode("plan", "six-bar-press", "--positions", "24", "--dark")
     assert done.code == 0, done
     assert done.rows["positions"] == "24, 24 of them reached"
-    assert done.rows["position 0"].startswith("H at rest at ")
+    assert done.rows["position 0"].startswith("extreme position of H at ")
     names = sorted(file.name for file in (folder / "six-bar-press-plan").iterdir())
     assert names == ["plan.png", "plan.svg", "positions.csv"]
     assert len(rows(folder / "six-bar-press-plan" / "positions.csv")) == 24
@@ -128,7 +128,7 @@ def test_a_plan(centrode: Centrode, folder: Path) -> None:
 def test_a_plan_from_a_chosen_link(centrode: Centrode) -> None:
     done = centrode("plan", "crank-rocker", "--link", "DB", "--no-figures", "--out", "p")
     assert done.code == 0, done
-    assert done.rows["position 0"].startswith("DB at rest at ")
+    assert done.rows["position 0"].startswith("extreme position of DB at ")
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_plan_from_a_chosen_link(centrode: Centrode) -> None:
         (["crank-rocker", "--positions", "1"], "2 to 36"),
         (["crank-rocker", "--positions", "many"], "many"),
         (["crank-rocker", "--link", "OA"], "no extreme position"),
-        (["crank-rocker", "--link", "piston"], "no link and no guide"),
+        (["crank-rocker", "--link", "piston"], "neither a link nor a guide"),
         (["spherical-four-bar"], "in the plane only"),
     ],
 )

@@ -53,12 +53,12 @@ def test_a_driving_cam_is_drawn(centrode: Centrode, tmp_path: Path) -> None:
 
 def test_what_cannot_be_drawn_is_told(centrode: Centrode, tmp_path: Path) -> None:
     for words, told in (
-        (("six-bar-press", "--out", tmp_path / "a.pdf"), "no kind of file for drawings"),
+        (("six-bar-press", "--out", tmp_path / "a.pdf"), "a drawing cannot be written as"),
         (("six-bar-press", "--path", "Z", "--out", tmp_path / "a.svg"), "no moving point"),
         (("six-bar-press", "--centrodes", "Z", "--out", tmp_path / "a.svg"), "no link"),
         (("six-bar-press", "--at", "1 kg", "--out", tmp_path / "a.svg"), "--at"),
         (("hookes-joint", "--out", tmp_path / "a.svg"), "planar"),
-        (("six-bar-press", "--out", tmp_path), "no kind of file"),
+        (("six-bar-press", "--out", tmp_path), "a drawing cannot be written as"),
         (("valve-cam", "--out", tmp_path / "a.svg"), "this describes a cam, not a linkage"),
     ):
         done = centrode("draw", *words)

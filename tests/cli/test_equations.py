@@ -63,15 +63,15 @@ def test_documents_are_written_whole(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("crank-rocker", "--point", "Q"), "crank-rocker, Q: it is no moving point; one of: A, B"),
-        (("crank-rocker", "--point", "O"), "crank-rocker, O: it is no moving point"),
+        (("crank-rocker", "--point", "Q"), "crank-rocker, Q: this is not a moving point; one of: A, B"),
+        (("crank-rocker", "--point", "O"), "crank-rocker, O: this is not a moving point"),
         (
             ("crank-rocker", "--out", "x.pdf"),
-            '--out: ".pdf" is not a kind of file for this; use one of .txt, .tex',
+            '--out: this result cannot be written as ".pdf"; use one of .txt, .tex',
         ),
-        (("crank-rocker", "--out", "x"), '--out: "" is not a kind of file for this'),
+        (("crank-rocker", "--out", "x"), '--out: this result cannot be written as ""'),
         (("no-such-mechanism",), "no-such-mechanism"),
-        (("crank-rocker", "--out", "there.txt"), "there.txt: exists already; say --force"),
+        (("crank-rocker", "--out", "there.txt"), "there.txt: exists already; add --force"),
     ],
 )
 def test_wrong_input_is_refused(

@@ -31,9 +31,9 @@ def test_integrate(centrode: Centrode, folder: Path) -> None:
     assert done.rows["range"] == "0 s to 6.28318531 s"
     assert done.rows["rows"] == "101: ok 101"
     assert done.rows["stops"] == "nowhere"
-    assert done.rows["closed forms"] == "nothing that stops it"
+    assert done.rows["closed-form solution"] == "no obstacle"
     assert done.rows["greatest drift"].endswith(" of the greatest length (y_D)")
-    assert done.rows["last row"].startswith("repeats the first to ")
+    assert done.rows["last row"].startswith("repeats the first within ")
     assert {file.name for file in (folder / "r").iterdir()} == {
         "integration.csv", "integration.nc", *(f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")),
     }  # fmt: skip
@@ -75,9 +75,9 @@ def test_integrate_stops_at_a_limit_with_exit_3(centrode: Centrode, folder: Path
     assert done.code == 3
     assert done.rows["rows"] == "101: ok 29, open 72"
     assert "1.79991242 s (OA at 1.79991242 rad (103.127 deg)) the determinant" in done.rows["stops"]
-    assert done.rows["closed forms"].startswith("limit at 1.79991242 rad (103.127 deg); ")
+    assert done.rows["closed-form solution"].startswith("limit at 1.79991242 rad (103.127 deg); ")
     assert done.rows["last row"] == "not reached"
-    assert "ask for a range that ends before it" in done.err
+    assert "choose a range that ends before it" in done.err
     with (folder / "r" / "integration.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["status"] for row in rows] == ["ok"] * 29 + ["open"] * 72
@@ -87,8 +87,8 @@ def test_integrate_stops_at_a_limit_with_exit_3(centrode: Centrode, folder: Path
 def test_integrate_with_too_few_steps_says_so(centrode: Centrode, folder: Path) -> None:
     done = centrode("integrate", "slider-between-cranks", "--steps", "5", "--out", "r")
     assert done.code == 3
-    assert "fixed steps leave the mechanism at " in done.err
-    assert done.err.rstrip().endswith("ask for more steps")
+    assert "fixed steps drift off the mechanism at " in done.err
+    assert done.err.rstrip().endswith("increase the number of steps")
 
 
 @pytest.mark.parametrize(
@@ -96,16 +96,16 @@ def test_integrate_with_too_few_steps_says_so(centrode: Centrode, folder: Path) 
     [
         (("nothing",), "no such file"),
         (("crank-rocker", "--method", "rk5"), 'there is no method "rk5"; did you mean "rk4"?'),
-        (("crank-rocker", "--steps", "0"), "0 steps were asked for"),
+        (("crank-rocker", "--steps", "0"), "0 steps are given"),
         (("crank-rocker", "--steps", "many"), "many"),
-        (("crank-rocker", "--method", "adaptive", "--tolerance", "1"), "1.0 is no tolerance"),
+        (("crank-rocker", "--method", "adaptive", "--tolerance", "1"), "1.0 is not a valid tolerance"),
         (
             ("crank-rocker", "--tolerance", "1e-8"),
             "--tolerance: fixed steps have no tolerance; add --method adaptive",
         ),
-        (("crank-rocker", "--method", "adaptive", "--tolerance", "nan"), "no tolerance"),
+        (("crank-rocker", "--method", "adaptive", "--tolerance", "nan"), "is not a valid tolerance"),
         (("crank-rocker", "--to", "3 kg"), "--to: expected an angle"),
-        (("crank-rocker", "--to", "1000000 deg"), "it reaches too far"),
+        (("crank-rocker", "--to", "1000000 deg"), "it is too long"),
         (("spherical-four-bar",), "not on the sphere"),
     ],
 )
@@ -194,7 +194,7 @@ def test_variants_are_gone_on_with(
         interrupted.setattr("centrode.cli.variants.Progress.say", stop)
         done = centrode("variants", "t.csv", "--topology", "slider-between-cranks", "--out", "r")
     assert (done.code, done.out) == (130, "")
-    assert done.err == "what is finished stays in r; the same command goes on from there\ninterrupted\n"
+    assert done.err == "finished results stay in r; the same command resumes from there\ninterrupted\n"
     marker = folder / "r" / "variant-1" / "variant.json"
     before = marker.stat().st_mtime_ns
     assert centrode("variants", "t.csv", "--topology", "slider-between-cranks", "--out", "r").code == 0
@@ -207,7 +207,7 @@ def test_variants_are_gone_on_with(
         (TABLE, (), "--topology"),
         (TABLE, ("--topology", "nothing"), "no such file"),
         (TABLE, ("--topology", "crank-rocker"), 'column "phi4_0_rad": there is no link 4'),
-        (TABLE, ("--topology", "slider-between-cranks", "--jobs", "0"), "0 processes were asked for"),
+        (TABLE, ("--topology", "slider-between-cranks", "--jobs", "0"), "0 processes are given"),
         ("", ("--topology", "slider-between-cranks"), "t.csv: the file is empty"),
         (
             "variant,l2\n1,x\n",
@@ -263,7 +263,7 @@ def test_variants_with_reports(centrode: Centrode, folder: Path, table: Path, sh
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--format", "pdf"), "--format: it belongs to --report"),
+        (("--format", "pdf"), "--format: this option is used with --report only"),
         (("--report", "--format", "docx"), "docx"),
         (("--report", "--format", ","), "no format is named"),
     ],

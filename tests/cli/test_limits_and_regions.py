@@ -70,8 +70,8 @@ def test_limits_are_printed_and_written(centrode: Centrode, arm: Path) -> None:
     group = "group AB-CB (point B)"
     assert done.rows == {
         "drive": "OA",
-        "held": "EC = 60 deg",
-        "about": "57.2957795 deg",
+        "held drives": "EC = 60 deg",
+        "initial value": "57.2957795 deg",
         "from": f"{math.degrees(low):.9g} deg, limit of {group}",
         "to": f"{math.degrees(high):.9g} deg, limit of {group}",
         "change points": "none",
@@ -101,22 +101,22 @@ def test_no_limits(centrode: Centrode) -> None:
     assert done.rows["from"] == done.rows["to"] == "unlimited"
     done = centrode("limits", "parallelogram")
     assert "180 deg" in done.rows["change points"]
-    assert done.rows["held"] == "none"
+    assert done.rows["held drives"] == "none"
 
 
 REFUSED = {
-    ("limits", "arm.toml"): "drive: the mechanism has 2 drives; say which one moves: OA, EC",
+    ("limits", "arm.toml"): "drive: the mechanism has 2 drives; name the drive that moves: OA, EC",
     ("limits", "arm.toml", "--drive", "OB"): "drive: there is no drive OB",
     ("limits", "arm.toml", "--drive", "OA", "--hold", "OA=1"): "hold: drive OA is the one that moves",
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC"): 'expected NAME=VALUE, got "EC"',
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC=1", "--hold", "EC=2"): "EC is given twice",
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC=1 m"): "hold EC: expected an angle",
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC=0", "--about", "180 deg"): "does not close there",
-    ("limits", "arm.toml", "--drive", "OA", "--out", "limits.pdf"): '".pdf" is not a kind of file',
+    ("limits", "arm.toml", "--drive", "OA", "--out", "limits.pdf"): 'cannot be written as ".pdf"',
     ("region", "arm.toml", "--range", "OA=1"): "expected NAME=FIRST:LAST",
     ("region", "arm.toml", "--range", "XY=0:1"): "XY is not one of the two drives",
     ("region", "arm.toml", "--drive", "OA"): "a region needs two different drives; 1 are given",
-    ("region", "arm.toml", "--samples", "1"): "1 samples were asked for",
+    ("region", "arm.toml", "--samples", "1"): "1 samples are given",
     ("region", "crank-rocker"): "a region needs two drives, the mechanism has one",
     ("region", "excavator-arm"): "3 are given; name two of: K-A, C-E, S-N",
 }

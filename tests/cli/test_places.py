@@ -73,7 +73,7 @@ def test_a_folder_in_place_of_a_result(refused: Refused, folder: Path) -> None:
     (folder / "result" / "motion.nc").mkdir(parents=True)
     (folder / "result" / "motion.csv").write_text("mine")
     told = refused(None, mechanism="kite")
-    assert told == "result/motion.nc: is a folder, and a file has to go there; name another folder"
+    assert told == "result/motion.nc: is a folder, but a file is to be written there; name another folder"
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a file system that nobody can write")

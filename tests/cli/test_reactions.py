@@ -250,10 +250,10 @@ def test_several_drives_have_a_row_each(centrode: Centrode, folder: Path) -> Non
             "value must not be negative",
         ),
         (("", ""), ("--samples", "0"), "samples"),
-        (("", ""), ("--samples", "999999"), "ask for at most"),
+        (("", ""), ("--samples", "999999"), "give at most"),
         (("", ""), ("--at", "3 m"), "--at"),
         (("", ""), ("--at", "x"), "--at"),
-        (("", ""), ("--at", "1 rad", "--samples", "5"), "take one of the two out"),
+        (("", ""), ("--at", "1 rad", "--samples", "5"), "remove one of the two"),
         (("", ""), ("--at", "1 rad") * 101, "101 instants"),
         (("", ""), ("--from", "nan"), "--from"),
         (("", ""), ("--steady",), "[machine]"),
@@ -291,7 +291,7 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
     (folder / "m.toml").write_text(PUSHED.replace("length = 0.4", "length = 0.4\nmass = 1"))
     done = centrode("run", "m.toml", "--out", "r", "--samples", 5, "--no-figures")
     assert (done.code, done.err) == (0, "")
-    assert "note: reactions are left out: [links.AB]: it has a mass and turns" in done.out
+    assert "note: reactions are omitted: [links.AB]: it has a mass and turns" in done.out
     assert not (folder / "r" / "reactions.csv").exists()
     done = centrode("run", "crank-rocker", "--out", "s", "--samples", 5, "--no-figures")
     assert "reactions" not in done.out
@@ -302,8 +302,8 @@ def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Pat
     example = example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
     link = list(ct.example("crank-rocker").links)[-1]
     for keys, message in (
-        ("coefficient = 0.1", "friction by a coefficient in a hinge needs the point"),
-        ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
+        ("coefficient = 0.1", "Coulomb friction in a hinge needs the point"),
+        ('quadratic = 0.1\nform = "plain sum"', "a plain sum is not a moment in a hinge"),
     ):
         (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")
         done = centrode("reactions", "r.toml")
@@ -318,7 +318,7 @@ def test_instants_beyond_a_lock_name_the_limits(centrode: Centrode, folder: Path
     assert done.code == 3
     assert done.err == (
         "Error: m.toml: the mechanism locks: 1 of 2 samples is not reached"
-        " (limit at -0.808314721 rad (-46.313 deg), where group CB-BD (point B) is a dead point;"
-        " limit at 1.79991242 rad (103.127 deg), where group CB-BD (point B) is a dead point);"
-        " ask for places between the limits\n"
+        " (limit at -0.808314721 rad (-46.313 deg), group CB-BD (point B) in a dead position;"
+        " limit at 1.79991242 rad (103.127 deg), group CB-BD (point B) in a dead position);"
+        " choose positions between the limits\n"
     )

@@ -98,7 +98,7 @@ def test_losses_are_told_and_written(centrode: Centrode, folder: Path) -> None:
     done = centrode("reactions", "pump.toml", "--samples", 73, "--out", "result")
     assert (done.code, done.err) == (0, "")
     assert 0.8 < float(done.rows["overall efficiency"]) < 1
-    assert done.rows["friction turns round"] == "3 samples, each told as just after it"
+    assert done.rows["friction reverses"] == "3 samples, values just after each"
     assert "A/AB, moment of friction" in done.out
     assert "guide B, friction" in done.out
     assert "friction at  greatest power, W" in done.out
@@ -151,7 +151,7 @@ def test_a_joint_that_stands_is_named(centrode: Centrode, folder: Path) -> None:
     (folder / "pump.toml").write_text(still + "[study]\nto = 1\nsamples = 3\n")
     done = centrode("reactions", "pump.toml")
     assert done.code == 0
-    assert done.rows["no friction"] == "A/AB, guide B: nothing moves there, friction is taken as 0"
+    assert done.rows["no friction"] == "A/AB, guide B: no motion there, friction is set to 0"
 
 
 @pytest.mark.parametrize(
@@ -165,8 +165,8 @@ def test_a_joint_that_stands_is_named(centrode: Centrode, folder: Path) -> None:
             "reactions",
             "pin piston has no hinge in A",
         ),
-        (("", ""), "reduce", "friction by a coefficient needs the reactions"),
-        (("", ""), "polygons", "friction by a coefficient needs the reactions"),
+        (("", ""), "reduce", "Coulomb friction needs the reactions"),
+        (("", ""), "polygons", "Coulomb friction needs the reactions"),
     ],
 )
 def test_wrong_input_ends_with_2(

@@ -81,7 +81,10 @@ def test_the_sphere(centrode: Centrode, folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "reason"),
-    [("spherical-four-bar", "neither masses nor loads"), ("spherical-crank-rocker", "no moment in a hinge")],
+    [
+        ("spherical-four-bar", "neither masses nor loads"),
+        ("spherical-crank-rocker", "not a moment in a hinge"),
+    ],
 )
 def test_what_makes_no_reactions_on_the_sphere(centrode: Centrode, name: str, reason: str) -> None:
     done = centrode("reactions", name)

@@ -50,7 +50,7 @@ def test_the_press(centrode: Centrode, folder: Path) -> None:
     assert done.rows["massless links"] == "OA"
     assert done.rows["loads"] == "force H, weight AB, weight CD, weight DH, weight slider"
     assert done.rows["speed of the drive"] == "-6.80678 rad/s, the mean speed of the machine"
-    assert done.rows["loads jump or bend at"] == "-138.177219 deg; 25.2708308 deg"
+    assert done.rows["jumps and kinks of the loads at"] == "-138.177219 deg; 25.2708308 deg"
     assert sorted(path.name for path in (folder / "result").iterdir()) == ["reduction.csv", "reduction.nc"]
     with (folder / "result" / "reduction.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -132,7 +132,7 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
                 '[[loads]]\nkind = "friction"\npoint = "O"\nradius = 0.1\ncoefficient = 0.1\n[study]',
             ),
             (),
-            "friction by a coefficient needs the reactions",
+            "Coulomb friction needs the reactions",
         ),
     ],
 )

@@ -58,11 +58,11 @@ CHANGES = {
     ),
     "huge": (
         "length = 1\n", "length = 1e300\n",
-        "press.toml, [links.OA] length: 1e+300 is beyond what can be computed with; stay below 1e+50",
+        "press.toml, [links.OA] length: 1e+300 is outside the range that can be computed; stay below 1e+50",
     ),
     "huge angle": (
         "length = 3.5\n", "length = 3.5\nangle = 1e49\n",
-        "press.toml, [links.AB] angle: 1e+49 is beyond what can be computed with; stay below 1e+06",
+        "press.toml, [links.AB] angle: 1e+49 is outside the range that can be computed; stay below 1e+06",
     ),
     "unknown point": (
         'B = "left"', 'E = "left"',
@@ -91,7 +91,7 @@ CHANGES = {
     ),
     "one link driven twice": (
         "[assembly]", '[[drives]]\nlink = "OA"\nspeed = 2\n[assembly]',
-        'press.toml, [[drives]] 2: "OA" is driven twice; keep one of the drives',
+        'press.toml, [[drives]] 2: "OA" has two drives; keep one of the drives',
     ),
     "does not assemble": (
         "length = 3.5", "length = 0.5",
@@ -100,15 +100,15 @@ CHANGES = {
     ),
     "does not assemble as drawn": (
         "length = 3.5\n", "length = 3.5\nangle = 2\n",
-        "[links.AB] angle: 114.6 deg does not assemble: the position has 36.61 deg, 78 deg off; correct",
+        "[links.AB] angle: the position cannot be assembled at 114.6 deg: it has 36.61 deg, a difference of 78 deg",
     ),
     "start against the initial angle": (
         "length = 1\n", "length = 1\nangle = 0.5\n",
-        "drive of link OA: it starts at 1 rad, but the initial angle says 0.5 rad; leave out one of the two",
+        "drive of link OA: it starts at 1 rad, but the initial angle is 0.5 rad; omit one of the two",
     ),
     "no side": (
         'sides = { B = "left" }', "",
-        "group AB-DB (point B): nothing says on which side it is assembled; give the initial angle of AB or"
+        "group AB-DB (point B): the side on which it is assembled is not given; give the initial angle of AB or"
         ' DB, or [assembly] sides, B = "left" | "right"',
     ),
     "a side of the wrong kind": (
@@ -117,7 +117,7 @@ CHANGES = {
     ),
     "coinciding points": (
         "[links.AB]\nlength = 3.5", "[links.AB]\npoints = { A = [0, 0], B = [0, 0] }",
-        "[links.AB]: points A and B coincide, so they do not tell how the link turns; correct",
+        "[links.AB]: points A and B coincide and do not determine the rotation of the link; correct",
     ),
     "coinciding pivots": (
         "D = [4, 0]",
@@ -148,11 +148,11 @@ CHANGES = {
     "instants too far": (
         "[assembly]",
         "[study]\ninstants = [3200]\n[assembly]",
-        "[study] instants: it reaches too far: 509 turns; ask for at most 500",
+        "[study] instants: it is too long: 509 turns; give at most 500",
     ),
     "law without an end": (
         "speed = 1", 'law = "sin(t)"',
-        "[study]: the drive is a law of time, and nothing says how long it is to run; give",
+        "[study]: the drive is a law of time, and its duration is not given; give",
     ),
     "law that is no formula": (
         "speed = 1", 'law = "sin(t"',
@@ -172,7 +172,7 @@ CHANGES = {
     ),
     "table elsewhere": (
         "speed = 1", 'table = "../../etc/passwd"',
-        'press.toml, [[drives]] 1, table: "../../etc/passwd" does not lie beside the description; put',
+        'press.toml, [[drives]] 1, table: "../../etc/passwd" is not in the folder of the description; put',
     ),
     "no speed": (
         "speed = 1", "speed = 0",
@@ -180,7 +180,7 @@ CHANGES = {
     ),
     "a billion samples": (
         "[assembly]", "[study]\nsamples = 1000000000\n[assembly]",
-        "press.toml, [study]: samples must lie between 1 and 1000000, got 1000000000; ask for fewer samples",
+        "press.toml, [study]: samples must lie between 1 and 1000000, got 1000000000; choose fewer samples",
     ),
     "name with a newline": (
         "[links.OA]", '[links."O\\nA"]',
@@ -200,7 +200,7 @@ CHANGES = {
     ),
     "deep list": (
         "length = 1\n", f"length = {'[' * 100}{']' * 100}\n",
-        "press.toml: the text nests too deeply; tables and lists lie at most 12 inside each other",
+        "press.toml: the text nests too deeply; tables and lists may be nested at most 12 deep",
     ),
     "very deep list": (
         "length = 1\n", f"length = {'[' * 100_000}\n",
@@ -273,8 +273,8 @@ def test_a_flat_triangle_without_a_side(refused: Refused, four_bar: str) -> None
     flat = four_bar.replace("D = [4, 0]", "D = [7.5, 0]").replace("start = 1", "start = 0")
     told = refused(flat.replace('sides = { B = "left" }', ""))
     assert told == in_file(
-        "group AB-DB (point B): its triangle is flat in the initial position, so both assemblies meet there;"
-        ' say on which side it goes on: [assembly] sides, B = "left" | "right"'
+        "group AB-DB (point B): its triangle is degenerate in the initial position, where both assembly modes coincide;"
+        ' give the side on which the motion continues: [assembly] sides, B = "left" | "right"'
     )
 
 
@@ -300,7 +300,7 @@ def test_a_group_of_higher_class_without_initial_angles(refused: Refused) -> Non
         speed = 1
         """)
     assert told.startswith("press.toml, group ")
-    assert "it is of higher class: its initial angles say which of its positions is meant" in told
+    assert "it is a group of higher class: its initial angles select one of its positions" in told
     assert told.endswith("; give the initial angle of plate, AB, DC, EF")
 
 
@@ -336,14 +336,14 @@ def test_files_that_are_no_descriptions(refused: Refused, content: bytes, messag
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--samples", "1000000000"], "samples: 1000000000 samples were asked for; ask for 1 to 1000000"),
-        (["--samples", "0"], "samples: 0 samples were asked for; ask for 1 to 1000000"),
-        (["--samples", "-5"], "samples: -5 samples were asked for; ask for 1 to 1000000"),
+        (["--samples", "1000000000"], "samples: 1000000000 samples are given; give 1 to 1000000"),
+        (["--samples", "0"], "samples: 0 samples are given; give 1 to 1000000"),
+        (["--samples", "-5"], "samples: -5 samples are given; give 1 to 1000000"),
         (["--from", "1 kg"], '--from: expected an angle (rad), got "1 kg"; write a number in rad, or a text'),
         (["--to", "2 s"], '--to: expected an angle (rad), got "2 s"; write a number in rad, or a text'),
         (["--to", "inf"], '--to: expected an angle (rad), got "inf"; write'),
         (["--to", ""], '--to: expected an angle (rad), got ""; write'),
-        (["--to", "1e9 deg"], "range: it reaches too far: 2.78e+06 turns; ask for at most 500"),
+        (["--to", "1e9 deg"], "range: it is too long: 2.78e+06 turns; give at most 500"),
     ],
 )
 def test_wrong_ranges(refused: Refused, four_bar: str, arguments: list[str], message: str) -> None:

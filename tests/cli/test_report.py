@@ -65,11 +65,11 @@ def test_hostile_names_are_shown(centrode: Centrode, folder: Path, four_bar: str
     [
         (("--chapters", "date"), 'crank-rocker, chapters: there is no chapter "date"; did you mean "data"?'),
         (("--points", "Q"), 'crank-rocker, points: unknown point "Q"'),
-        (("--digits", "1"), "crank-rocker, digits: numbers have 2 to 12 digits, 1 were asked for"),
+        (("--digits", "1"), "crank-rocker, digits: the number of significant digits is 2 to 12, 1 is given"),
         (("--digits", "many"), "Invalid value for '--digits'"),
         (("--at", "1 kg"), "crank-rocker, --at: "),
         (("--at", "x"), "crank-rocker, --at: "),
-        (("--format", "docx"), 'format: "docx" is no format of a report'),
+        (("--format", "docx"), 'format: "docx" is not a format of a report'),
         (("--format", ","), "format: no format is named"),
         (("--out", "press.toml"), "press.toml"),
     ],

@@ -20,8 +20,8 @@ def test_what_stops_a_mechanism_is_printed_and_written(centrode: Centrode, folde
     assert done.err == ""
     assert done.out.startswith("Slider between two cranks, locking\n\n")
     assert done.rows["turns fully"] == "no"
-    assert done.rows["stops above"] == "OA = 1.79991242 rad (103.127 deg), group CB-BD (point B)"
-    assert "CB and BD fall in line, stretched out (C and D are 2 m apart): sin(phi3 - phi4) = 0" in done.out
+    assert done.rows["upper limit"] == "OA = 1.79991242 rad (103.127 deg), group CB-BD (point B)"
+    assert "CB and BD are collinear, extended (distance of C and D: 2 m): sin(phi3 - phi4) = 0" in done.out
     assert done.rows["loop frame-OA-AC-C"] == "slider-crank, the crank turns fully"
     assert done.out.endswith("wrote found.json\n")
     data = json.loads((folder / "found.json").read_text(encoding="utf-8"))
@@ -32,7 +32,7 @@ def test_what_stops_a_mechanism_is_printed_and_written(centrode: Centrode, folde
 def test_a_mechanism_that_turns(centrode: Centrode) -> None:
     done = centrode("rotatability", "six-bar-press")
     assert done.code == 0
-    assert done.rows["turns fully"] == "yes, back after 1 turn"
+    assert done.rows["turns fully"] == "yes, it returns after 1 turn"
     assert done.rows["link CD"].endswith(" deg, time ratio 1.20253, forward 163.448 deg, back 196.552 deg")
     assert "OA and AB in line" in done.out
 
@@ -44,12 +44,12 @@ def test_a_repair_is_printed_and_written(centrode: Centrode, folder: Path) -> No
     assert done.rows["verified"].startswith("turns fully, least transmission angle 1.00")
     assert done.rows["links.BD.angle"].startswith("from 5.7 rad (326.586 deg) to ")
     again = centrode("rotatability", "turning.toml")
-    assert again.rows["turns fully"] == "yes, back after 1 turn"
+    assert again.rows["turns fully"] == "yes, it returns after 1 turn"
     run = centrode("run", "turning.toml", "--no-figures", "--samples", "361")
     assert run.code == 0
     assert run.rows["samples"] == "361: ok 361"
     report = centrode("rotatability", "turning.toml", "--repair", "--out", "report.json")
-    assert report.rows["found"] == "it does so as it is"
+    assert report.rows["found"] == "the requirement is already satisfied"
     assert json.loads((folder / "report.json").read_text(encoding="utf-8"))["found"] is True
 
 
@@ -74,13 +74,16 @@ def test_no_repair_ends_with_exit_code_3(centrode: Centrode, folder: Path) -> No
     ("arguments", "message"),
     [
         (("no-such-file",), "no-such-file: no such file"),
-        (("crank-rocker", "--vary", "links.OA.length"), "--vary: it belongs to a repair; add --repair"),
-        (("crank-rocker", "--least-transmission-angle", "9 deg"), "it belongs to a repair"),
+        (
+            ("crank-rocker", "--vary", "links.OA.length"),
+            "--vary: this option is used with --repair only; add --repair",
+        ),
+        (("crank-rocker", "--least-transmission-angle", "9 deg"), "this option is used with --repair only"),
         (
             ("crank-rocker", "--out", "x.toml"),
-            '--out: ".toml" is not a kind of file for this; use one of .json',
+            '--out: this result cannot be written as ".toml"; use one of .json',
         ),
-        (("crank-rocker", "--out", "x"), '"" is not a kind of file'),
+        (("crank-rocker", "--out", "x"), 'cannot be written as ""'),
         (("triple-rocker", "--repair", "--out", "x.csv"), "use one of .json, .toml"),
         (("triple-rocker", "--repair", "--vary", "links.OA.length=2"), "expected NAME=FIRST:LAST"),
         (("triple-rocker", "--repair", "--vary", "links.OA.length=2 kg:3 kg"), "links.OA.length: "),
@@ -92,7 +95,7 @@ def test_no_repair_ends_with_exit_code_3(centrode: Centrode, folder: Path) -> No
         (("triple-rocker", "--repair", "--least-transmission-angle", "ninety"), "least_transmission_angle: "),
         (
             ("five-bar-two-drives", "--repair"),
-            "five-bar-two-drives, [[drives]]: a repair makes one drive turn",
+            "five-bar-two-drives, [[drives]]: a repair is computed for one drive",
         ),
         (("third-class-triad", "--repair", "--least-transmission-angle", "1 deg"), "groups of higher class"),
     ],

@@ -147,8 +147,8 @@ def test_a_mechanism_that_locks_ends_with_3_and_everything_written(centrode: Cen
     assert done.code == 3
     assert done.err == (
         "Error: slider-between-cranks-locked: the mechanism locks: 72 of 101 samples are not reached"
-        " (limit at 1.79991242 rad (103.127 deg), where group CB-BD (point B) is a dead point);"
-        ' ask for the range between the limits (range = "reachable" under [study], or --range reachable),'
+        " (limit at 1.79991242 rad (103.127 deg), group CB-BD (point B) in a dead position);"
+        ' choose the range between the limits (range = "reachable" under [study], or --range reachable),'
         " or change the dimensions\n"
     )
     assert names(folder / "result") == sorted([*TABLES, "instants.csv", *PICTURES])

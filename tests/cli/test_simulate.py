@@ -53,7 +53,7 @@ def test_everything_on_the_command_line(centrode: Centrode, folder: Path) -> Non
         "simulate", "disc.toml", "--driving", "3 - v", "--speed", "10 rpm", "--turns", 5, "--scheme", "stiff"
     )
     assert done.code == 0, done
-    assert done.rows["ended"].startswith("after the turns asked for")
+    assert done.rows["ended"].startswith("after the given number of turns")
     assert done.rows["turned"].endswith("5 turns")
     assert done.rows["least speed"].startswith("3 rad/s")
     done = centrode(
@@ -72,14 +72,14 @@ def test_it_says_where_it_stops(centrode: Centrode, folder: Path) -> None:
     done = centrode("simulate", "locks.toml", "--driving", "200", "--duration", "20 s")
     assert done.code == 3
     assert "stops at a limit after" in done.err
-    assert "it comes to a limit" in done.rows
+    assert "limit" in done.rows
 
 
 def test_a_regime_that_is_not_there_is_told(centrode: Centrode, folder: Path) -> None:
     (folder / "disc.toml").write_text(DISC, encoding="utf-8")
     done = centrode("simulate", "disc.toml", "--driving", "3", "--duration", "5 s")
     assert done.code == 0, done
-    assert done.rows["steady regime"].startswith("none is found: the speed does not settle")
+    assert done.rows["steady regime"].startswith("none found: the speed does not settle")
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_a_regime_that_is_not_there_is_told(centrode: Centrode, folder: Path) ->
     [
         (["disc.toml"], "[simulation]: it is missing"),
         (["disc.toml", "--driving", "3*w", "--duration", "1 s"], 'unknown name "w"'),
-        (["disc.toml", "--driving", "3"], "nothing says how long it runs"),
+        (["disc.toml", "--driving", "3"], "the duration is not given"),
         (["disc.toml", "--driving", "3", "--duration", "1 m"], "duration"),
         (["disc.toml", "--driving", "3", "--duration", "-1 s"], "must be positive"),
         (["disc.toml", "--driving", "3", "--duration", "1", "--samples", "1"], "samples"),
@@ -125,14 +125,14 @@ def test_a_conservative_machine_has_no_steady_regime(
         assert done.code == 0, done
         assert "steady regime" not in done.out
         assert done.rows["periodic motion"].startswith("1 turn of the drive, ")
-        assert done.rows["stability"] == "any speed comes back: it runs up to none"
+        assert done.rows["stability"] == "every speed repeats after a period: there is no limit cycle"
 
 
 def test_long_ones_are_announced(centrode: Centrode, folder: Path) -> None:
     (folder / "disc.toml").write_text(DISC, encoding="utf-8")
     done = centrode("simulate", "disc.toml", "--speed", "300 turn/s", "--duration", "1 s", "--driving", "0")
     assert done.code == 0, done
-    assert done.err.startswith("about 300 turns of the drive at the speed of the start")
+    assert done.err.startswith("about 300 turns of the drive at the initial speed")
 
 
 def test_a_kept_assembly_ends_at_the_change_point(centrode: Centrode, folder: Path) -> None:
@@ -147,8 +147,8 @@ def test_a_kept_assembly_ends_at_the_change_point(centrode: Centrode, folder: Pa
     (folder / "kept.toml").write_text(text, encoding="utf-8")
     done = centrode("simulate", "kept.toml", "--speed", "1", "--driving", "0", "--duration", "9 s")
     assert done.code == 3, done
-    assert "its path ends at the change point at 3.14159265 rad, after " in done.err
-    assert "it comes to a change point" in done.rows
+    assert "the motion reaches the change point at 3.14159265 rad after " in done.err
+    assert "change point" in done.rows
 
 
 def test_many_samples_are_announced(centrode: Centrode) -> None:

@@ -55,7 +55,7 @@ def test_a_store_and_its_summary(centrode: Centrode, folder: Path, study: Path) 
         xr.testing.assert_equal(data, found)
     again = centrode("sweep", "study.toml")
     assert (again.code, again.out) == (0, done.out)
-    assert again.err == "6 mechanisms were there from an earlier run\n"
+    assert again.err == "6 mechanisms were computed in an earlier run\n"
 
 
 def test_a_table(centrode: Centrode, folder: Path, study: Path) -> None:
@@ -75,7 +75,7 @@ def test_a_table(centrode: Centrode, folder: Path, study: Path) -> None:
         assert float(row["position_B_y [m]"]) == float(found["position.B"][i, j, 1])
         assert float(row["angle_DB [rad]"]) == float(found["angle.DB"][i, j])
     refused = centrode("sweep", "study.toml", "--out", "r.csv")
-    assert (refused.code, refused.err) == (2, "Error: r.csv: exists already; say --force to replace it\n")
+    assert (refused.code, refused.err) == (2, "Error: r.csv: exists already; add --force to replace it\n")
     assert centrode("sweep", "study.toml", "--out", "r.csv", "--force").code == 0
 
 
@@ -104,7 +104,7 @@ def test_no_mechanism_that_moves_is_exit_3(centrode: Centrode, folder: Path, stu
     study.write_text(STUDY.replace('{ from = "3.2 m", to = "3800 mm", count = 3 }', "[20.0, 21.0]"))
     done = centrode("sweep", "study.toml", "--out", "r.csv")
     assert done.code == 3
-    assert "no mechanism is ok at any sample" in done.err
+    assert "no mechanism has a valid sample" in done.err
     assert done.rows["ok"] == "at every sample 0, at some 0, at none 4"
     assert done.rows["angle.DB"] == "no number"
     assert (folder / "r.csv").exists()
@@ -116,7 +116,7 @@ WRONG = [
     (STUDY.replace("crank-rocker", "crank-rokcer"), 'did you mean "crank-rocker"'),
     (STUDY.replace("outputs", "output"), 'unknown key "output"; did you mean "outputs"'),
     (STUDY.replace('["position.B", "angle.DB"]', "3"), "expected a list of texts"),
-    (STUDY.replace("samples = 19", "samples = 0"), "0 samples were asked for"),
+    (STUDY.replace("samples = 19", "samples = 0"), "0 samples are given"),
     (STUDY.replace("samples = 19", 'samples = "many"'), "expected a whole number"),
     (STUDY.replace("180 deg", "180 kg"), "to: expected an angle"),
     (STUDY.replace('to = "180 deg"', "to = [1]"), "to: expected a number or a text"),
@@ -124,7 +124,7 @@ WRONG = [
     (STUDY.replace('"range"', "[1]"), "expected a text, or a table of formulas"),
     (STUDY.replace("count = 3", "number = 3"), 'unknown key "number"'),
     (STUDY.replace(", count = 3", ""), "count is missing"),
-    (STUDY.replace("3800 mm", "3000 mm"), "does not rise"),
+    (STUDY.replace("3800 mm", "3000 mm"), "does not increase"),
     (STUDY.replace("links.AB", "links.AX"), "there is no"),
     (STUDY.replace("[grid]", 'executor = "machine codes"\n[grid]'), 'did you mean "machine code"'),
     (STUDY.replace("[grid]", "executor = 3\n[grid]"), "executor: expected a text"),
@@ -173,4 +173,4 @@ def test_an_interrupted_table_is_not_written(
     pytest.importorskip("zarr", reason="stores need the extra sweeps")
     done = centrode("sweep", "study.toml", "--out", "r.zarr")
     assert done.code == 130
-    assert "the same command goes on from there" in done.err
+    assert "the same command resumes from there" in done.err

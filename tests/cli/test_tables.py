@@ -91,7 +91,7 @@ def test_single_tables_with_commas_and_as_workbooks(
 def test_a_workbook_that_stands_there_is_kept(centrode: Callable[..., Any], folder: Path) -> None:
     (folder / "a.xlsx").write_text("mine", encoding="utf-8")
     done = centrode("limits", "kite", "--out", "a.csv", "--xlsx")
-    assert (done.code, done.err) == (2, "Error: a.xlsx: exists already; say --force to replace it\n")
+    assert (done.code, done.err) == (2, "Error: a.xlsx: exists already; add --force to replace it\n")
     assert [file.name for file in folder.iterdir()] == ["a.xlsx"]
     assert (folder / "a.xlsx").read_text(encoding="utf-8") == "mine"
     assert centrode("limits", "kite", "--out", "a.csv", "--xlsx", "--force").code == 0
@@ -106,9 +106,7 @@ def test_no_table_to_spell(words: str, option: str, centrode: Callable[..., Any]
     (folder / "study.toml").write_text(STUDY, encoding="utf-8")
     done = centrode(*words.split(), option)
     assert (done.code, done.out) == (2, "")
-    assert done.err == (
-        f"Error: {option}: no table is written; name a file .csv with --out, or leave it out\n"
-    )
+    assert done.err == (f"Error: {option}: no table is written; name a file .csv with --out, or omit it\n")
     assert [file.name for file in folder.iterdir()] == ["study.toml"]
 
 
@@ -127,7 +125,7 @@ def test_workbooks_without_what_writes_them(words: list[str], tmp_path: Path) ->
     assert done.stderr == (
         "Error: workbooks need XlsxWriter, which is not installed;"
         ' install the extra tables: pip install -e ".[tables]" in the folder with the source files,'
-        " or take the CSV files\n"
+        " or use the CSV files\n"
     )
     assert list(tmp_path.iterdir()) == []
 

@@ -194,7 +194,7 @@ REFUSED: list[tuple[ct.Mechanism, str]] = [
     (crank(), "neither masses nor loads"),
     (
         crank(link={"points": {"O": [0, 0], "A": [1, 0], "B": [0, 1]}, "mass": 1, "inertia": 1}),
-        "nothing says where its centre of mass is",
+        "the position of its centre of mass is not given",
     ),
     (crank(link={"mass": 1, "centre": "A"}), "no moment of inertia"),
     (crank(link={"mass": 1, "centre": "A", "shape": "disc"}), "a disc needs a radius"),
@@ -221,10 +221,13 @@ def test_incomplete_masses_and_loads_are_refused(mechanism: ct.Mechanism, reason
     [
         ({"kind": "force", "point": "Z", "vector": [1, 0]}, "unknown point"),
         ({"kind": "force", "point": "A"}, '"vector" is missing'),
-        ({"kind": "force", "guide": "A", "value": 1, "vector": [1, 0]}, "belongs to a force in a point"),
+        (
+            {"kind": "force", "guide": "A", "value": 1, "vector": [1, 0]},
+            "is used with a force in a point only",
+        ),
         (
             {"kind": "force", "point": "A", "vector": [1, 0], "table": [[0, 1], [1, 2]]},
-            "belongs to a force along a guide",
+            "is used with a force along a guide only",
         ),
         ({"kind": "force", "guide": "A"}, "one of value, table is missing"),
         ({"kind": "force", "guide": "A", "table": [[1, 1], [0, 2]]}, "displacements that increase"),
@@ -234,7 +237,7 @@ def test_incomplete_masses_and_loads_are_refused(mechanism: ct.Mechanism, reason
         ({"kind": "force", "point": "A", "vector": ["3 kg", 0]}, "kg"),
         ({"kind": "force", "point": "A", "vector": ["3*w", 0]}, "unknown name"),
         ({"kind": "spring", "points": ["A", "D"], "stiffness": -1}, "must not be negative"),
-        ({"kind": "torque", "link": "OA", "value": 1, "while_moving": [1, 0]}, "does not belong to a torque"),
+        ({"kind": "torque", "link": "OA", "value": 1, "while_moving": [1, 0]}, "is not used with a torque"),
     ],
 )
 def test_wrong_loads_are_refused(load: dict[str, Any], reason: str) -> None:
@@ -304,7 +307,7 @@ def test_the_plain_sum_takes_squares_from_the_drive() -> None:
 
 def test_friction_by_a_coefficient_is_not_reduced() -> None:
     rubbing = crank({"kind": "friction", "point": "O", "radius": 0.01, "coefficient": 0.1})
-    with pytest.raises(ct.NotComputedYet, match="needs the reactions; ask for the reactions"):
+    with pytest.raises(ct.NotComputedYet, match="needs the reactions; compute the reactions"):
         ct.reduce(rubbing)
 
 

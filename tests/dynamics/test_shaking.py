@@ -267,13 +267,13 @@ def test_absence_stays_absence() -> None:
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"about": "Q"}, "no point of the frame"),
+        ({"about": "Q"}, "is not a point of the frame"),
         ({"about": (1.0, math.nan)}, "two finite coordinates"),
         ({"about": (1.0,)}, "two finite coordinates"),
         ({"speed": "fast"}, "not a speed of the drive"),
         ({"speed": "steady"}, r"\[machine\]"),
-        ({"orders": 0}, "harmonics were asked for"),
-        ({"orders": 1000}, "harmonics were asked for"),
+        ({"orders": 0}, "harmonics are given"),
+        ({"orders": 1000}, "harmonics are given"),
         ({"samples": 0}, "samples"),
     ],
 )

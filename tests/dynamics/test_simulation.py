@@ -342,7 +342,9 @@ def test_random_mechanisms_keep_their_balance(seed: int) -> None:
     try:
         found = ct.simulate(mechanism, settings)
     except ct.InputError as refused:
-        assert "nothing carries the motion" in refused.what  # the crank may have no mass
+        assert (
+            "moment of inertia is zero where" in refused.what or "no link has a mass" in refused.what
+        )  # the crank may have no mass
         return
     near = found.attrs["ended"] == "limit"
     turnover = sum(

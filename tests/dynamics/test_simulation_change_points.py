@@ -117,7 +117,7 @@ def test_a_start_at_a_change_point() -> None:
 
 
 def test_beyond_a_change_point_nothing_starts() -> None:
-    with pytest.raises(ct.InputError, match="does not get to"):
+    with pytest.raises(ct.InputError, match="does not reach"):
         ct.simulate(parallelogram(), ct.Simulation(start=4.0, speed=1, duration=1))
 
 

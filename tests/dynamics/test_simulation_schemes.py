@@ -105,7 +105,7 @@ def settings(**values: Any) -> ct.Simulation:
 @pytest.mark.parametrize(
     ("mechanism", "given", "message"),
     [
-        (pendulum(), ct.Simulation(speed=1), "how long it runs"),
+        (pendulum(), ct.Simulation(speed=1), "the duration is not given"),
         (pendulum(), ct.Simulation(turns=1, driving="sin(t)"), "give duration too"),
         (sledge(), settings(turns=2), "does not turn"),
         (rotor(), settings(turns=1, scheme="runge-kutta-4"), "fixed steps"),
@@ -132,9 +132,9 @@ def test_a_start_at_a_dead_point() -> None:
     mechanism = crank_rocker(rocker=1.0)
     limit = ct.limits(mechanism).interval[1]
     for start in (limit, limit - 1e-8):
-        with pytest.raises(ct.InputError, match="dead point"):
+        with pytest.raises(ct.InputError, match="dead position"):
             ct.simulate(mechanism, settings(start=start))
-    with pytest.raises(ct.InputError, match=r"does not get to|dead point"):
+    with pytest.raises(ct.InputError, match=r"does not reach|dead position"):
         ct.simulate(mechanism, settings(start=limit + 0.3))
 
 
@@ -143,7 +143,7 @@ def test_nothing_that_moves_it() -> None:
     found = ct.simulate(rotor(), ct.Simulation(duration=2, samples=3))
     assert found.attrs["ended"] == "standstill"
     assert found.drive_speed.values.tolist() == [0, 0, 0]
-    with pytest.raises(ct.MotionError, match="nothing sets it in motion"):
+    with pytest.raises(ct.MotionError, match="no force sets the mechanism in motion"):
         ct.simulate(rotor(), ct.Simulation(turns=2))
 
 
@@ -172,7 +172,7 @@ speed = 1
 [assembly]
 sides = { B = "ahead" }
 """
-    with pytest.raises(ct.InputError, match="nothing carries the motion"):
+    with pytest.raises(ct.InputError, match="the reduced moment of inertia is zero"):
         ct.simulate(ct.parse_mechanism(text), settings(speed=3))
     assert (
         ct.simulate(
@@ -233,7 +233,7 @@ def test_instants_that_are_refused(at: Any) -> None:
         (rotor(), ct.Simulation(driving="sin(t)", duration=1), "depend on time"),
         (rotor(), ct.Simulation(driving="1", speed=1), "does not settle"),
         (rotor(), ct.Simulation(driving="1 - q", speed=1), "do not repeat"),
-        (rotor(), ct.Simulation(driving="-1", speed=1), "comes to rest|does not settle"),
+        (rotor(), ct.Simulation(driving="-1", speed=1), "machine stops|does not settle"),
         (crank_rocker(rocker=1.0), ct.Simulation(driving="1 - v", speed=1), "turns all the way round"),
     ],
 )

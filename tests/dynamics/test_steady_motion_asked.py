@@ -82,7 +82,9 @@ def test_the_period_is_found(ratio: float, turns: int) -> None:
 
 
 def test_what_never_repeats_is_refused() -> None:
-    with pytest.raises(ct.InputError, match="not back in its first position after 60 turns of the drive"):
+    with pytest.raises(
+        ct.InputError, match="does not return to its initial position after 60 turns of the drive"
+    ):
         ct.flywheel(geared(math.sqrt(2)))
 
 

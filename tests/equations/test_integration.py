@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 TURNING = Worked((0.5, 1.9, 3.5))
 LOCKING = Worked((0.5, 4.7, 5.7))
 LIMIT = 1.79991241652444
-"""Where CB and BD fall in line: |CD| = 2 (computed to 30 digits beside the example)."""
+"""Where CB and BD are collinear: |CD| = 2 (computed to 30 digits beside the example)."""
 
 
 def turn(steps: int) -> Array:

@@ -203,5 +203,5 @@ def test_other_axes_are_told() -> None:
     assert "Axes" not in ct.summary(ct.equations(ct.Mechanism.model_validate(parts), ["C"]))
     parts["frame"]["points"] = {"A": [0.2, 0.1], "D": [1.4, 0.1]}
     text = ct.summary(ct.equations(ct.Mechanism.model_validate(parts), ["C"]))
-    assert "x runs through A, D lies in the half-plane of x and y" in text
+    assert "x passes through A, D lies in the half-plane of x and y" in text
     assert "cos BC = " in text and " cos AD" in text

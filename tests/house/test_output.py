@@ -94,7 +94,7 @@ def test_a_folder_without_permission_is_refused(tmp_path: Path) -> None:
 def test_a_folder_where_a_file_has_to_go_leaves_everything_alone(tmp_path: Path) -> None:
     (tmp_path / "summary.json").mkdir()
     with (
-        pytest.raises(InputError, match="is a folder, and a file has to go there"),
+        pytest.raises(InputError, match="is a folder, but a file is to be written there"),
         output_folder(tmp_path) as draft,
     ):
         (draft / "motion.csv").write_text("new")
@@ -114,7 +114,7 @@ def test_file_is_written_whole_and_with_the_usual_permissions(tmp_path: Path) ->
 def test_file_is_not_replaced_unless_forced(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text("mine")
-    with pytest.raises(InputError, match="exists already; say --force to replace it"):
+    with pytest.raises(InputError, match="exists already; add --force to replace it"):
         write_file(path, "new")
     assert path.read_text() == "mine"
     write_file(path, "new", force=True)

@@ -42,7 +42,8 @@ def test_words_that_do_not_apply() -> None:
 
 def test_nothing_said_of_the_side() -> None:
     with pytest.raises(
-        ct.InputError, match=r"nothing says on which side .* give the initial angle of AB or DB"
+        ct.InputError,
+        match=r"the side on which it is assembled is not given.* give the initial angle of AB or DB",
     ):
         started(four_bar(1.0, 3.5, 3.0, 4.0, assembly={}))
 
@@ -88,9 +89,7 @@ def test_initial_angles_hold_to_five_degrees(off: float, refused: bool) -> None:
     parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0, assembly={}))
     parts["links"]["DB"]["angle"] = float(right["angle"].sel(link="DB")[0]) + np.radians(off)
     if refused:
-        with pytest.raises(
-            ct.InputError, match=rf"does not assemble: the position has .* deg, {abs(off):.3g} deg off"
-        ):
+        with pytest.raises(ct.InputError, match=rf"it has .* deg, a difference of {abs(off):.3g} deg"):
             started(ct.Mechanism(**parts))
     else:
         found = started(ct.Mechanism(**parts))
@@ -114,7 +113,7 @@ def test_an_initial_angle_that_contradicts_the_side_is_a_mistake() -> None:
     parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0))
     right = started(four_bar(1.0, 3.5, 3.0, 4.0))
     parts["links"]["DB"]["angle"] = float(right["angle"].sel(link="DB")[0]) + np.radians(46.0)
-    with pytest.raises(ct.InputError, match="46 deg off"):
+    with pytest.raises(ct.InputError, match="a difference of 46 deg"):
         started(ct.Mechanism(**parts))
 
 
@@ -138,9 +137,9 @@ def test_links_too_short_or_too_long_are_told_by_how_much() -> None:
 
 def test_a_flat_triangle_does_not_tell_its_side() -> None:
     flat = four_bar(1.0, 1.5, 1.5, 4.0, assembly={}, drives=[{"link": "OA", "start": 0.0, "speed": 1.0}])
-    with pytest.raises(ct.InputError, match="its triangle is flat in the initial position"):
+    with pytest.raises(ct.InputError, match="its triangle is degenerate in the initial position"):
         started(flat)
-    with pytest.raises(ct.InputError, match="flat"):
+    with pytest.raises(ct.InputError, match="degenerate"):
         parts = parts_of(ct.example("kite"))
         parts["drives"][0]["start"] = np.pi
         parts["links"]["AB"]["angle"] = 0.0
@@ -151,7 +150,7 @@ def test_a_flat_triangle_does_not_tell_its_side() -> None:
 def test_the_drive_and_the_initial_angle_have_to_agree() -> None:
     parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0))
     parts["links"]["OA"]["angle"] = 1.1
-    with pytest.raises(ct.InputError, match=r"it starts at 1 rad, but the initial angle says 1\.1 rad"):
+    with pytest.raises(ct.InputError, match=r"it starts at 1 rad, but the initial angle is 1\.1 rad"):
         started(ct.Mechanism(**parts))
     parts["links"]["OA"]["angle"] = 1.0 + 2 * np.pi
     assert point(started(ct.Mechanism(**parts)), "B")[0] == pytest.approx(
@@ -181,5 +180,5 @@ def test_a_constraint_that_repeats_others_has_to_fit_everywhere() -> None:
     ):
         started(ct.Mechanism(**parts))
     parts["links"]["FB"]["length"] += 0.01
-    with pytest.raises(ct.InputError, match=r"is off by 0\.01 m"):
+    with pytest.raises(ct.InputError, match=r"residual of this constraint is 0\.01 m"):
         started(ct.Mechanism(**parts))

@@ -59,7 +59,7 @@ def test_wheels_turn_in_their_ratio_and_do_not_slip(
 
 
 def test_a_planet_on_a_fixed_wheel_rolls_on_it() -> None:
-    """The arm carries a wheel around a fixed one: its axis against the frame is the common generator."""
+    """The arm carries a wheel around a fixed one: its axis relative to the frame is the common generator."""
     mechanism = ct.parse_mechanism(
         """
 space = "sphere"

@@ -181,14 +181,14 @@ def test_a_cam_that_is_not_that_of_the_motion_is_not_drawn(read):
     ("linkage", "cam", "old", "new", "message"),
     [
         (SLIDE, LIFT, '"cam.toml"', '"none.toml"', "cam: none.toml: there is no such file"),
-        (SLIDE, LIFT, '"cam.toml"', '"../cam.toml"', "does not lie beside the description"),
-        (SLIDE, LIFT, '"cam.toml"', '"/etc/passwd.toml"', "does not lie beside the description"),
+        (SLIDE, LIFT, '"cam.toml"', '"../cam.toml"', "is not in the folder of the description"),
+        (SLIDE, LIFT, '"cam.toml"', '"/etc/passwd.toml"', "is not in the folder of the description"),
         (SLIDE, LIFT, '"cam.toml"', '"valve-cm"', 'did you mean "valve-cam"?'),
         (SLIDE, LIFT, '"cam.toml"', "3", "expected the name of a cam's file"),
         (SLIDE, LIFT, '"cam.toml"', '"cam-from-curvature"', "no follower whose lift"),
         (SLIDE, LIFT, '"cam.toml"', '"linkage.toml"', "does not describe a cam"),
         (SLIDE, LIFT, '"cam.toml"', '"cam.toml"\nspeed = 1', "speed, cam are given together"),
-        (SLIDE, LIFT, 'cam = "cam.toml"', "speed = 1\ncam_speed = 1", "cam_speed belongs to a cam"),
+        (SLIDE, LIFT, 'cam = "cam.toml"', "speed = 1\ncam_speed = 1", "cam_speed is used with a cam only"),
         (SLIDE, LIFT, '"cam.toml"', '"cam.toml"\ncam_speed = 0', "must be positive"),
         (SLIDE, LIFT, '"cam.toml"', '"cam.toml"\ncam_speed = "5 mm"', "expected an angular speed"),
         (
@@ -196,7 +196,7 @@ def test_a_cam_that_is_not_that_of_the_motion_is_not_drawn(read):
             LIFT,
             '"cam.toml"',
             '"cam.toml"\ncam_point = "A"',
-            "cam_point belongs to a follower that oscillates",
+            "cam_point is used with an oscillating follower only",
         ),
         (SLIDE, LIFT, '"cam.toml"', '"cam.toml"\nlowers = 1', "expected true or false"),
         (SLIDE, SWING, "", "", "the cam's follower oscillates, but a displacement is driven"),
@@ -204,7 +204,7 @@ def test_a_cam_that_is_not_that_of_the_motion_is_not_drawn(read):
         (ROCKER, SWING, 'cam_point = "R"', 'cam_point = "S"', 'has no point "S"'),
         (ROCKER, SWING, 'cam_point = "R"', 'cam_point = "C"', "is the pivot of the follower"),
         (ROCKER, SWING, 'cam_point = "R"', 'cam_point = "B"', "has an arm of 0.06 m"),
-        (SLIDE, LIFT.replace('speed = "120 rpm"', ""), "", "", "nothing says how fast the cam turns"),
+        (SLIDE, LIFT.replace('speed = "120 rpm"', ""), "", "", "the speed of the cam is not given"),
         (SLIDE, LIFT.replace("90 deg", "80 deg"), "", "", "leave a gap"),
         (
             SLIDE,
@@ -224,7 +224,7 @@ def test_wrong_drives_are_refused(read, linkage, cam, old, new, message):
 
 def test_no_cam_drives_on_the_sphere():
     text = example_text("spherical-four-bar")
-    with pytest.raises(ct.InputError, match="plate cams are for the plane"):
+    with pytest.raises(ct.InputError, match="disc cams are planar"):
         ct.parse_mechanism(_driven_by_cam(text))
 
 

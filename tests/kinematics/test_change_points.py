@@ -161,7 +161,9 @@ def test_start_at_a_change_point_needs_a_side_and_goes_on() -> None:
     there["drives"][0]["start"] = 0.0
     there["links"]["DB"].pop("angle")
     there["links"]["AB"].pop("angle")
-    with pytest.raises(ct.InputError, match=r'flat in the initial position.*sides, B = "left" \| "right"'):
+    with pytest.raises(
+        ct.InputError, match=r'degenerate in the initial position.*sides, B = "left" \| "right"'
+    ):
         ct.motion(ct.Mechanism(**there))
     for side, form in (("left", EXACT["parallelogram"][1]), ("right", antiparallelogram)):
         # going up from 0, B lies left of A -> D in the parallelogram, right in the antiparallelogram

@@ -164,7 +164,7 @@ def test_start_by_the_initial_angles() -> None:
     here = ct.motion(given, at=[abs(e - (2 - 1j))])
     assert abs(point(here, "E")[0] - e) <= 16 * EPS
     assert (data.status == ct.Status.OK).all()
-    with pytest.raises(ct.InputError, match="nothing says how long the cylinder is"):
+    with pytest.raises(ct.InputError, match="the initial length of the cylinder is not given"):
         ct.check(ct.Mechanism(frame=frame, links={"OE": {"length": 1.5}}, drives=[drive]))
 
 

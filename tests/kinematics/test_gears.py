@@ -246,7 +246,7 @@ def test_gears_that_lock_are_told() -> None:
         gears=[{"links": ["frame", "wheel"], "carrier": "OA", "ratio": 1.0}],
         drives=[{"link": "wheel", "start": 0.0, "speed": 1.0}],
     )
-    with pytest.raises(ct.InputError, match="lock each other or leave an angle open"):
+    with pytest.raises(ct.InputError, match="block each other or leave an angle undetermined"):
         ct.check(mechanism)
 
 

@@ -101,13 +101,13 @@ def with_drives(mechanism: ct.Mechanism, first: float, second: float) -> ct.Mech
 
 LIMITS_WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "unknown": ({"drive": "AO"}, "no drive AO"),
-    "which": ({}, "say which one moves: OA, EC"),
+    "which": ({}, "name the drive that moves: OA, EC"),
     "held and moving": ({"drive": "OA", "held": {"OA": 1.0}}, "the one that moves"),
     "held unknown": ({"drive": "OA", "held": {"OX": 1.0}}, "no drive OX"),
     "held in metres": ({"drive": "OA", "held": {"EC": "1 m"}}, "expected an angle"),
     "open": ({"drive": "OA", "held": {"EC": 0.0}, "about": np.pi}, "does not close there"),
-    "far": ({"drive": "OA", "about": 1e9}, "about: it reaches too far"),
-    "held far": ({"drive": "OA", "held": {"EC": 1e300}}, "hold EC: it reaches too far"),
+    "far": ({"drive": "OA", "about": 1e9}, "about: it is too long"),
+    "held far": ({"drive": "OA", "held": {"EC": 1e300}}, "hold EC: it is too long"),
     "not finite": ({"drive": "OA", "about": float("inf")}, "about"),
 }
 
@@ -211,7 +211,7 @@ def test_a_group_of_higher_class_with_a_drive_between_moving_links() -> None:
 
 
 def test_too_far_to_be_brought_there() -> None:
-    with pytest.raises(ct.InputError, match="reaches too far"):
+    with pytest.raises(ct.InputError, match="is too long"):
         ct.limits(ct.example("geared-five-bar"), about=1e7)
 
 

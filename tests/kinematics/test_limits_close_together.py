@@ -10,7 +10,7 @@ from mechanisms import EPS
 
 CRANK, ROD, HEIGHT, REACH = 0.5, 1.0, 1.2, 1.6
 DEAD = np.pi - np.arcsin((HEIGHT - ROD) / CRANK)
-"""Where the rod AC stands square to its guide: C's speed is infinite there."""
+"""Where the rod AC is perpendicular to its guide: C's speed is infinite there."""
 
 
 def slider_at(turn: float) -> float:

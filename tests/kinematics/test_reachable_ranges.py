@@ -53,7 +53,7 @@ def test_a_rocker_swings_between_its_limits_wherever_it_starts(start: float, sid
 
 
 def test_a_rocker_on_the_sphere() -> None:
-    """C runs on a great circle through A; it stops where the arcs of crank and coupler fall in line."""
+    """C runs on a great circle through A; it stops where the arcs of crank and coupler are collinear."""
     sphere = ct.Mechanism(
         space="sphere",
         frame={"points": {"A": [1, 0, 0], "D": [0, 1, 0], "Z": [0, 0, 1]}},
@@ -117,6 +117,6 @@ def test_words_that_do_not_fit_are_refused(study: dict[str, Any], told: str) -> 
 
 def test_a_range_of_time_has_no_reachable_values() -> None:
     mechanism = ct.example("five-bar-two-drives").with_range("reachable")
-    with pytest.raises(ct.InputError, match=r"\[study\] range: the reachable range is that of one drive"):
+    with pytest.raises(ct.InputError, match=r"\[study\] range: the reachable range is defined for one drive"):
         ct.motion(mechanism)
     assert ct.motion(mechanism, samples=3, start=0.0, stop=0.1).sizes["sample"] == 3

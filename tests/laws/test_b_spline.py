@@ -153,10 +153,12 @@ def test_degrees_are_bounded(degree: int) -> None:
 
 
 def test_ends_take_fewer_derivatives_than_the_degree() -> None:
-    with pytest.raises(InputError, match="degree 3 takes fewer derivatives at an end than that, got 3"):
+    with pytest.raises(
+        InputError, match="degree 3 admits fewer derivatives at an end than its degree, got 3"
+    ):
         LawSegment(1.0, 1.0, "b-spline", (0.0, 0.0, 0.0), (), (), 3)
 
 
 def test_what_cannot_be_computed_is_refused() -> None:
-    with pytest.raises(InputError, match="beyond what can be computed"):
+    with pytest.raises(InputError, match="cannot be computed"):
         b_spline([(0.0, (0.0, 1e308, 1e308)), (1e3, (0.0,))], 5)

@@ -95,5 +95,5 @@ def test_the_known_polynomials_come_out() -> None:
 
 
 def test_what_cannot_be_computed_is_refused() -> None:
-    with pytest.raises(InputError, match="beyond what can be computed"):
+    with pytest.raises(InputError, match="cannot be computed"):
         polynomial([(0.0, (0.0, 1e300, 1e300)), (1e50, (1.0,))])

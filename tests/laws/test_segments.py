@@ -119,8 +119,8 @@ def test_laws_can_be_sent_and_compared() -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"time": 0.0}, "time of a segment is positive"),
-        ({"time": -1.0}, "time of a segment is positive"),
+        ({"time": 0.0}, "time of a segment must be positive"),
+        ({"time": -1.0}, "time of a segment must be positive"),
         ({"time": math.inf}, "finite"),
         ({"to": math.nan}, "finite"),
         ({"curve": "cycloid"}, "known curve"),

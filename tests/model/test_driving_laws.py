@@ -125,7 +125,7 @@ def test_a_drive_may_follow_a_b_spline() -> None:
 def test_repeated_segments_need_a_time_to_run() -> None:
     lines = 'segments = [{ to = "1 turn", time = "3 s", curve = "cycloidal" }]\nrepeat = true'
     mechanism = parse_mechanism(driven(lines) + '[assembly]\nsides = { B = "left" }')
-    with pytest.raises(InputError, match="nothing says how long"):
+    with pytest.raises(InputError, match="duration is not given"):
         ct.motion(mechanism, samples=3)
     motion = ct.motion(mechanism, samples=3, stop=9)
     assert motion.angle.sel(link="OA").values[-1] == pytest.approx(1 + 6 * math.pi, rel=1e-15)
@@ -141,12 +141,15 @@ def test_repeated_segments_need_a_time_to_run() -> None:
         ('to = 1, time = 1, curve = "cycloid"', 'got "cycloid"; did you mean "cycloidal"?'),
         ("to = 1, time = 1, curve = 3", 'segment 1, curve: expected one of "uniform", "harmonic"'),
         ('time = 1, curve = "3-4-5"', 'segment 1: "to" is missing'),
-        ('to = 1, time = 1, curve = "dwell"', "segment 1: a dwell stays where it is and has no `to`"),
+        (
+            'to = 1, time = 1, curve = "dwell"',
+            "segment 1: the lift stays constant in a dwell, so it has no `to`",
+        ),
         ('to = 1, tme = 1, time = 1, curve = "uniform"', 'unknown key "tme"; did you mean "time"?'),
         ('to = "1 mm", time = 1, curve = "uniform"', "segment 1, to: expected an angle (rad)"),
         (
             'to = 1, time = 1, curve = "uniform", speed_at_start = 0',
-            'speed_at_start belongs to a polynomial or a B-spline; take it out, or write curve = "polynomial" or',
+            'speed_at_start is used with a polynomial or a B-spline only; remove it, or write curve = "polynomial" or',
         ),
         (
             'to = 1, time = 1, curve = "polynomial", jerk_at_end = 1, speed_at_end = 1',
@@ -158,12 +161,12 @@ def test_repeated_segments_need_a_time_to_run() -> None:
         ),
         (
             'to = 1, time = 1, curve = "polynomial", through = [[0.5, 1], [1.5, 2]]',
-            "the times of `through` increase and lie inside the segment",
+            "the times of `through` must increase and lie inside the segment",
         ),
         ('to = 1, time = 1, curve = "polynomial", through = [0.5]', "expected [time, value], got 0.5"),
         (
             'to = 1, time = 1, curve = "polynomial", degree = 3',
-            "degree belongs to a B-spline; take it out; that of a polynomial follows from what is asked of it",
+            "degree is used with a B-spline only; remove it; the degree of a polynomial follows from its conditions",
         ),
         (
             'to = 1, time = 1, curve = "b-spline", degree = 99',
@@ -171,7 +174,7 @@ def test_repeated_segments_need_a_time_to_run() -> None:
         ),
         (
             'to = 1, time = 1, curve = "b-spline", degree = 2, speed_at_end = 0, acceleration_at_end = 0',
-            "a B-spline of degree 2 takes fewer derivatives at an end than that, got 2",
+            "a B-spline of degree 2 admits fewer derivatives at an end than its degree, got 2",
         ),
         (
             f'to = 1, time = 1, curve = "polynomial", through = {[[k / 20, 0] for k in range(1, 12)]}',
@@ -193,11 +196,11 @@ def test_bad_segments_are_refused(complaint: Callable[[str], str], keys: str, me
         ("segments = [3]", "segment 1: expected a table, got 3"),
         ('segments = [{ time = 1, curve = "dwell" }]\nspeed = 1', "speed, segments are given together"),
         ("", "one of speed, law, table, segments, cam is missing"),
-        ("speed = 1\nrepeat = true", "repeat belongs to segments; take it out, or give segments"),
+        ("speed = 1\nrepeat = true", "repeat is used with segments only; remove it, or give segments"),
         ('segments = [{ time = 1, curve = "dwell" }]\nrepeat = 1', "repeat: expected true or false, got 1"),
         (
             'segments = [{ time = 1e20, curve = "dwell" }, { time = 1, curve = "dwell" }]',
-            "segment 2 is too short beside those before it",
+            "segment 2 is too short compared with those before it",
         ),
         (f"segments = [{'3, ' * 501}]", "at most 500 entries are allowed, got 501"),
     ],

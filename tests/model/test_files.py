@@ -70,7 +70,7 @@ def test_sphere_and_plane_do_not_mix(complaint: Complaint) -> None:
     assert "expected an arc (rad)" in complaint(SPHERE.replace("15 deg", "15 mm"))
     assert '"pole" is missing' in complaint(SPHERE.replace('pole = "D"', ""))
     assert "unit vector" in complaint(SPHERE.replace("[1, 0, 0]", "[1, 1, 0]"))
-    assert "through belongs to the plane" in complaint(
+    assert "through is used in the plane only" in complaint(
         SPHERE.replace('pole = "D"', 'pole = "D"\nthrough = [0, 0]')
     )
     assert "expected a length" in complaint(FOUR_BAR.replace("3.5", '"30 deg"'))

@@ -180,7 +180,11 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
         ),
         ('from = "90 deg"', 'from = "100 deg"', "ends at 90 deg: a gap"),
         ('to = 0\ncurve = "b-spline"', 'to = "1 mm"\ncurve = "b-spline"', "the lift does not return"),
-        ('to = "25 mm"', 'to = "-25 mm"', "[[segments]] 1, to: the lift is counted from its lowest place"),
+        (
+            'to = "25 mm"',
+            'to = "-25 mm"',
+            "[[segments]] 1, to: the lift is measured from its lowest position",
+        ),
         ('to = "25 mm"', 'to = "25 deg"', 'expected a length (m), got "25 deg"'),
         ('to = "25 mm"\n', "", '[[segments]] 1: "to" is missing'),
         (
@@ -193,42 +197,50 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
         (
             'curve = "cycloidal"',
             'curve = "cycloidal"\nat_end = [0]',
-            "at_end belongs to a polynomial or a B-spline",
+            "at_end is used with a polynomial or a B-spline only",
         ),
-        ('curve = "cycloidal"', 'curve = "cycloidal"\ndegree = 3', "degree belongs to a B-spline"),
-        ('curve = "dwell"', 'curve = "dwell"\nto = 0.01', "a dwell stays where it is and has no `to`"),
+        ('curve = "cycloidal"', 'curve = "cycloidal"\ndegree = 3', "degree is used with a B-spline only"),
+        (
+            'curve = "dwell"',
+            'curve = "dwell"\nto = 0.01',
+            "the lift stays constant in a dwell, so it has no `to`",
+        ),
         ('at_start = [0, "0 mm/rad^2"]', 'at_start = [0, "1 mm/s^2"]', "expected a rate (m/rad^2), got"),
         ('at_start = [0, "0 mm/rad^2"]', 'at_start = ["fast"]', "expected a rate (m/rad), got"),
         ('at_start = [0, "0 mm/rad^2"]', f"at_start = {[0] * 9}", "at most 8 entries are allowed, got 9"),
-        ('through = [["60 deg", "15 mm"]]', 'through = [["160 deg", 0]]', "the angles of `through` increase"),
+        (
+            'through = [["60 deg", "15 mm"]]',
+            'through = [["160 deg", 0]]',
+            "the angles of `through` must increase",
+        ),
         ('through = [["60 deg", "15 mm"]]', "through = [0.5]", "expected [angle, lift], got 0.5"),
         (
             "degree = 4",
             "degree = 2",
-            "a B-spline of degree 2 takes fewer derivatives at an end than that, got 2",
+            "a B-spline of degree 2 admits fewer derivatives at an end than its degree, got 2",
         ),
         (
             'to = "25 mm"',
             "to = 1e30",
-            "[[segments]] 1: the lift runs away: with these conditions it may reach 1e+30 m",
+            "[[segments]] 1: the lift grows too large: with these conditions it may reach 1e+30 m",
         ),
-        ("at_start = [0,", "at_start = [1e20,", "[[segments]] 3: the lift runs away"),
+        ("at_start = [0,", "at_start = [1e20,", "[[segments]] 3: the lift grows too large"),
         (
             'through = [["60 deg", "15 mm"]]',
             'through = [["1e-30 rad", 0.015]]',
-            "[[segments]] 3: the lift runs away",
+            "[[segments]] 3: the lift grows too large",
         ),
         (
             'from = "90 deg"\nangle = "pi/4 rad"',
             'angle = "1e-7 rad"',
-            '"1e-7 rad" is beyond what can be computed with; stay above',
+            '"1e-7 rad" is outside the range that can be computed; stay above',
         ),
         ("degree = 4", "degree = 40", "degree must be a whole number from 1 to 15, got 40"),
         ('contact = "roller"\nroller_radius = "10 mm"', 'contact = "roller"', '"roller_radius" is missing'),
-        ('contact = "roller"', 'contact = "knife"', '"roller_radius" belongs to a roller; take it out'),
+        ('contact = "roller"', 'contact = "knife"', '"roller_radius" is used with a roller only; remove it'),
         ('contact = "roller"', 'contact = "ball"', 'expected one of "knife", "roller", "flat"'),
-        ('offset = "-6 mm"', 'arm = "6 mm"', '"arm" belongs to an oscillating follower'),
-        ('mass = "500 g"', 'inertia = "500 kg*mm^2"', '"inertia" belongs to an oscillating follower'),
+        ('offset = "-6 mm"', 'arm = "6 mm"', '"arm" is used with an oscillating follower'),
+        ('mass = "500 g"', 'inertia = "500 kg*mm^2"', '"inertia" is used with an oscillating follower only'),
         (
             'stiffness = "5 N/mm"',
             'stiffness = "5 N*m/deg"',
@@ -238,14 +250,14 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
         ('load = "20 N"', 'load = "20 N*m"', "[follower] load: expected a force (N)"),
         ('base_radius = "4 cm"', 'base_radius = "-4 cm"', "[cam]: base_radius must be positive"),
         ('turn = "clockwise"', 'turn = "left"', 'expected one of "counter-clockwise", "clockwise"'),
-        ('speed = "600 rpm"', 'speed = "10 Hz"', "does not tell turns from radians"),
+        ('speed = "600 rpm"', 'speed = "10 Hz"', "does not distinguish turns from radians"),
         ('pressure_angle = "30 deg"', 'pressure_angle = "90 deg"', "smaller than 90 deg"),
         ("samples = 73", "terms = 73", 'unknown key "terms"'),
         ("[tool]", "[tols]", 'unknown key "tols"'),
         (
             "[bounds]",
             '[curvature]\nlaw = "constant"\n[bounds]',
-            "[curvature] and [follower] do not go together",
+            "[curvature] and [follower] exclude each other",
         ),
     ],
 )
@@ -262,11 +274,11 @@ def test_what_is_wrong_is_told_with_its_place(old: str, new: str, told: str) -> 
         ('arm = "90 mm"\n', "", '"arm" is missing'),
         ('to = "20 deg"', 'to = "20 mm"', 'expected an angle (rad), got "20 mm"'),
         ('preload = "3 N*m"', 'preload = "3 N"', "expected a torque (N*m)"),
-        ('inertia = "800 kg*mm^2"', 'mass = "1 kg"', '"mass" belongs to a translating follower'),
+        ('inertia = "800 kg*mm^2"', 'mass = "1 kg"', '"mass" is used with a translating follower only'),
         (
             'pivot_distance = "110 mm"',
             'pivot_distance = "110 mm"\noffset = "3 mm"',
-            '"offset" belongs to a translating',
+            '"offset" is used with a translating',
         ),
         ('kind = "oscillating"', 'kind = "swinging"', 'expected one of "translating", "oscillating"'),
     ],
@@ -283,7 +295,7 @@ def test_a_segment_may_move_on_its_way_only() -> None:
     way = 'through = [["90 deg", "8 mm"], ["180 deg", "20 mm"], ["270 deg", "8 mm"]]\n'
     cam = parse_cam(head + 'curve = "b-spline"\nat_start = [0, 0]\nat_end = [0, 0]\n' + way)
     assert follower_motion(cam).lift(math.pi)[0] == pytest.approx(0.02, rel=1e-14)
-    with pytest.raises(InputError, match="there is no rise to compare laws for"):
+    with pytest.raises(InputError, match="there is no rise for which to compare laws"):
         cam_laws(cam)
     with pytest.raises(InputError, match="nothing moves"):
         parse_cam(head + 'curve = "polynomial"\n')

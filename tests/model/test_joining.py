@@ -92,19 +92,23 @@ def test_names_go_before_links() -> None:
         (
             'centre = "O", radius = 3, inside',
             "through = [0, 0], direction = 0, inside",
-            "inside belongs to a circle; take it out; turn the direction round",
+            "inside is used with a circle only; remove it; reverse the direction",
         ),
         (
             'centre = "O", radius = 3, inside = true',
             "through = [0, 0]",
             "one of direction, radius is missing",
         ),
-        ('centre = "O", radius', "radius", "radius and centre go together"),
+        ('centre = "O", radius', "radius", "radius and centre must be given together"),
         ('centre = "O", radius', 'centre = "Z", radius', "along.centre: the frame has no point"),
         ('centre = "A"', 'centre = "Q"', "[[rolling]] 1, centre: planet has no point"),
         ('link = "planet"', 'link = "frame"', '[[rolling]] 1, link: unknown link "frame"'),
         ("along", 'on = "planet"\nalong', "link planet cannot roll on itself"),
-        ("along", 'on = "OA"\nalong', 'point "A" is a point of OA already, the wheel cannot roll on it'),
+        (
+            "along",
+            'on = "OA"\nalong',
+            'point "A" already belongs to OA, so the wheel cannot roll on this link',
+        ),
         ("along", 'on = "AO"\nalong', '[[rolling]] 1, on: unknown link "AO"'),
         (
             '"E", "Q"',

@@ -157,15 +157,15 @@ def test_values_by_path() -> None:
             "A = [1, 0.1, 0]",
             "[frame.points] A: expected a unit vector, got one of length 1.00",
         ),
-        ("A = [1, 0, 0]", 'A = [0, "91 deg"]', "a latitude lies between -90 and 90 deg, got 91 deg"),
+        ("A = [1, 0, 0]", 'A = [0, "91 deg"]', "a latitude must lie between -90 and 90 deg, got 91 deg"),
         ("A = [1, 0, 0]", 'A = ["1 m", 0]', "expected an arc (rad)"),
         ("P = [0.3, -0.2]", "P = [0.3, -0.2, 1]", "expected a unit vector"),
         (
             "pole = [0.1, 0.2]",
             "pole = [0.1, 0.2]\ndirection = 0",
-            "direction belongs to the plane; on the sphere",
+            "direction is used in the plane only; on the sphere",
         ),
-        ("pole = [0.1, 0.2]", "pole = [0.1, 0.2]\nthrough = [0, 0]", "through belongs to the plane"),
+        ("pole = [0.1, 0.2]", "pole = [0.1, 0.2]\nthrough = [0, 0]", "through is used in the plane only"),
         ("pole = [0.1, 0.2]", 'pole = "placed"', "[[guides]] 1, pole: a pole cannot be placed; give its"),
         ("pole = [0.1, 0.2]", 'pole = "C"', "[[guides]] 1, pole: AB has no point"),
         (
@@ -176,12 +176,12 @@ def test_values_by_path() -> None:
         (
             '"45 deg"',
             '"45 deg"\nshape = "rod"',
-            "[links.BC] shape: rod belongs to the plane; write arc, disc or ring",
+            "[links.BC] shape: rod is used in the plane only; write arc, disc or ring",
         ),
         (
             "[[drives]]",
             '[assembly]\nsides = { C = "ahead" }\n[[drives]]',
-            "sides] C: ahead belongs to the plane",
+            "sides] C: ahead is used in the plane only",
         ),
         (
             "[[drives]]",
@@ -202,16 +202,20 @@ def test_values_by_path() -> None:
         ('reference = ["A", "D"]', 'reference = ["A", "A"]', "two different points are needed"),
         ('reference = ["A", "D"]', 'reference = ["A"]', "two different points are needed"),
         ('reference = ["A", "D"]', 'reference = ["A", "Q"]', '[links.AB] reference: unknown point "Q"'),
-        ("Z = [0, 0, 1]", "Z = [0, -1, 0]", "coincide or lie opposite make no arc to measure an angle from"),
+        (
+            "Z = [0, 0, 1]",
+            "Z = [0, -1, 0]",
+            "coincide or are diametrically opposite define no arc from which to measure an angle",
+        ),
         (
             'C = ["90 deg", 0]',
             "C = [0, 0]",
-            "[links.rocker] reference: two points that coincide or lie opposite",
+            "[links.rocker] reference: two points that coincide or are diametrically opposite",
         ),
         (
             "start = 0",
             'start = 0\nrelative_to = "rocker"',
-            'the drive is relative to rocker, but "A" of the reference is no point of it; name two points',
+            'the drive is relative to rocker, but "A" of the reference is not a point of it; name two points',
         ),
         ('space = "sphere"', 'space = "plane"', "expected a length (m)"),
     ],
@@ -228,7 +232,7 @@ def test_a_link_of_one_point_has_no_angle(complaint: Complaint) -> None:
 
 def test_a_reference_in_the_plane(complaint: Complaint) -> None:
     text = '[frame.points]\nO = [0, 0]\nD = [1, 0]\n[links.OA]\nlength = 1\nreference = ["O", "D"]\n'
-    assert "[links.OA] reference: reference belongs to the sphere; take it out" in complaint(text)
+    assert "[links.OA] reference: reference is used on the sphere only; remove it" in complaint(text)
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def test_numbers_in_si_keep_every_bit(number: float) -> None:
         ("0.5 rad", "length", "expected a length (m)"),
         ("5 slug", "length", "expected a length (m)"),
         ("5 m", "angle", "expected an angle (rad)"),
-        ("20 Hz", "angular speed", "Hz does not tell turns from radians: write rpm or rad/s"),
+        ("20 Hz", "angular speed", "Hz does not distinguish turns from radians: write rpm or rad/s"),
         ("2 kHz", "angular speed", "write rpm or rad/s"),
         ("2 deg", "angular speed", "expected an angular speed"),
         ("20 degC", "length", "expected a length"),

@@ -17,7 +17,7 @@ def rods(at: Places, names: str) -> Parts:
 
 
 def plate(at: Places, names: str, turn: float = 0.0) -> Parts:
-    """A link by coordinates: its first point is the origin, its axes are turned [rad] against the frame's."""
+    """A link by coordinates: its first point is the origin, its axes are turned [rad] relative to the frame's."""
     origin = complex(*at[names[0]])
     local = {name: (complex(*at[name]) - origin) * cmath.exp(-1j * turn) for name in names}
     return {"points": {name: [round(v.real, 3), round(v.imag, 3)] for name, v in local.items()}}

@@ -39,7 +39,7 @@ def test_the_front_and_its_parameters(found: CamChoice) -> None:
     expected = [1e-3 * one.parameters["curvature.k0"] for one in found.front.designs]
     np.testing.assert_allclose(first, expected, rtol=1e-15)
     texts = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert texts == ["best designs", "bound", "start, misses a bound", "chosen"]
+    assert texts == ["best designs", "bound", "start, violates a bound", "chosen"]
 
 
 def test_without_a_front_there_is_no_figure(found: CamChoice) -> None:

@@ -101,5 +101,5 @@ def test_same_bytes() -> None:
 
 @pytest.mark.parametrize("wrong", [b"", b"not", b"<svg", b"<p>text</p>", b"\xff\xfe"])
 def test_what_is_no_figure_is_refused(wrong: bytes) -> None:
-    with pytest.raises(InputError, match="a figure is no SVG"):
+    with pytest.raises(InputError, match="a figure is not SVG"):
         Drawings().embedded(wrong, "")

@@ -90,8 +90,8 @@ def test_a_report_speaks_its_language_and_leaves_the_other_alone() -> None:
         (ReportOptions(chapters=("date",)), 'there is no chapter "date"; did you mean "data"'),
         (ReportOptions(points=("Q",)), 'unknown point "Q"'),
         (ReportOptions(chapters=()), "chapters: no chapter is named; known are: data"),
-        (ReportOptions(digits=1), "numbers have 2 to 12 digits, 1 were asked for"),
-        (ReportOptions(digits=99), "numbers have 2 to 12 digits"),
+        (ReportOptions(digits=1), "the number of significant digits is 2 to 12, 1 is given"),
+        (ReportOptions(digits=99), "the number of significant digits is 2 to 12"),
     ],
 )
 def test_wrong_wishes(options: ReportOptions, message: str) -> None:

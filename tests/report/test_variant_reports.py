@@ -98,7 +98,7 @@ def test_the_sheet_tells_every_variant() -> None:
     tables = [block for block in blocks if isinstance(block, TableBlock)]
     assert tables[0].rows == (("a", "1.0000"), (r"\$b\$", "1.5000"))
     assert [cells[0] for cells in tables[1].rows] == ["a", r"\$b\$", "c"]
-    assert tables[1].rows[0][4].endswith(r"fall in line, stretched out (A and \$B\$ are 2.25 m apart)")
+    assert tables[1].rows[0][4].endswith(r"are collinear, extended (distance of A and \$B\$: 2.25 m)")
     assert tables[1].rows[2][4] == "length 2.50000 is wrong"  # as it was written
     assert tables[2].rows == (("a", "0.50000", "1.0000"), (r"\$b\$", "0.25000", "1.0000"))
     assert [cells[1] for cells in tables[3].rows] == ["0", "0"]  # rounding beside the rates of its kind

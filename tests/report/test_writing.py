@@ -58,7 +58,7 @@ def test_without_typst_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.parametrize(
     ("formats", "message"),
     [
-        (("docx",), 'format: "docx" is no format of a report; known are: html, pdf'),
+        (("docx",), 'format: "docx" is not a format of a report; known are: html, pdf'),
         ((), "no format is named"),
     ],
 )

@@ -183,10 +183,10 @@ def test_the_command_names_a_bad_block(
     assert main(command) == 0
     assert capsys.readouterr().err == (
         f"note: {store}: 1 block is damaged and is computed again: 5 (mechanisms 5 to 5)\n"
-        "11 mechanisms were there from an earlier run\n"
+        "11 mechanisms were computed in an earlier run\n"
     )
     assert main(command) == 0
-    assert capsys.readouterr().err == "12 mechanisms were there from an earlier run\n"
+    assert capsys.readouterr().err == "12 mechanisms were computed in an earlier run\n"
 
 
 def test_what_a_killed_run_was_writing_is_removed(store: Path) -> None:
@@ -249,7 +249,7 @@ def test_damaged_metadata_is_refused(
     file = store / name
     file.write_bytes(change(file.read_bytes()))
     before = {path: path.stat().st_mtime_ns for path in store.rglob("*")}
-    with pytest.raises(ct.InputError, match=f"{name} in it is damaged; delete the folder, or name another"):
+    with pytest.raises(ct.InputError, match=f"{name} in it is damaged; delete the folder, or give another"):
         swept(store)
     (store.parent / "study.toml").write_text(STUDY)
     assert main(["--lang", "en", "sweep", str(store.parent / "study.toml"), "--out", str(store)]) == 2
@@ -296,7 +296,7 @@ def foreign(path: Path, kind: str) -> None:
 def test_foreign_stores_are_refused(tmp_path: Path, kind: str) -> None:
     foreign(tmp_path / "r.zarr", kind)
     before = sorted(tmp_path.rglob("*"))
-    with pytest.raises(ct.InputError, match=r"is no folder|holds something else|holds another sweep"):
+    with pytest.raises(ct.InputError, match=r"is not a folder|holds something else|holds another sweep"):
         swept(tmp_path / "r.zarr")
     assert sorted(tmp_path.rglob("*")) == before
 
@@ -349,7 +349,7 @@ def test_what_unpacks_to_gigabytes_is_not_unpacked(store: Path, tmp_path: Path) 
     done = subprocess.run(program, capture_output=True, encoding="utf-8", check=True)
     named, found, code, refused, last = done.stderr.splitlines()
     assert "1 block is damaged and is computed again: 5" in named
-    assert (found, code, last) == ("11 mechanisms were there from an earlier run", "0", "2")
+    assert (found, code, last) == ("11 mechanisms were computed in an earlier run", "0", "2")
     assert refused.startswith("Error: ")
     assert "in it is damaged" in refused
 

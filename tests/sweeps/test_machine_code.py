@@ -140,7 +140,7 @@ def test_arcs_that_vary_give_the_same_bits_reduced(seed: int) -> None:
 def test_what_is_refused_is_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = ct.example(name)
     vary = around(mechanism, 0.001, 2)
-    with pytest.raises(ct.InputError, match=f"{REASONS[name]}; say executor"):
+    with pytest.raises(ct.InputError, match=f"{REASONS[name]}; use executor"):
         ct.sweep(mechanism, vary, "position", 3, executor=MACHINE)
     monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
     found = ct.sweep(mechanism, vary, "position", 3)
@@ -308,7 +308,7 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
 @pytest.mark.parametrize("threads", [0, 1000, True, "two", 1.0])
 def test_threads_are_counted(threads: Any) -> None:
     mechanism, vary = open_and_whole()
-    with pytest.raises(ct.InputError, match="is no number of threads; give a whole number"):
+    with pytest.raises(ct.InputError, match="is not a valid number of threads; give a whole number"):
         ct.sweep(mechanism, vary, "angle", 3, threads=threads)
 
 

@@ -302,7 +302,7 @@ def test_several_drives_are_left_to_the_arrays(monkeypatch: pytest.MonkeyPatch) 
     parts["links"]["QD"] = {"length": 0.5}
     parts["drives"].append({"link": "QD", "start": 0.0, "speed": 0.1})
     mechanism, vary = ct.Mechanism(**parts), {"links.AB.length": [4.99, 5.01]}
-    with pytest.raises(ct.InputError, match="groups of higher class with several drives; say executor"):
+    with pytest.raises(ct.InputError, match="groups of higher class with several drives; use executor"):
         ct.sweep(mechanism, vary, "position", 3, executor=MACHINE)
     monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
     monkeypatch.setattr(batch, "WORTH_COMPILING", 1)

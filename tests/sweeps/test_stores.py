@@ -99,7 +99,7 @@ def test_a_killed_run_goes_on(tmp_path: Path, study: Path, process: Process) -> 
     assert before, "it was never killed after a block"
     ended = process(study, store)
     assert ended.returncode == 0, ended.stderr
-    assert "were there from an earlier run" in ended.stderr
+    assert "were computed in an earlier run" in ended.stderr
     same(store, tmp_path / "whole.zarr")
     after = markers(store)
     assert {name: after[name] for name in before} == before
@@ -200,7 +200,7 @@ def test_folders_that_are_no_store(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     for name, message in (
         ("mine", "holds something else"),
-        ("file", "is no folder"),
+        ("file", "is not a folder"),
         ("file/r.zarr", "cannot be written"),
     ):
         with pytest.raises(ct.InputError, match=message):

@@ -67,15 +67,15 @@ def test_names_come_out_character_by_character(other: str, hostile: str, tmp_pat
     rotatability = ct.rotatability(mechanism)
     printed = ct.summary(rotatability)
     assert (
-        f"{other} and {hostile} fall in line, stretched out (C and D are 2 m apart): sin(phi3 - phi4) = 0"
+        f"{other} and {hostile} are collinear, extended (distance of C and D: 2 m): sin(phi3 - phi4) = 0"
         in printed
     )
     assert f"driven at {hostile}: " in printed and f"loop frame-{hostile}-{other}-C" in printed
     assert f"\nlinks.{hostile}.angle  " in ct.summary(found.repair)
     data = recorded(rotatability, tmp_path)
-    assert data["limits"][0]["cause"].startswith(f"{other} and {hostile} fall in line, stretched out")
+    assert data["limits"][0]["cause"].startswith(f"{other} and {hostile} are collinear, extended")
     assert data["limits"][0]["condition"] == "sin(phi3 - phi4) = 0"
-    for language, line in (("en", "fall in line"), ("ru", ""), ("uk", "")):
+    for language, line in (("en", "are collinear"), ("ru", ""), ("uk", "")):
         choose_language(language)
         chapter = document_chapter("rotatability", ROTATABILITY.view(found), Numbers(mechanism.display))
         cells = [text.replace(r"\$", "$") for text in texts_of((chapter,))]
@@ -92,5 +92,5 @@ def test_lengths_of_a_record_are_in_si(tmp_path: Path) -> None:
     arm = ct.rotatability(ct.example("excavator-arm"))
     assert "(O and K are 710.634 mm apart)" in ct.summary(arm)
     data = recorded(arm, tmp_path)
-    assert data["limits"][0]["cause"].endswith("(O and K are 0.710634 m apart)")
+    assert data["limits"][0]["cause"].endswith("(distance of O and K: 0.710634 m)")
     assert data["four_bars"][0]["inequality"].startswith("1.04426 m > 1.02407 m: ")

@@ -100,9 +100,9 @@ def test_names_that_look_like_kinds_stay() -> None:
 
 # The frame among links, in the case of its sentence.
 
-AGAINST = {"en": "{} against the frame", "ru": "{} относительно стойки", "uk": "{} відносно стояка"}
+AGAINST = {"en": "{} relative to the frame", "ru": "{} относительно стойки", "uk": "{} відносно стояка"}
 REFUSED = {
-    "en": ("the frame has no point", "both belong to the frame", "lie on the frame", "against the frame"),
+    "en": ("the frame has no point", "both belong to the frame", "lie on the frame", "relative to the frame"),
     "ru": ("у стойки нет точки", "принадлежат стойке", "лежать на стойке", "относительно стойки"),
     "uk": ("у стояка немає точки", "належать стояку", "лежати на стояку", "відносно стояка"),
 }

@@ -15,7 +15,7 @@ from centrode.printing import PrintsSummary
     ("compute", "part"),
     [
         (lambda: ct.check("crank-rocker"), "mobility               1 by rank"),
-        (lambda: ct.rotatability("crank-rocker"), "turns fully          yes, back after 1 turn"),
+        (lambda: ct.rotatability("crank-rocker"), "turns fully          yes, it returns after 1 turn"),
         (lambda: ct.principle_of_operation("crank-rocker"), "Coupler AB passes the motion on to\nrocker DB"),
         (lambda: ct.follower_cam("valve-cam"), "base radius                         24 mm"),
         (lambda: ct.walking_wheel("walking-wheel-three-legs"), "height of the hub         147.7 mm"),

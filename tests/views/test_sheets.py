@@ -308,7 +308,7 @@ def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
     mechanism = ct.parse_mechanism(example_text("crank-rocker").replace("[links.AB]", coupler))
     assert hostile in mechanism.link_names
     results = centre_results(mechanism)
-    assert f"{hostile} against the frame" in ct.summary(results)
+    assert f"{hostile} relative to the frame" in ct.summary(results)
     assert Name(hostile) in ct.tables(results)["centres"].columns[2].values
     axes = ct.figures(results)["centres"].axes
     key = [label.get_text() for one in axes if one.get_legend() for label in one.get_legend().get_texts()]

@@ -27,7 +27,7 @@ horizontal guide.
 Crank OA is driven: it turns about O at a constant 1 rad/s. Coupler AC moves the slider in C to and fro along its \
 guide; its stroke is 1.279 m. Coupler CB passes the motion on to rocker BD, which swings about D through 29.7°.
 
-The mobility is 1: one drive determines the place of every link. The drive can turn fully."""
+The mobility is 1: one drive determines the position of every link. The drive can turn fully."""
 
 
 def words_of(mechanism: ct.Mechanism) -> str:
@@ -98,7 +98,7 @@ def test_cranks_and_rockers_are_told_by_their_motion() -> None:
     locking = words_of(four_bar(3.0, 1.5, 3.0, 4.0, drives=[{"link": "OA", "start": 0.5, "speed": 1.0}]))
     assert "link DB, which turns about D" in locking
     assert "The drive cannot turn fully; it stops at " in locking
-    assert "AB and DB fall in line" in locking
+    assert "AB and DB are collinear" in locking
 
 
 @pytest.mark.parametrize(
@@ -120,15 +120,18 @@ def test_cranks_and_rockers_are_told_by_their_motion() -> None:
         ("scissor-lift", 'The slider in E moves along link "platform", which does not turn.'),
         ("rack-and-pinion", 'Link "pinion" is driven: it turns about O at a constant 180 deg/s.'),
         ("rack-and-pinion", 'Link "rack" moves along its guide, by 125.7 mm in all.'),
-        ("rolling-wheel-rod", "Coupler PB moves the slider in B along its guide, by 1885 mm in all."),
+        ("rolling-wheel-rod", "Coupler PB moves the slider in B along its guide, by 1885 mm in total."),
         ("geared-five-bar", "Crank OA is driven"),
-        ("three-crank-parallelogram", "FE, hinged in F and E, only follows: without it"),
-        ("scotch-yoke", 'Link "yoke" moves to and fro along its guide; its stroke is 1 m.'),
+        ("three-crank-parallelogram", "FE, hinged in F and E, is passive: without it"),
+        ("scotch-yoke", 'Link "yoke" reciprocates along its guide; its stroke is 1 m.'),
         ("shaper", 'The slider in A moves along link "lever" and swings it about D through 60°.'),
         ("spherical-crank-guide", "A slider, hinged to BC in C, moves along a fixed circle."),
-        ("third-class-triad", 'Links AB, "platform", DC and EF form a group of class III: none of them can'),
-        ("three-crank-parallelogram", "Redundant constraints, which only have to fit: "),
-        ("two-link-arm", "Link AB is driven against link OA at a constant 2 rad/s."),
+        ("third-class-triad", 'Links AB, "platform", DC and EF form a group of class III: their positions'),
+        (
+            "three-crank-parallelogram",
+            "Redundant constraints (their dimensions have to be consistent with the others): ",
+        ),
+        ("two-link-arm", "Link AB is driven relative to link OA at a constant 2 rad/s."),
         ("whitworth-quick-return", 'The slider in A moves along link "lever" and turns it fully about D.'),
         ("wiper", "Link OA is driven: it turns about O by a given law."),
     ],

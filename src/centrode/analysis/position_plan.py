@@ -65,13 +65,13 @@ def plan_of_positions(
     Parameters
     ----------
     positions : int
-        How many, 2 to 36; courseworks ask for 12 or 24. 12 if left out.
+        How many, 2 to 36; courseworks use 12 or 24. 12 by default.
     link : str, optional
-        A link, or a guide by its id, whose velocity vanishes in position 0; the last that swings to and fro if
-        left out. Where the drive makes no full turn, positions run from one end of the range to the other instead.
+        A link, or a guide by its id, whose velocity vanishes in position 0; the last that swings by
+        default. Where the drive makes no full turn, positions run from one end of the range to the other instead.
 
     points : sequence of names, optional
-        Points whose places a document lists; those on guides of the frame if left out, without such all that move.
+        Points whose places a document lists; those on guides of the frame by default, without such all that move.
 
     Raises
     ------
@@ -99,8 +99,8 @@ def plan_of_positions(
     if isinstance(positions, bool) or not 2 <= positions <= MOST:
         raise InputError(
             "positions",
-            _("{count} positions were asked for").format(count=positions),
-            _("ask for 2 to {most}").format(most=MOST),
+            _("{count} positions are given").format(count=positions),
+            _("give 2 to {most}").format(most=MOST),
         )
     path = motion(mechanism, SAMPLES)
     ok = path["status"].to_numpy() == Status.OK
@@ -143,7 +143,7 @@ def _open_plan(
     reached = np.flatnonzero(ok)
     if reached.size < 2:
         raise MotionError(
-            "positions", _("the mechanism is reached nowhere in its range"), _("see the limits")
+            "positions", _("no position of the mechanism is reached in its range"), _("see the limits")
         )
     start = reached[np.argmin(np.abs(path["time"].to_numpy()[reached]))]
     # from the initial position outwards: what is reached beyond a gap belongs to another stretch of the
@@ -164,7 +164,7 @@ def _refuse_unknown(mechanism: Mechanism, link: str) -> None:
     if link not in known:
         raise InputError(
             "link",
-            _("{link} is no link and no guide of the mechanism").format(link=link),
+            _("{link} is neither a link nor a guide of the mechanism").format(link=link),
             _("one of: {names}").format(names=", ".join(known)),
         )
 
@@ -184,8 +184,8 @@ def _extremes(
     if not stops:
         raise InputError(
             "link",
-            _("{link} never stands still: it has no extreme position").format(link=link),
-            _("name a rocker or a guide, or leave it out"),
+            _("the velocity of {link} never vanishes: it has no extreme position").format(link=link),
+            _("name a rocker or a guide, or omit it"),
         )
     return link, stops
 

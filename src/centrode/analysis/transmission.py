@@ -230,7 +230,7 @@ def transmission_angles(
         raise InputError(
             "[links]",
             _("no group of the mechanism has a transmission angle"),
-            _("ask for it where a dyad of two links, or of a link and a guide, is driven"),
+            _("a transmission angle exists in a driven dyad: two links, or a link and a guide"),
         )
     angles = np.stack(list(by_group.values()), axis=1)
     extremes = extreme_transmission_angles(prepared, span)

@@ -117,8 +117,8 @@ def check_shown(mechanism: Mechanism, shown: Shown) -> None:
     }
     for name, (given, kinds) in needs.items():
         if given and not set(kinds) & set(shown.what):
-            what = _("it says how to show {kinds}, which are not shown").format(kinds=", ".join(kinds))
-            raise InputError(name, what, _("show them, or take it out"))
+            what = _("it controls how {kinds} are shown, which are not shown").format(kinds=", ".join(kinds))
+            raise InputError(name, what, _("show them, or remove it"))
 
 
 def layers_of(film: Film, scene: LinkageScene | Globe, shown: Shown) -> list[Layer]:
@@ -141,7 +141,7 @@ def coupler(mechanism: Mechanism, against: str) -> str:
     others = [name for name in mechanism.link_names if name != against]
     free = [name for name in others if not fixed & set(mechanism.links[name].coordinates)]
     if not others:
-        raise InputError("link", _("there is no link that could roll"), _("take centrodes out"))
+        raise InputError("link", _("there is no link that could roll"), _("remove centrodes"))
     return (free or others)[0]
 
 
@@ -163,7 +163,7 @@ def animate(
 ) -> Animation:
     """Write an animation, GIF or MP4 by the ending of its name, that runs on without a jump.
 
-    A drive that turns fully runs round; where the mechanism is limited, or a range is asked for that does not close,
+    A drive that turns fully runs round; where the mechanism is limited, or a range is requested that does not close,
     the motion runs there and back. View and scales of vectors stay the same over the whole animation.
 
     Parameters
@@ -173,7 +173,7 @@ def animate(
     path : str or Path
         The file; it appears whole or not at all, and replaces one that is there.
     shown : Shown
-        What is shown beside the links; the paths of the points if left out. A cam takes none.
+        What is shown beside the links; the paths of the points by default. A cam takes none.
     pace : Pace
         Frames, frames a second, duration or speed.
     start, stop : float [rad or m, or s], or texts with a unit
@@ -204,7 +204,7 @@ def animate(
         need_video()
     if isinstance(described, Cam | PlateCam):
         if shown is not None or start is not None or stop is not None:
-            raise InputError("show", _("a cam is shown as a whole"), _("take it out"))
+            raise InputError("show", _("a cam is shown as a whole"), _("remove it"))
         found: Animation = _of_cams().animate_cam(described, path, pace, size, dark, said)
         return found
     shown = shown or Shown()
@@ -248,7 +248,7 @@ def _about(course: Course) -> list[str]:
     if course.turns > 1:
         found.append(
             ngettext(
-                "{n} turn of the drive in a round", "{n} turns of the drive in a round", course.turns
+                "{n} turn of the drive in a loop", "{n} turns of the drive in a loop", course.turns
             ).format(n=course.turns)
         )
     return found
@@ -313,7 +313,7 @@ def animate_centrodes(
     """Write an animation (GIF or MP4) of one centrode rolling on the other; raises InputError where nothing rolls."""
     if int((centrodes["centrode_piece"].to_numpy() >= 0).sum()) < 2:
         raise InputError(
-            "link", _("there is no centrode in this range"), _("ask for another link or another range")
+            "link", _("there is no centrode in this range"), _("choose another link or another range")
         )
     film = film_from(course_from(mechanism, motion), FRAMES)
     scene = scene_of_film(film)

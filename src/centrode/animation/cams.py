@@ -235,7 +235,7 @@ def _period(cam: AnyCam, pace: Pace) -> float:
     if speed is not None:
         return math.tau / speed
     if pace.speed is not None:
-        raise InputError("speed", _("a cam has no speed of its own"), _("ask for a duration instead"))
+        raise InputError("speed", _("a cam has no speed of its own"), _("give a duration instead"))
     return 1.0
 
 

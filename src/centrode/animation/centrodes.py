@@ -51,7 +51,7 @@ class CentrodesLayer(MotionLayer):
         self.pieces = found["centrode_piece"].to_numpy()
         if int((self.pieces >= 0).sum()) < 2:
             raise InputError(
-                "link", _("there is no centrode in this range"), _("ask for another link or another range")
+                "link", _("there is no centrode in this range"), _("choose another link or another range")
             )
         self.curves = [found[f"{name}_centrode"].to_numpy() for name in ("fixed", "moving")]
         self.contact = centrodes(film.motion, self.bodies[1], self.bodies[0])["fixed_centrode"].to_numpy()

@@ -110,12 +110,12 @@ def course_from(
     """The reached part of a motion about the initial position; of one that does not hold it, the longest part."""
     whole = usable(found)
     if not whole.any():
-        raise InputError("", _("no sample has every point in place"), _("ask for another range"))
+        raise InputError("", _("no sample has every point in place"), _("choose another range"))
     first, last = _part(whole, np.abs(found["time"].to_numpy()))
     part = found.isel(sample=slice(first, last + 1))
     places = mechanism.motion_parameter.instants(part)
     if places[0] == places[-1]:
-        raise InputError("", _("only one position is reached: nothing moves"), _("ask for another range"))
+        raise InputError("", _("only one position is reached: nothing moves"), _("choose another range"))
     loop: Loop = "round" if whole.all() and closes(part) and _cams_close(mechanism, part) else "back"
     asked = asked or len(whole)
     reached = len(part["sample"]) if reached is None else reached

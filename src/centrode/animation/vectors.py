@@ -116,7 +116,7 @@ class VectorLayer(MotionLayer):
             found.append(_("{what}: none").format(what=self.vectors.title))
         if self.left_out:
             text = ngettext(
-                "{what}: too long to be drawn in {n} position", "{what}: too long to be drawn in {n} positions",
+                "{what}: too long to draw in {n} position", "{what}: too long to draw in {n} positions",
                 self.left_out,
             )  # fmt: skip
             found.append(text.format(what=self.vectors.title, n=self.left_out))

@@ -135,7 +135,7 @@ def _running(command: Sequence[str], told: IO[bytes]) -> Iterator[IO[bytes]]:
     if code:
         told.seek(0)
         reason = told.read(300).decode("utf-8", "replace").strip()
-        raise InputError("", _("ffmpeg refused: {reason}").format(reason=reason), _("write a .gif instead"))
+        raise InputError("", _("ffmpeg failed: {reason}").format(reason=reason), _("write a .gif instead"))
 
 
 # How many frames, how fast and how large: what is asked for, checked and completed.
@@ -203,14 +203,14 @@ def timing_of(
         length = period / speed
         if not 0.0 < length < math.inf:
             raise InputError(
-                "speed", _("the motion takes no time of its own"), _("ask for a duration instead")
+                "speed", _("the motion has no duration of its own"), _("give a duration instead")
             )
     if length is None:
         return Timing(frames or FRAMES, fps or PER_SECOND)
     if frames is not None:
         rate = frames / length
         if not LEAST_RATE <= rate <= FASTEST[kind]:
-            what = _("{frames} frames in {length:.4g} s are {rate:.4g} a second").format(
+            what = _("{frames} frames in {length:.4g} s are {rate:.4g} per second").format(
                 frames=frames, length=length, rate=rate
             )
             raise InputError("frames", what, _rates(kind))
@@ -218,10 +218,10 @@ def timing_of(
     rate = fps or PER_SECOND
     count = round(length * rate)
     if not 2 <= count <= MOST_FRAMES:
-        what = _("{length:.4g} s at {rate:g} frames a second are {count} frames").format(
+        what = _("{length:.4g} s at {rate:g} frames per second are {count} frames").format(
             length=length, rate=rate, count=count
         )
-        raise InputError("fps", what, _("ask for 2 to {most} frames").format(most=MOST_FRAMES))
+        raise InputError("fps", what, _("give 2 to {most} frames").format(most=MOST_FRAMES))
     return Timing(count, rate)
 
 
@@ -230,15 +230,17 @@ def check_timing(
 ) -> None:
     """Refuse what is out of bounds or given twice, whatever the mechanism's own time is."""
     if duration is not None and speed is not None:
-        raise InputError("speed", _("duration and speed say the same thing"), _("take one of the two out"))
+        raise InputError(
+            "speed", _("duration and speed define the same quantity"), _("remove one of the two")
+        )
     if frames is not None and fps is not None and (duration is not None or speed is not None):
-        what = _("frames, frames a second and how long they take are given at once")
-        raise InputError("fps", what, _("take one of the three out"))
+        what = _("the number of frames, the frames per second and the duration are given together")
+        raise InputError("fps", what, _("remove one of the three"))
     if frames is not None and (isinstance(frames, bool) or not 2 <= frames <= MOST_FRAMES):
-        what = _("{count} frames were asked for").format(count=frames)
-        raise InputError("frames", what, _("ask for 2 to {most} frames").format(most=MOST_FRAMES))
+        what = _("{count} frames are given").format(count=frames)
+        raise InputError("frames", what, _("give 2 to {most} frames").format(most=MOST_FRAMES))
     if fps is not None and not LEAST_RATE <= fps <= FASTEST[kind]:
-        what = _("{rate:g} frames a second were asked for").format(rate=fps)
+        what = _("{rate:g} frames per second are given").format(rate=fps)
         raise InputError("fps", what, _rates(kind))
     for name, value in (("duration", duration), ("speed", speed)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
@@ -246,7 +248,7 @@ def check_timing(
 
 
 def _rates(kind: str) -> str:
-    return _("ask for {least:g} to {most:g} frames a second").format(least=LEAST_RATE, most=FASTEST[kind])
+    return _("give {least:g} to {most:g} frames per second").format(least=LEAST_RATE, most=FASTEST[kind])
 
 
 def kind_of(path: Path) -> str:
@@ -269,16 +271,16 @@ def size_of(size: Sequence[int] | str, kind: str, frames: int) -> tuple[int, int
     if not (LEAST_SIDE <= wide <= MOST_SIDE and LEAST_SIDE <= high <= MOST_SIDE):
         raise InputError(
             "size",
-            _("{wide} by {high} pixels were asked for").format(wide=wide, high=high),
-            _("ask for {least} to {most} pixels each way").format(least=LEAST_SIDE, most=MOST_SIDE),
+            _("a size of {wide} by {high} pixels is given").format(wide=wide, high=high),
+            _("give {least} to {most} pixels in each direction").format(least=LEAST_SIDE, most=MOST_SIDE),
         )
     if wide * high * frames > MOST_PIXELS:
         raise InputError(
             "size",
-            _("{frames} frames of {wide} by {high} pixels are too much").format(
+            _("{frames} frames of {wide} by {high} pixels are too many").format(
                 frames=frames, wide=wide, high=high
             ),
-            _("ask for at most {most} frames of this size, or for smaller ones").format(
+            _("give at most {most} frames of this size, or a smaller size").format(
                 most=MOST_PIXELS // (wide * high)
             ),
         )

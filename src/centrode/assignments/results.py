@@ -183,7 +183,7 @@ def variants(topology: MechanismSource, table: Table, progress: Progress | None 
     Raises
     ------
     InputError
-        The table is wrong. A variant that is no mechanism has the status "refused" instead.
+        The table is wrong. A variant that is not a mechanism has the status "refused" instead.
 
     Examples
     --------

@@ -67,7 +67,7 @@ def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColu
         column = None if header.strip().casefold() == NAME else _column(mechanism, header)
         for path in (NAME,) if column is None else column.paths:
             if path in named:
-                both = _("columns {one} and {other} name the same number")
+                both = _("columns {one} and {other} refer to the same number")
                 raise InputError(
                     "",
                     both.format(one=value_text(named[path]), other=value_text(header)),
@@ -129,7 +129,7 @@ def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...
         return (f"links.{link}.length",)
     if kind == "speed":
         if drive is None:
-            what = _("link {link} is not driven").format(link=link)
+            what = _("link {link} has no drive").format(link=link)
             raise InputError("", what, nearest(link, [one.id for one in mechanism.drives]))
         return (f"drives.{link}.speed",)
     start = drive is not None and drive.relative_to == FRAME and drive.start is not None
@@ -185,7 +185,7 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
         what = _("a table has at most {most} rows, got {count}").format(
             most=reading.TABLE_ROWS, count=len(rows)
         )
-        raise InputError(where, what, _("cut it into several"))
+        raise InputError(where, what, _("split it into several"))
     found = [
         _variant(columns, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
     ]
@@ -193,8 +193,8 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
     for variant in found:
         # folders are named after variants, and some file systems know no capital letters
         if variant.name.casefold() in seen:
-            what = _("variant {name} is there twice").format(name=value_text(variant.name))
-            raise InputError(where, what, _("give each a name of its own"))
+            what = _("variant {name} occurs twice").format(name=value_text(variant.name))
+            raise InputError(where, what, _("give each a different name"))
         seen.add(variant.name.casefold())
     return tuple(found)
 

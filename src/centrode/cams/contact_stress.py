@@ -40,10 +40,10 @@ class ContactMaterial:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.elasticity) and self.elasticity > 0):
             what = _("the modulus of elasticity must be positive, got {value:g} Pa")
-            raise InputError("elasticity", what.format(value=self.elasticity), _("steel has some 210 GPa"))
+            raise InputError("elasticity", what.format(value=self.elasticity), _("steel has about 210 GPa"))
         if not 0 <= self.poisson <= 0.5:
-            what = _("Poisson's ratio lies between 0 and 0.5, got {value:g}").format(value=self.poisson)
-            raise InputError("poisson", what, _("steel has some 0.3"))
+            what = _("Poisson's ratio must lie between 0 and 0.5, got {value:g}").format(value=self.poisson)
+            raise InputError("poisson", what, _("steel has about 0.3"))
 
 
 @dataclass(frozen=True)

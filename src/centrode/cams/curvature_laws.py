@@ -140,7 +140,8 @@ class SplineCurvature:
         for number, (before, after) in enumerate(pairwise(self.angles), start=2):
             if not before < after:
                 what = _(
-                    "the angles of a spline increase, point {number} does not: {before:.6g}, then {after:.6g} deg"
+                    "the angles of a spline must increase; they do not at point {number}: {before:.6g}, then "
+                    "{after:.6g} deg"
                 )
                 told = what.format(number=number, before=math.degrees(before), after=math.degrees(after))
                 raise InputError("[curvature] points", told, _("sort the points"))
@@ -178,7 +179,7 @@ def positive(number: float) -> None:
 def finite(number: float) -> None:
     """Raise InputError unless a number is finite."""
     if not math.isfinite(number):
-        raise InputError("", _("a curvature law holds finite numbers only"), _("correct them"))
+        raise InputError("", _("a curvature law must contain finite numbers only"), _("correct them"))
 
 
 # A curvature by a formula written as text, parted where `abs`, `sign`, `min` or `max` bend it.
@@ -301,8 +302,8 @@ class TextCurvature:
         above = self._condition_values(places) >= 0
         functions, cells = np.nonzero(above[:, :-1] != above[:, 1:])
         if len(cells) > MOST_KINKS:
-            what = _("the formula bends at more than {most} places").format(most=MOST_KINKS)
-            raise InputError("[curvature] formula", what, _("take out abs, sign, min and max"))
+            what = _("the formula has corners at more than {most} places").format(most=MOST_KINKS)
+            raise InputError("[curvature] formula", what, _("remove abs, sign, min and max"))
         if not len(cells):
             return ()
         first, column = above[functions, cells], np.arange(len(cells))
@@ -395,7 +396,7 @@ def refusal(law: CurvatureLaw, phi: float) -> InputError:
     if not math.isfinite(value):
         what = _("the curvature is not a finite number at {angle:.6g} deg").format(angle=angle)
     elif value <= 0 and phi == 0:
-        what = _("the curvature is not positive at the start ({value:.4g} 1/m)").format(value=value)
+        what = _("the curvature at the start is not positive ({value:.4g} 1/m)").format(value=value)
     else:
         what = _("the curvature is not positive from {angle:.6g} deg on").format(angle=angle)
     return InputError("[curvature]", what, _("change the law, or end the range before that angle"))

@@ -169,8 +169,8 @@ def series_path(
     check_start(rho0, gamma0, start, stop)
     check_span(law, start, stop)
     if isinstance(terms, bool) or not 2 <= terms <= MOST_TERMS:
-        what = _("{terms} terms were asked for").format(terms=terms)
-        raise InputError("terms", what, _("ask for 2 to {most}").format(most=MOST_TERMS))
+        what = _("{terms} terms are given").format(terms=terms)
+        raise InputError("terms", what, _("give 2 to {most}").format(most=MOST_TERMS))
     # a few more terms than asked for: they measure what the polynomial leaves out
     every, cosines = (np.asarray(c) for c in coefficients(law, rho0, gamma0, terms + FOLLOWING))
     a, b, following = every[: terms + 1], cosines[:terms], every[terms + 1 :]
@@ -181,7 +181,9 @@ def series_path(
         low = 0.0
     if not (np.isfinite(a).all() and np.isfinite(b).all()):
         raise InputError(
-            "terms", _("the coefficients of the series leave the range of numbers"), _("ask for fewer")
+            "terms",
+            _("the coefficients of the series exceed the range of floating-point numbers"),
+            _("give fewer"),
         )
     return SeriesPath(law, low, high, a, b, following)
 
@@ -566,7 +568,7 @@ def expanded_path(
     """
     check_start(rho0, gamma0, start, stop)
     if not LEAST_TOLERANCE <= tolerance <= GREATEST_TOLERANCE:
-        what = _("the tolerance lies between {least:g} and {most:g}, got {value:g}")
+        what = _("the tolerance must lie between {least:g} and {most:g}, got {value:g}")
         told = what.format(least=LEAST_TOLERANCE, most=GREATEST_TOLERANCE, value=tolerance)
         raise InputError("tolerance", told)
     check_span(law, start, stop)
@@ -630,8 +632,8 @@ def _march(
             if wrong is not None and stall is None:
                 raise refusal(law, wrong)
             return steps, None
-    what = _("the path takes more than {most} steps").format(most=MOST_STEPS)
-    raise InputError("[curvature]", what, _("ask for a shorter range, or a coarser tolerance"))
+    what = _("the path needs more than {most} steps").format(most=MOST_STEPS)
+    raise InputError("[curvature]", what, _("shorten the range, or increase the tolerance"))
 
 
 def _reach(series: tuple[Series, Series, Series], tolerance: float) -> float:

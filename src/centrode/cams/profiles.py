@@ -307,8 +307,8 @@ def working_of(cam: Cam, path: RollerPath) -> Arc:
         return working_arc(path, legs=cam.mover.legs)
     low, high = cam.mover.working_arc
     if abs(low + high) > CLOSED:
-        what = _("a leg works over the same angle on both sides of upright")
-        raise InputError("[mover] working_arc", what, _("give [-a, a], or leave it out"))
+        what = _("a leg works over the same angle on both sides of the vertical")
+        raise InputError("[mover] working_arc", what, _("give [-a, a], or omit it"))
     return working_arc(path, half=high)
 
 
@@ -338,7 +338,7 @@ def _check_stalls(path: RollerPath, working: Arc) -> Arc:
     reached = [one for one in stalls_of(path) if one in (working.start, working.stop)]
     if not reached:
         return working
-    what = _("no profile leads a roller to {place:.6g} deg, where the follower stalls")
+    what = _("no profile can guide a roller to {place:.6g} deg, where the follower stalls")
     raise MotionError(
         "[range]", what.format(place=math.degrees(reached[-1])), _("end the range before that angle")
     )
@@ -350,7 +350,7 @@ def _whole_turn(path: RollerPath) -> ClosedPath:
     closed = ClosedPath((Arc("working", path, start, stop, breaks_of(path, start, stop)),))
     gap = closed.joints[0].gap
     if abs(gap) > CLOSED * float(path.radius(np.array([start]))[0, 0]):
-        what = _("the law does not close: after a turn the radius is off by {gap:.6g} mm").format(
+        what = _("the profile does not close: over one turn the radius changes by {gap:.6g} mm").format(
             gap=-1e3 * gap
         )
         raise InputError("[curvature]", what, _("shorten the range and let a return arc close it"))

@@ -70,7 +70,7 @@ def cam_profile(cam: CamSource, samples: int | None = None, *, groove: bool = Fa
     if isinstance(cam, PlateCam):
         if groove:
             what = _("a groove is made for a cam that is given by its roller's path")
-            raise InputError("groove", what, _("leave it out"))
+            raise InputError("groove", what, _("omit it"))
         tool = None if cam.tool is None else cam.tool.radius
         return follower_profile(follower_cam(cam), angles_of(cam, samples), tool)
     return profile_dataset(cam, cam_body(cam), count_of(cam, samples), groove=groove)
@@ -247,8 +247,8 @@ def count_of(cam: Cam, samples: int | None) -> int:
     if isinstance(count, bool) or not 2 <= count <= reading.SAMPLES:
         raise InputError(
             _("samples"),
-            _("{samples} samples were asked for").format(samples=count),
-            _("ask for {least} to {most}").format(least=2, most=reading.SAMPLES),
+            _("{samples} samples are given").format(samples=count),
+            _("give {least} to {most}").format(least=2, most=reading.SAMPLES),
         )
     return count
 

@@ -200,15 +200,15 @@ def working_arc(path: RollerPath, legs: int | None = None, half: float | None = 
             _("{first:.6g} to {last:.6g} deg").format(first=math.degrees(low), last=math.degrees(high))
             for low, high in ((start, stop), (path.start, path.stop))
         )
-        what = _("the working arc goes from {arc}, the path from {there}").format(arc=arc, there=there)
-        stalled = _("the follower stalls there: take more legs or another law")
+        what = _("the working arc covers {arc}, the path {there}").format(arc=arc, there=there)
+        stalled = _("the follower stalls there: use more legs or another law")
         raise InputError(
             "[range]",
             what,
-            stalled if path.stall is not None else _("ask for a longer path, or a symmetric law"),
+            stalled if path.stall is not None else _("give a longer path, or a symmetric law"),
         )
     if not 0 < stop - start < math.tau - ROUNDING:
-        what = _("a working arc is longer than zero and shorter than a turn")
+        what = _("a working arc must be longer than zero and shorter than a turn")
         raise InputError("[mover] working_arc" if half is not None else "[range]", what, _("change it"))
     return Arc("working", path, start, stop, breaks_of(path, start, stop))
 
@@ -227,7 +227,7 @@ def mirror_arc(working: Arc) -> ClosedPath:
     if count % 2 or abs(count * width - math.tau) > 1e3 * ROUNDING:
         what = _("mirror images of an arc of {arc:.6g} deg do not close").format(arc=math.degrees(width))
         nearest = math.degrees(math.pi / max(1, round(math.pi / width)))
-        raise InputError("", what, _("take {arc:.6g} deg, or a designed return arc").format(arc=nearest))
+        raise InputError("", what, _("use {arc:.6g} deg, or a designed return arc").format(arc=nearest))
     arcs = [working]
     # a symmetric arc is two images of its half
     images = count - (2 if start != working.start else 1)
@@ -395,12 +395,12 @@ class ArcBounds:
     def __post_init__(self) -> None:
         lengths = (self.least_radius, self.greatest_radius, self.least_bend, self.least_hollow)
         if any(math.isnan(length) or length < 0 for length in lengths) or math.isinf(self.least_radius):
-            raise InputError("[return]", _("bounds are positive lengths"), _("correct them"))
+            raise InputError("[return]", _("bounds must be positive lengths"), _("correct them"))
         if not 0 < self.pressure_angle <= math.pi / 2:
-            what = _("a greatest pressure angle lies between 0 and 90 deg")
+            what = _("the greatest pressure angle must lie between 0 and 90 deg")
             raise InputError("[return] pressure_angle", what, _("correct it"))
         if self.least_radius >= self.greatest_radius:
-            what = _("the least radius is not smaller than the greatest")
+            what = _("the least radius must be smaller than the greatest")
             raise InputError("[return]", what, _("exchange or widen them"))
 
     @property
@@ -739,9 +739,9 @@ def _ends_keep(ends: Ends, bounds: ArcBounds) -> None:
         broken = Margins.at(frames(curve, np.array([at])), bounds).broken()
         if broken:
             what = _(
-                "the working arc breaks a bound of the return arc where they join, at {at:.6g} deg:"
+                "the working arc violates a bound of the return arc where they join, at {at:.6g} deg:"
             ).format(at=math.degrees(at))
-            raise InputError("[return]", f"{what} {broken}", _("loosen the bound"))
+            raise InputError("[return]", f"{what} {broken}", _("relax the bound"))
 
 
 def _search_weights(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], float]:
@@ -767,10 +767,10 @@ def _search_weights(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], f
         search.between(curve)
     raise MotionError(
         "[return]",
-        _("no return arc was found that keeps the bounds; the best one misses them: {broken}").format(
+        _("no return arc satisfies the bounds; the best one violates: {broken}").format(
             broken=margins.broken()
         ),
-        _("loosen them"),
+        _("relax them"),
     )
 
 

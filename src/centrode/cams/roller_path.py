@@ -239,7 +239,7 @@ class SymmetricPath:
             what = _("a symmetric path has a kink of {angle:.4g} deg at phi = 0").format(
                 angle=math.degrees(2 * kink)
             )
-            raise InputError("[start] gamma0", what, _("set gamma0 = 0, or leave out symmetric"))
+            raise InputError("[start] gamma0", what, _("set gamma0 = 0, or omit symmetric"))
 
     @property
     def law(self) -> CurvatureLaw:
@@ -383,11 +383,11 @@ def check_start(rho0: float, gamma0: float, start: float, stop: float) -> None:
         what = _("the radius at the start has to be positive, got {value:g} m").format(value=rho0)
         raise InputError("[start] radius", what)
     if abs(gamma0) > STEEPEST:
-        what = _("the pressure angle at the start has to lie within 89 deg, got {angle:.6g} deg")
+        what = _("the pressure angle at the start must lie within 89 deg, got {angle:.6g} deg")
         told = what.format(angle=math.degrees(gamma0))
         raise InputError("[start] pressure_angle", told, _("at 90 deg the follower stalls"))
     if not start <= 0.0 <= stop or start == stop:
-        what = _("the range has to hold the start phi = 0, got {start:.6g} to {stop:.6g} deg")
+        what = _("the range must contain the start phi = 0, got {start:.6g} to {stop:.6g} deg")
         told = what.format(start=math.degrees(start), stop=math.degrees(stop))
         raise InputError("[range]", told, _('write [range] with "from" not above 0 and "to" not below'))
     if stop - start > GREATEST_RANGE:
@@ -399,7 +399,8 @@ def no_series(phi: float) -> InputError:
     """Error for a path that cannot be expanded at an angle [rad]."""
     what = _("the path has no Taylor series at {angle:.6g} deg").format(angle=math.degrees(phi))
     repair = _(
-        "roots of what vanishes there are not smooth, and what changes too quickly leaves the range of numbers"
+        "a root of a term that vanishes there is not smooth, and a term that changes too fast exceeds the range "
+        "of floating-point numbers"
     )
     return InputError("[curvature]", what, repair)
 
@@ -407,10 +408,10 @@ def no_series(phi: float) -> InputError:
 def runs_away(phi: float) -> InputError:
     """Error for a path that leaves the cam at an angle [rad]."""
     what = _(
-        "the path runs away from the cam's centre: at {angle:.6g} deg ρ is {growth:g} times that of the start"
+        "the path diverges from the cam's centre: at {angle:.6g} deg ρ is {growth:g} times its initial value"
     )
     told = what.format(angle=math.degrees(phi), growth=MOST_GROWTH)
-    return InputError("[curvature]", told, _("a greater curvature keeps it near, or a shorter range"))
+    return InputError("[curvature]", told, _("increase the curvature, or shorten the range"))
 
 
 # Angles of the carrier at which a cam is looked at.
@@ -440,12 +441,12 @@ def angles_of(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None 
         asked = samples if samples is not None else cam.study.samples
         count = DEFAULT_SAMPLES if asked is None else asked
         if isinstance(count, bool) or not 2 <= count <= reading.SAMPLES:
-            what = _("{samples} samples were asked for").format(samples=count)
-            raise InputError(_("samples"), what, _("ask for 2 to {most}").format(most=reading.SAMPLES))
+            what = _("{samples} samples are given").format(samples=count)
+            raise InputError(_("samples"), what, _("give 2 to {most}").format(most=reading.SAMPLES))
         return np.linspace(*ends_of(cam), count)
     places = np.asarray(at, dtype=np.float64)
     if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
-        raise InputError("at", _("it needs finite angles of the carrier, one or more, in one dimension"))
+        raise InputError("at", _("a one-dimensional array of finite angles of the carrier is required"))
     return places
 
 

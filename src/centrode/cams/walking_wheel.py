@@ -160,8 +160,8 @@ def shoe(arc: Arc, height: float) -> Shoe:
     if abs(arc.start + arc.stop) > LEVEL or arc.stop >= math.pi / 2:
         raise InputError(
             "",
-            _("a shoe belongs to equal arcs of less than 90 deg to both sides"),
-            _("take three legs or more"),
+            _("a shoe requires equal arcs of less than 90 deg on both sides"),
+            _("use three legs or more"),
         )
     radius, slope = arc.curve.radius(np.zeros(1), 1)[:, 0]
     gamma = math.atan2(slope, radius)
@@ -171,9 +171,9 @@ def shoe(arc: Arc, height: float) -> Shoe:
         )
         raise InputError("[start] pressure_angle", what, _("set it to 0"))
     if not height > radius:
-        what = _("the hub at {height:.6g} mm lies lower than the roller's path reaches, {radius:.6g} mm")
+        what = _("the hub at {height:.6g} mm is lower than the reach of the roller's path, {radius:.6g} mm")
         raise InputError(
-            "[mover]", what.format(height=1e3 * height, radius=1e3 * radius), _("take a longer shoe post")
+            "[mover]", what.format(height=1e3 * height, radius=1e3 * radius), _("use a longer shoe post")
         )
     candidate = Shoe(arc, height)
     least, at = candidate.least_bend
@@ -377,8 +377,8 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> WheelMov
     if isinstance(legs, bool) or not LEAST_LEGS <= legs <= MOST_LEGS:
         raise InputError(
             "[mover] legs",
-            _("{legs} legs were asked for").format(legs=legs),
-            _("ask for {least} to {most}").format(least=LEAST_LEGS, most=MOST_LEGS),
+            _("{legs} legs are given").format(legs=legs),
+            _("give {least} to {most}").format(least=LEAST_LEGS, most=MOST_LEGS),
         )
     if not (math.isfinite(post) and post > roller):
         what = _("a post of {post:.6g} mm lets the roller of {roller:.6g} mm reach the ground").format(
@@ -388,10 +388,10 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> WheelMov
     working, half = closed.arcs[0], math.pi / legs
     # a leg that works at the very end of the arc may miss it by rounding
     if working.stop < half * (1 - 1e-12) or working.start > -half * (1 - 1e-12):
-        what = _("the working arc goes to {asked:.6g} deg, a leg works to {half:.6g} deg").format(
+        what = _("the working arc extends to {asked:.6g} deg, a leg works up to {half:.6g} deg").format(
             asked=math.degrees(working.stop), half=math.degrees(half)
         )
-        raise InputError("[mover] legs", what, _("take a longer working arc or more legs"))
+        raise InputError("[mover] legs", what, _("use a longer working arc or more legs"))
     breaks = tuple(place for place in working.breaks if -half < place < half)
     arc = Arc("working", working.curve, -half, half, breaks)
     height = float(working.curve.radius(np.zeros(1))[0, 0]) + post

@@ -35,18 +35,20 @@ SIZE = "800x600"
     "--out",
     type=click.Path(path_type=Path),
     metavar=mark("FILE"),
-    help=mark("FILE.gif or FILE.mp4; a GIF named after the mechanism if left out."),
+    help=mark("FILE.gif or FILE.mp4; a GIF named after the mechanism by default."),
 )
 @click.option(
     "--show",
     metavar=mark("NAMES"),
     help=mark(
-        "Beside the links, with commas: paths, velocities, accelerations, centres, centrodes, forces, loads, or none;"
-        " paths if left out."
+        "Shown beside the links, separated by commas: paths, velocities, accelerations, centres, centrodes, "
+        "forces, loads, or none; paths by default."
     ),
 )
 @click.option(
-    "--points", metavar=mark("NAMES"), help=mark("Only these points, with commas; all that move if left out.")
+    "--points",
+    metavar=mark("NAMES"),
+    help=mark("Only these points, separated by commas; all moving points by default."),
 )
 @click.option("--growing", is_flag=True, help=mark("Paths grow behind their points."))
 @click.option(
@@ -54,18 +56,21 @@ SIZE = "800x600"
     "pairs",
     multiple=True,
     metavar=mark("LINK,LINK"),
-    help=mark('Instant centre of these two ("AC,frame"); as often as needed.'),
+    help=mark('Instant centre of these two links ("AC,frame"); may be repeated.'),
 )
 @click.option("--link", metavar=mark("LINK"), help=mark("The link that carries the moving centrode."))
 @click.option(
-    "--against", metavar=mark("LINK"), help=mark("The link that it rolls on; the frame if left out.")
+    "--against", metavar=mark("LINK"), help=mark("The link that it rolls on; the frame by default.")
 )
-@click.option("--size", metavar="WxH", help=mark("Width and height in pixels; 800x600 if left out."))
-@click.option("--frames", type=int, metavar=mark("N"), help=mark("Number of frames; 60 if left out."))
-@click.option("--fps", type=float, metavar=mark("N"), help=mark("Frames a second; 20 if left out."))
-@click.option("--duration", type=float, metavar=mark("S"), help=mark("Seconds until it begins again."))
+@click.option("--size", metavar="WxH", help=mark("Width and height in pixels; 800x600 by default."))
+@click.option("--frames", type=int, metavar=mark("N"), help=mark("Number of frames; 60 by default."))
+@click.option("--fps", type=float, metavar=mark("N"), help=mark("Frames per second; 20 by default."))
+@click.option("--duration", type=float, metavar=mark("S"), help=mark("Duration of one loop in seconds."))
 @click.option(
-    "--speed", type=float, metavar=mark("X"), help=mark("Instead: so many times as fast as the mechanism.")
+    "--speed",
+    type=float,
+    metavar=mark("X"),
+    help=mark("Speed of the animation as a multiple of the mechanism's own speed (instead of --duration)."),
 )
 @start_option
 @stop_option
@@ -129,7 +134,9 @@ def animate(
             "{n} samples of the range are not reached",
             made.left_out,
         )
-        raise MotionError(described, what.format(n=made.left_out), _("ask for a range between the limits"))
+        raise MotionError(
+            described, what.format(n=made.left_out), _("choose a range between the limits of the drive")
+        )
 
 
 def _in_range(
@@ -140,7 +147,9 @@ def _in_range(
         return description.with_range(ranged)
     if ranged is None:
         return description
-    raise InputError("--range", _("it belongs to a linkage; a cam turns round"), _("take it out"))
+    raise InputError(
+        "--range", _("this option is for linkages; a cam always makes a full turn"), _("remove it")
+    )
 
 
 def _shown(
@@ -176,14 +185,14 @@ def _end(description: ct.Mechanism | ct.Cam | ct.PlateCam, text: str | None, whe
     if text is None:
         return None
     if isinstance(description, ct.Cam | ct.PlateCam):
-        raise InputError(where, _("a cam is shown as a whole"), _("take it out"))
+        raise InputError(where, _("a cam is shown as a whole"), _("remove it"))
     return description.motion_parameter.instant.read(text, where)
 
 
 def _rows(made: Animation) -> list[tuple[str, str]]:
     """Frames, size, time and loop."""
     loop = _("round, without a jump") if made.loop == "round" else _("there and back")
-    rate = _("{rate:.4g} a second: {seconds:.4g} s").format(rate=made.per_second, seconds=made.seconds)
+    rate = _("{rate:.4g} per second: {seconds:.4g} s").format(rate=made.per_second, seconds=made.seconds)
     return [
         (_("frames"), f"{made.frames}, {rate}"),
         (_("pixels"), "{} x {}".format(*made.size)),

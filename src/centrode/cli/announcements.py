@@ -49,7 +49,5 @@ def announce_samples(count: int, coordinates: int = OF_A_CAM) -> None:
 def announce_turns(turns: float) -> None:
     """Tell how far a simulation would run at the speed of its start, and about how many steps that takes."""
     if turns >= MANY_TURNS:
-        announcement = _(
-            "about {turns:.3g} turns of the drive at the speed of the start, some {steps:.2g} steps"
-        )
+        announcement = _("about {turns:.3g} turns of the drive at the initial speed, about {steps:.2g} steps")
         output.tell(announcement.format(turns=turns, steps=turns * STEPS))

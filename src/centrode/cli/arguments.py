@@ -19,7 +19,7 @@ results_option = click.option(
     "--out",
     type=click.Path(path_type=Path),
     metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
+    help=mark("Folder for the results; named after the mechanism by default."),
 )
 """Where a command that always writes puts its files; `output.folder_of` names it."""
 
@@ -50,10 +50,12 @@ range_option = click.option(
     "--range",
     "ranged",
     type=click.Choice(["reachable"]),
-    help=mark("The range between the limits about the initial position; without limits one turn."),
+    help=mark("The range between the limits around the initial position; one turn if there are no limits."),
 )
 """In place of what the description says of its range; `--from` and `--to` go before it."""
 
 no_figures_option = click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
 
-dark_option = click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
+dark_option = click.option(
+    "--dark", is_flag=True, help=mark("Pictures with light lines on a dark background.")
+)

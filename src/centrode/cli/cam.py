@@ -126,7 +126,7 @@ def _check_options(cam: AnyCam, given: Mapping[str, Any]) -> None:
         for name in _names(topic.command):
             reason = _refusal(topic, cam) if given[name] else None
             if reason is not None:
-                raise InputError(option_name(name), reason.what, _("leave it out"))
+                raise InputError(option_name(name), reason.what, _("omit it"))
 
 
 def _check_animation(cam: AnyCam, out: Path | None) -> None:
@@ -145,7 +145,7 @@ def _check_animation(cam: AnyCam, out: Path | None) -> None:
             except MotionError:
                 pass  # the sheets say why there is no such cam
     if out is None:
-        raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
+        raise InputError("--animate", _("no output folder is given"), _("name one with --out"))
 
 
 def _results(

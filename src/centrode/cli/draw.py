@@ -31,23 +31,23 @@ KINDS = {".dxf": library.write_drawing_dxf, ".svg": library.write_drawing_svg}
     "--at",
     "instant",
     metavar=mark("VALUE"),
-    help=mark("The drive's value that is drawn; the initial one if left out."),
+    help=mark("Value of the drive at which it is drawn; the initial value by default."),
 )
 @click.option(
     "--path",
     "paths",
     multiple=True,
     metavar=mark("NAME"),
-    help=mark("A point whose path is drawn, as often as needed, or all."),
+    help=mark("A point whose path is drawn, or all; may be repeated."),
 )
 @click.option(
     "--centrodes",
     "links",
     multiple=True,
     metavar=mark("LINK"),
-    help=mark("A link whose centrodes are drawn, as often as needed."),
+    help=mark("A link whose centrodes are drawn; may be repeated."),
 )
-@click.option("--no-names", is_flag=True, help=mark("Leave out the points' names."))
+@click.option("--no-names", is_flag=True, help=mark("Omit the names of the points."))
 @samples_option
 @start_option
 @stop_option
@@ -67,7 +67,7 @@ def draw(
     """Write one drawing, whole or not at all."""
     kind = out.suffix.lower()
     if kind not in KINDS:
-        what = _("{ending} is no kind of file for drawings").format(ending=f'"{out.suffix}"')
+        what = _("a drawing cannot be written as {ending}").format(ending=f'"{out.suffix}"')
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
     description = library.load(mechanism)
     announce_size(description, samples)
@@ -98,10 +98,10 @@ def draw(
     if Status(int(motion["status"][sample])) not in PLACED:
         raise MotionError(
             mechanism,
-            _("there is no position at {place}").format(
+            _("the mechanism has no position at {place}").format(
                 place=library.place_words(description, motion, sample)
             ),
-            _("ask for a value between the limits"),
+            _("choose a value between the limits of the drive"),
         )
 
 

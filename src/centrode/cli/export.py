@@ -20,7 +20,7 @@ from centrode.locale import _, mark
     "kind",
     type=click.Choice(["mjcf"]),
     default="mjcf",
-    help=mark("mjcf (the rule): a model for MuJoCo, its loops closed by constraints."),
+    help=mark("mjcf (default): a model for MuJoCo, its loops closed by constraints."),
 )
 @click.option(
     "--out",

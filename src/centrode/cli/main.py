@@ -165,8 +165,8 @@ def _ending(failure: BaseException) -> int:
     fault = "".join(traceback.format_exception_only(failure)).strip()
     _say(
         _(
-            "this is a fault of centrode: {fault}; please report it with the command and its files"
-            " (CENTRODE_DEBUG=1 prints the details)"
+            "this is an error in centrode: {fault}; please report it with the command and its files "
+            "(CENTRODE_DEBUG=1 prints the details)"
         ).format(fault=fault)
     )
     return FAULT

@@ -130,11 +130,15 @@ def balance_arguments(given: Mapping[str, Any]) -> dict[str, Any]:
         arguments["fraction"] = given["fraction"]
     if given["density"] is not None:
         if given["thickness"] is None:
-            raise InputError("--density", _("it belongs to --thickness"), _("give that too"))
+            raise InputError(
+                "--density", _("this option is used with --thickness only"), _("give that option too")
+            )
         arguments["density"] = given["density"]
     if given["weights"] is not None:
         if arguments["to"] != "least":
-            raise InputError("--weights", _("they belong to --least-maximum"), _("say that too"))
+            raise InputError(
+                "--weights", _("these options are used with --least-maximum only"), _("give that option too")
+            )
         arguments["weights"] = [part.strip() for part in given["weights"].split(",")]
     if given["about"] is not None:
         arguments["about"] = _place(given["about"])

@@ -98,6 +98,6 @@ def output_file(path: Path, *, force: bool = False) -> Iterator[Path]:
         if path.is_dir():
             raise InputError(str(path), _("is a folder"), _("name a file"))
         if path.exists() and not force:
-            raise InputError(str(path), _("exists already"), _("say --force to replace it"))
+            raise InputError(str(path), _("exists already"), _("add --force to replace it"))
     with draft_file(path) as draft:
         yield draft

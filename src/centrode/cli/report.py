@@ -46,19 +46,19 @@ _options, _writing = (
 @click.option(
     "--chapters",
     metavar=mark("NAMES"),
-    help=mark("Chapters, separated by commas; all that apply if left out."),
+    help=mark("Chapters, separated by commas; all that apply by default."),
 )
 @click.option(
     "--at",
     "instants",
     multiple=True,
     metavar=mark("A"),
-    help=mark('A value of the drive ("99.1 deg") that tables and diagrams show; again for more.'),
+    help=mark('A value of the drive ("99.1 deg") that tables and diagrams show; may be repeated.'),
 )
 @click.option(
     "--points",
     metavar=mark("NAMES"),
-    help=mark("Points whose velocities and paths are told, separated by commas."),
+    help=mark("Points whose velocities and paths are reported, separated by commas."),
 )
 @click.option("--digits", type=int, metavar=mark("N"), help=mark("Significant digits of numbers."))
 def report(

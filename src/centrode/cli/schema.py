@@ -11,7 +11,7 @@ from centrode.locale import mark
 
 
 @click.command(help=mark("Print the JSON Schema of the description, for editors."))
-@click.option("--cam", is_flag=True, help=mark("That of cams; else that of linkages."))
+@click.option("--cam", is_flag=True, help=mark("The schema of cams; by default that of linkages."))
 def schema(cam: bool) -> None:
     """Print the JSON Schema of the description."""
     found = library.cam_schema() if cam else library.mechanism_schema()

@@ -33,7 +33,7 @@ TABLE, STORE = ".csv", ".zarr"
     "--out",
     type=click.Path(path_type=Path),
     metavar=mark("OUT"),
-    help=mark("A folder .zarr (a run that was cut short goes on), or a table .csv of a reduced sweep."),
+    help=mark("A folder .zarr (an interrupted run is resumed), or a table .csv of a reduced sweep."),
 )
 @tables_options
 @click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
@@ -83,12 +83,12 @@ def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
         with _damage_told():
             data = _compute(asked, study, target)
     except KeyboardInterrupt:
-        note = _("what is finished stays in {folder}; the same command goes on from there")
+        note = _("finished results stay in {folder}; the same command resumes from there")
         output.tell(note.format(folder=target))
         raise
     found = data.attrs["mechanisms_found"]
     if found:
-        output.tell(_("{found} mechanisms were there from an earlier run").format(found=found))
+        output.tell(_("{found} mechanisms were computed in an earlier run").format(found=found))
     return data
 
 

@@ -24,7 +24,7 @@ def tables_options(command: Command) -> Command:
     """The options of every command that writes tables; `output` reads them."""
     for name, key, told in (
         ("--xlsx", XLSX, mark("Also write each table as a workbook, a sheet for each quantity.")),
-        ("--decimal-comma", COMMA, mark("CSV with decimal commas, fields apart by semicolons.")),
+        ("--decimal-comma", COMMA, mark("CSV with decimal commas; fields are separated by semicolons.")),
     ):
         command = click.option(name, is_flag=True, expose_value=False, callback=_keep(key), help=told)(
             command
@@ -56,9 +56,7 @@ def need_table(path: Path | None) -> None:
     asked = asked_spelling()
     for option, given in (("--xlsx", asked.xlsx), ("--decimal-comma", asked.comma)):
         if given:
-            raise InputError(
-                option, _("no table is written"), _("name a file .csv with --out, or leave it out")
-            )
+            raise InputError(option, _("no table is written"), _("name a file .csv with --out, or omit it"))
 
 
 def table_files(path: Path) -> list[Path]:

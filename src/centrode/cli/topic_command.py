@@ -107,7 +107,7 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
             "--out",
             type=click.Path(path_type=Path),
             metavar=mark("FILE"),
-            help=command.file_help or mark("Also write FILE.json or FILE.csv, by the ending of its name."),
+            help=command.file_help or mark("Also write FILE.json or FILE.csv, according to its extension."),
         )
         yield from parameters_of(
             [file_option, *([tables_options] if "csv" in command.kinds else []), force_option]
@@ -184,13 +184,13 @@ def _check_instants(
     if len(places) > option.most:
         raise InputError(
             "--at",
-            _("{count} instants were asked for").format(count=len(places)),
-            _("ask for at most {most}").format(most=option.most),
+            _("{count} instants are given").format(count=len(places)),
+            _("give at most {most}").format(most=option.most),
         )
     beside = {"--samples": samples, "--from": given.get("start"), "--to": given.get("stop")}
     other = next((name for name, value in beside.items() if places and value is not None), None)
     if other is not None:
-        raise InputError(other, _("instants are asked for with --at"), _("take one of the two out"))
+        raise InputError(other, _("use --at for instants"), _("remove one of the two"))
     for text in places:
         mechanism.motion_parameter.instant.read(text, "--at")
 
@@ -334,7 +334,7 @@ def _kind(out: Path, known: tuple[str, ...]) -> str:
     if kind not in known:
         raise InputError(
             "--out",
-            _("{kind} is not a kind of file for this").format(kind=f'"{out.suffix}"'),
+            _("this result cannot be written as {kind}").format(kind=f'"{out.suffix}"'),
             _("use one of {known}").format(known=", ".join(f".{one}" for one in known)),
         )
     return kind

@@ -33,7 +33,7 @@ def language_option() -> click.Option:
         ["--lang"],
         type=click.Choice(LANGUAGES),
         expose_value=False,
-        help=mark("Language of messages; the environment's (LANG) if left out."),
+        help=mark("Language of messages; that of the environment (LANG) by default."),
     )
 
 

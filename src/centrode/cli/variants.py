@@ -16,7 +16,7 @@ from centrode.locale import _, mark
 
 
 @click.command(help=mark("Compute every variant of a table."))
-@click.argument("table", metavar=mark("TABLE"), help=mark("A CSV file with one row a variant."))
+@click.argument("table", metavar=mark("TABLE"), help=mark("A CSV file with one row per variant."))
 @click.option(
     "--topology",
     required=True,
@@ -27,11 +27,9 @@ from centrode.locale import _, mark
     "--out",
     type=click.Path(path_type=Path),
     metavar=mark("DIR"),
-    help=mark(
-        "Folder for the results (a run that was cut short goes on); named after the table if left out."
-    ),
+    help=mark("Folder for the results (an interrupted run is resumed); named after the table by default."),
 )
-@click.option("--jobs", type=int, default=1, metavar=mark("N"), help=mark("Processes at once."))
+@click.option("--jobs", type=int, default=1, metavar=mark("N"), help=mark("Number of parallel processes."))
 @click.option("--figures", is_flag=True, help=mark("Draw pictures of every variant."))
 @click.option(
     "--report",
@@ -43,7 +41,7 @@ from centrode.locale import _, mark
     "--format",
     "formats",
     metavar=mark("KINDS"),
-    help=mark("With --report: kinds of documents, separated by commas; html,pdf if left out."),
+    help=mark("With --report: kinds of documents, separated by commas; html,pdf by default."),
 )
 @tables_options
 def variants(
@@ -57,7 +55,7 @@ def variants(
 ) -> None:
     """Compute and write; exit code 3 if a variant was refused (the others are written)."""
     if formats is not None and not reports:
-        raise InputError("--format", _("it belongs to --report"), _("say that too"))
+        raise InputError("--format", _("this option is used with --report only"), _("give that option too"))
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
     spelling = asked_spelling()
     description = library.load(topology)
@@ -77,7 +75,7 @@ def variants(
                     description, table, folder, jobs=jobs, figures=figures, progress=tell, spelling=spelling
                 )
     except KeyboardInterrupt:
-        note = _("what is finished stays in {folder}; the same command goes on from there")
+        note = _("finished results stay in {folder}; the same command resumes from there")
         output.tell(note.format(folder=folder))
         raise
     found = library.spoken_variants(found)

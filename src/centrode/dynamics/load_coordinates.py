@@ -250,7 +250,7 @@ def turning_of(mechanism: Mechanism, load: TurningLoad, where: str, measured: bo
     axis = hinge_of(mechanism, load.link, load.relative_to, where) if load.axis is None else load.axis
     joint, sense = _joint(mechanism, load.link, load.relative_to, axis)
     if measured and joint is None:
-        what = _("no angle is measured between {link} and {other} there, and the load depends on it")
+        what = _("the angle between {link} and {other} is not measured there, and the load depends on it")
         repair = _("let the first point of one of them be the hinge, and give it a reference on the other")
         raise InputError(where, what.format(link=load.link, other=load.relative_to), repair)
     return Spin(load.link, load.relative_to, axis, joint, sense)
@@ -263,7 +263,7 @@ def hinge_of(mechanism: Mechanism, link: str, other: str, where: str) -> str:
         return shared[0]
     if shared:
         what = _("{link} and {other} share the points {points}")
-        repair = _("say which: axis = a point")
+        repair = _("choose one: axis = a point")
         raise InputError(where, what.format(link=link, other=other, points=", ".join(shared)), repair)
     what = _("{link} and {other} have no hinge in common").format(link=link, other=other)
     repair = _("give relative_to, or axis: a point, or [x, y, z] in the axes of the frame")

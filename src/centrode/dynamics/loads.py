@@ -447,7 +447,7 @@ def loads_of(
     InputError
         A weight without direction or amount.
     NotComputedYet
-        Friction by a coefficient.
+        Coulomb friction.
     """
     loads = mechanism.loads if described is None else described
     labels = _labels(loads, mechanism, masses)
@@ -525,8 +525,10 @@ def _terms_of_load(
             dry = _amount(value, where)
             return [LoadTerm(Slide(guide), Friction(dry, viscous or 0.0, quadratic or 0.0))]
         case BearingFriction() | SliderFriction():
-            what = _("friction by a coefficient needs the reactions")
-            repair = _("ask for the reactions (ct.reactions, centrode reactions), or give the size by value")
+            what = _("Coulomb friction needs the reactions")
+            repair = _(
+                "compute the reactions (ct.reactions, centrode reactions), or give the friction by its value"
+            )
             raise NotComputedYet(where, what, repair)
         case _:
             assert_never(load)
@@ -554,8 +556,8 @@ def _friction_in_hinge(mechanism: Mechanism, load: HingeFriction, where: str) ->
     turn = turning_of(mechanism, load, where, "x" in dry.uses)
     if load.form == PLAIN_SUM:
         if len(mechanism.drives) > 1:
-            what = _("the plain sum belongs to mechanisms with one drive")
-            raise InputError(where, what, _("take form out: virtual work serves any number of drives"))
+            what = _("a plain sum is used for mechanisms with one drive only")
+            raise InputError(where, what, _("remove form: virtual work applies to any number of drives"))
         return LoadTerm(turn, Square(load.quadratic or 0.0), works=Travel())
     return LoadTerm(turn, Friction(dry, load.viscous or 0.0, load.quadratic or 0.0))
 
@@ -631,7 +633,7 @@ class MassesAndLoads:
         InputError
             Neither masses nor loads, or some that are not complete.
         NotComputedYet
-            Friction by a coefficient.
+            Coulomb friction.
         """
         return cls._of(mechanism, given, m, mechanism.loads)
 
@@ -657,14 +659,14 @@ class MassesAndLoads:
         """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
         if mechanism.space == "sphere":
             what = _("force polygons on the sphere are not computed yet")
-            raise NotComputedYet("space", what, _("describe a plane one"))
+            raise NotComputedYet("space", what, _("describe a planar mechanism"))
         return cls.of(mechanism)._as_forces()
 
     def _as_forces(self) -> MassesAndLoads:
         for load in self.loads:
             if any(effort.works is not None for effort in load.efforts):
-                what = _("a plain sum is no moment in a hinge, so it makes no reactions")
-                raise InputError(load.where, what, _("take form out"))
+                what = _("a plain sum is not a moment in a hinge and gives no reactions")
+                raise InputError(load.where, what, _("remove form"))
         return self
 
     @property

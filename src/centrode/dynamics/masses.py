@@ -104,7 +104,7 @@ class InertiaReader(LinkNumbers):
         if len(link.coordinates) == 2 and link.shape is None and link.model is None:
             return self._sector()[2]
         raise InputError(
-            self.where, _("nothing says where its centre of mass is"), _("give centre, or shape")
+            self.where, _("the position of its centre of mass is not given"), _("give centre, or shape")
         )
 
     def inertia(self) -> tuple[Spread | About, ...]:
@@ -121,7 +121,7 @@ class InertiaReader(LinkNumbers):
             raise InputError(self.where, what, _("give inertia (0 for a mass in one point), or shape"))
         if link.mass is None:
             what = _("it has a shape, but no mass")
-            raise InputError(self.where, what, _("give mass, or take shape out"))
+            raise InputError(self.where, what, _("give mass, or remove shape"))
         return self._arc() if link.shape == "arc" else self._round()
 
     def _ring(self) -> tuple[About, ...]:
@@ -161,7 +161,7 @@ class InertiaReader(LinkNumbers):
         """Centre of mass of a thin arc: nearer to the centre of the sphere than the arc."""
         if self.link.centre is not None or self.link.centre_radius is not None:
             what = _("the centre of an arc is that of its shape")
-            raise InputError(self.where, what, _("take centre and centre_radius out, or give inertia"))
+            raise InputError(self.where, what, _("remove centre and centre_radius, or give inertia"))
         sine, half, middle, _across = self._sector()
         return Radial(self.name, middle, self.sphere_radius * sine / half)
 
@@ -191,7 +191,7 @@ class InertiaReader(LinkNumbers):
             raise InputError(self.where, what, _("give centre and inertia in place of shape"))
         first, second = max(pairs, key=lambda pair: values.arc(places[pair[0]], places[pair[1]]))
         if not values.makes_arc(places[first], places[second]):
-            what = _("its farthest points lie opposite, so that no one arc joins them")
+            what = _("its farthest points are diametrically opposite, so the arc between them is not unique")
             raise InputError(self.where, what, _("give centre and inertia in place of shape"))
         normal = cross(places[first], places[second])
         middle = add(places[first], places[second])
@@ -313,7 +313,7 @@ class _MassReader(LinkNumbers):
         if len(link.coordinates) == 2 and link.shape is None:
             return self._middle(None)
         raise InputError(
-            self.where, _("nothing says where its centre of mass is"), _("give centre, or shape")
+            self.where, _("the position of its centre of mass is not given"), _("give centre, or shape")
         )
 
     def _middle(self, given: str | Vector | None) -> Centre:
@@ -323,7 +323,7 @@ class _MassReader(LinkNumbers):
         # a centre that is given may only repeat what the shape says
         if at is not None and dist(at, ((x + u) / 2, (y + v) / 2)) > STRAIGHT * dist((x, y), (u, v)):
             what = _("the centre of a rod is its middle")
-            raise InputError(self.where, what, _("take centre out, or give inertia in place of shape"))
+            raise InputError(self.where, what, _("remove centre, or give inertia in place of shape"))
         (x, y), (u, v) = (self.local[end] for end in (first, second))
         return Centre(self.name, first, 0.5 * (u - x), 0.5 * (v - y))
 
@@ -336,7 +336,7 @@ class _MassReader(LinkNumbers):
         mass = self.number("mass", link.mass or 0.0)
         if link.shape is not None and link.mass is None:
             what = _("it has a shape, but no mass")
-            raise InputError(self.where, what, _("give mass, or take shape out"))
+            raise InputError(self.where, what, _("give mass, or remove shape"))
         if link.shape in ("disc", "ring"):
             if link.radius is None:
                 what = _("a {shape} needs a radius").format(shape=link.shape)

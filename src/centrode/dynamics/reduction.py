@@ -292,7 +292,7 @@ def refuse_drive_in_formulas(burden: MassesAndLoads) -> None:
 def _refuse_rings(burden: MassesAndLoads) -> None:
     for mass in burden.masses:
         if isinstance(mass.inertia, tuple) and any(isinstance(part, About) for part in mass.inertia):
-            what = _("a ring and point mass belongs to mechanisms with one drive")
+            what = _("a ring and point mass is used in mechanisms with one drive only")
             raise InputError(f"[links.{mass.link}] model", what, _("give the link's tensor of inertia"))
 
 
@@ -301,8 +301,8 @@ def _check_size(solved: Solved, burden: MassesAndLoads) -> None:
     # the greatest of the arrays on the way: partial derivatives of columns, Christoffel terms, forces by load
     most = GREATEST_RESULT // max(solved.layout.width * drives**2, drives**3, len(burden.loads) * drives)
     if samples > most:
-        what = _("{asked} positions were asked for").format(asked=samples)
-        repair = _("ask for at most {most} at once, samples times mechanisms").format(most=most)
+        what = _("{asked} positions are given").format(asked=samples)
+        repair = _("give at most {most} at once, samples times mechanisms").format(most=most)
         raise InputError(_("samples"), what, repair)
 
 
@@ -415,7 +415,7 @@ def reduce(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction by a coefficient.
+        Coulomb friction.
 
     Examples
     --------
@@ -504,7 +504,7 @@ def check_reducible(solved: Solved) -> None:
     """Raise InputError for several drives, and for masses and loads that are not complete."""
     if solved.ready.kinematics.path.by_time:
         what = _("a sweep reduces masses and loads to one drive, and there are several")
-        raise InputError("outputs", what, _("leave the reduced quantities out"))
+        raise InputError("outputs", what, _("omit the reduced quantities"))
     MassesAndLoads.of(solved.ready.mechanism)
 
 

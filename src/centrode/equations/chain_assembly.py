@@ -166,8 +166,8 @@ def assemble_chains(ready: Ready) -> tuple[SymbolTable, tuple[Draft, ...]]:
     if draft.balance or chains.lines or chains.rods or waiting:
         raise InputError(
             "",
-            _("the constraints of this mechanism do not make one vector chain a group"),
-            _("leave them numerical"),
+            _("the constraints of this mechanism do not give one vector chain per group"),
+            _("solve them numerically"),
         )
     return board, tuple(groups)
 

@@ -232,7 +232,7 @@ def equations(mechanism: MechanismSource, points: Sequence[str] | None = None) -
     Parameters
     ----------
     points : names of points, optional
-        Whose velocities are written out; those on guides of the frame if left out.
+        Whose velocities are written out; those on guides of the frame by default.
 
     Raises
     ------
@@ -277,7 +277,7 @@ def equations(mechanism: MechanismSource, points: Sequence[str] | None = None) -
 def _check_moving(board: Lettering, point: str) -> None:
     if point not in board.moving:
         known = ", ".join(board.moving)
-        raise InputError(point, _("it is no moving point"), _("one of: {points}").format(points=known))
+        raise InputError(point, _("this is not a moving point"), _("one of: {points}").format(points=known))
 
 
 def _rates(board: Lettering, draft: Draft, given: Given) -> LinearSystem:

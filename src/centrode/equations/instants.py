@@ -146,7 +146,7 @@ def instant_of(equations: Equations, dataset: xr.Dataset, sample: int, length: f
     """
     board = equations.board
     if not isinstance(board, SymbolTable):
-        raise InputError("space", _("letters are told their numbers in the plane only"))
+        raise InputError("space", _("numerical values of symbols are given for planar mechanisms only"))
     meanings = board.alphabet.meanings
     units = {letter: length if one.unit == "m" else 1.0 for letter, one in meanings.items()}
     values = dict(board.alphabet.values) | NumericValues(board, dataset, sample).values()

@@ -198,7 +198,7 @@ def _adaptive_states(equations: CauchyEquations, times: Array, tolerance: float)
     raise InputError(
         "",
         _("the integration needs more than {most} steps").format(most=MOST_ADAPTIVE_STEPS),
-        _("ask for a shorter range, or a coarser tolerance"),
+        _("shorten the range, or increase the tolerance"),
     )
 
 
@@ -591,7 +591,7 @@ def integrate(
     tolerance : float
         Of the adaptive method, relative and absolute, for each step: rad, and parts of the greatest length.
     stop : float [rad or m, or s], or a text with a unit
-        Last value of the drive, a time where the drive is a law or there are several; one turn if left out.
+        Last value of the drive, a time where the drive is a law or there are several; one turn by default.
 
     Returns
     -------
@@ -659,7 +659,7 @@ def integration_results(
     """
     if tolerance is not None and method == "rk4":
         what = _("fixed steps have no tolerance")
-        raise InputError("--tolerance", what, _("add --method adaptive, or ask for more --steps"))
+        raise InputError("--tolerance", what, _("add --method adaptive, or increase --steps"))
     integration = integrate(mechanism, method, steps, FINE if tolerance is None else tolerance, stop)
     return results_of_integration(mechanism, integration)
 
@@ -686,12 +686,12 @@ def _check(method: object, steps: object, tolerance: object) -> None:
         what = _("there is no method {name}").format(name=value_text(method))
         raise InputError("method", what, nearest(str(method), METHODS))
     if isinstance(steps, bool) or not isinstance(steps, int) or not 1 <= steps <= MOST_STEPS:
-        what = _("{steps} steps were asked for").format(steps=value_text(steps))
-        raise InputError("steps", what, _("ask for 1 to {most}").format(most=MOST_STEPS))
+        what = _("{steps} steps are given").format(steps=value_text(steps))
+        raise InputError("steps", what, _("give 1 to {most}").format(most=MOST_STEPS))
     low, high = TOLERANCES
     if isinstance(tolerance, bool) or not isinstance(tolerance, int | float) or not low <= tolerance <= high:
-        what = _("{value} is no tolerance").format(value=value_text(tolerance))
-        raise InputError("tolerance", what, _("ask for {low:g} to {high:g}").format(low=low, high=high))
+        what = _("{value} is not a valid tolerance").format(value=value_text(tolerance))
+        raise InputError("tolerance", what, _("give {low:g} to {high:g}").format(low=low, high=high))
 
 
 @dataclass(frozen=True)

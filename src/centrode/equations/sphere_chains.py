@@ -232,7 +232,7 @@ class SphereBoard(Lettering):
         if max(len(total.terms) for axis in axes for total in axis) > LONGEST:
             raise InputError(
                 body,
-                _("its place in symbols has too many terms to be read"),
+                _("its symbolic expression has too many terms to read"),
                 _("compute the motion: centrode run"),
             )
         for name in self.inside[body]:

@@ -509,11 +509,11 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset) -> str:
     """
     if mechanism.space == "sphere":
         raise NotComputedYet(
-            "space", _("models of MuJoCo are made of planar linkages"), _("take it from the plane")
+            "space", _("models of MuJoCo are made of planar linkages"), _("choose a planar linkage")
         )
     if mechanism.rolling:
         what = _("models of MuJoCo have no wheels that roll")
-        raise NotComputedYet(f"[[rolling]] {mechanism.rolling[0].id}", what, _("take it out"))
+        raise NotComputedYet(f"[[rolling]] {mechanism.rolling[0].id}", what, _("remove it"))
     return _document(Pose(mechanism, motion))
 
 

@@ -71,7 +71,7 @@ def refusals(path: Path) -> Iterator[None]:
     except OSError as refusal:
         reason = refusal.strerror or str(refusal)
         raise InputError(
-            str(path), _("cannot be written: {reason}").format(reason=reason), _("name another place")
+            str(path), _("cannot be written: {reason}").format(reason=reason), _("give another path")
         ) from refusal
 
 
@@ -169,7 +169,9 @@ def _move_files(draft: Path, path: Path) -> None:
         existing_part((path / file).parent)
         if (path / file).is_dir():
             raise InputError(
-                str(path / file), _("is a folder, and a file has to go there"), _("name another folder")
+                str(path / file),
+                _("is a folder, but a file is to be written there"),
+                _("name another folder"),
             )
     keep_inputs(*(path / file for file in files))
     path.mkdir(parents=True, exist_ok=True)

@@ -91,7 +91,7 @@ def keep_inputs_below(folder: Path) -> None:
 
 def _refusal(output: Path, read: Input) -> InputError:
     what = _("it would replace {file}, which this command reads").format(file=read.name)
-    return InputError(str(output), what, _("name another place"))
+    return InputError(str(output), what, _("give another path"))
 
 
 def _real(path: Path) -> str:

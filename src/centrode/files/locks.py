@@ -33,7 +33,7 @@ def hold_lock(file: Path, what: str, *, remove: Callable[[Path], None] | None = 
         raise _is_refused(what, refusal) from refusal
     if stream is None:
         busy = _("another run is writing into it")
-        raise InputError(what, busy, _("wait until it ends, or name another place"))
+        raise InputError(what, busy, _("wait until it ends, or give another path"))
     try:
         with stream:
             try:
@@ -73,7 +73,7 @@ def taken(file: Path) -> IO[bytes] | None:
 def _is_refused(what: str, refusal: OSError) -> InputError:
     """A file system that cannot lock, or lets nobody write."""
     reason = refusal.strerror or str(refusal)
-    return InputError(what, _("cannot be locked: {reason}").format(reason=reason), _("name another place"))
+    return InputError(what, _("cannot be locked: {reason}").format(reason=reason), _("give another path"))
 
 
 def _take(handle: int) -> None:

@@ -241,7 +241,7 @@ def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: Side
     except np.linalg.LinAlgError:
         raise InputError(
             name_of(group),
-            _("its initial angles do not say how the wheels mesh"),
+            _("its initial angles do not determine how the wheels mesh"),
             _("give the initial angle of: {links}").format(links=", ".join(group.links)),
         ) from None
     everything = {**at.angles, **angles}
@@ -375,8 +375,8 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
     if stated is None and flat:
         raise InputError(
             name_of(group),
-            _("its triangle is flat in the initial position, so both assemblies meet there"),
-            _("say on which side it goes on: [assembly] sides, {word}").format(
+            _("its triangle is degenerate in the initial position, where both assembly modes coincide"),
+            _("give the side on which the motion continues: [assembly] sides, {word}").format(
                 word=side_choice(kinematics.numbers.space, group)
             ),
         )
@@ -415,7 +415,8 @@ def _check_angles(kinematics: Kinematics, group: Group, at: Positions, tolerance
             raise InputError(
                 f"[links.{link}] angle",
                 _(
-                    "{given:.4g} deg does not assemble: the position has {found:.4g} deg, {off:.3g} deg off"
+                    "the position cannot be assembled at {given:.4g} deg: it has {found:.4g} deg, a difference "
+                    "of {off:.3g} deg"
                 ).format(
                     given=degrees(angle), found=degrees(angle + difference), off=degrees(abs(difference))
                 ),
@@ -434,9 +435,9 @@ def _check_apart(kinematics: Kinematics, group: Group) -> None:
         if leverage <= DEGENERATE * kinematics.numbers.scale:
             raise InputError(
                 f"[links.{link}]",
-                _("points {first} and {second} coincide, so they do not tell how the link turns").format(
-                    first=first, second=second
-                ),
+                _(
+                    "points {first} and {second} coincide and do not determine the rotation of the link"
+                ).format(first=first, second=second),
                 _("correct their coordinates"),
             )
 

@@ -133,7 +133,7 @@ def _undecided_sides(kinematics: Kinematics, group: Group) -> InputError:
     errors = [
         InputError(
             name_of(undecided),
-            _("nothing says on which side it is assembled"),
+            _("the side on which it is assembled is not given"),
             _("give the initial angle of {links}, or [assembly] sides, {words}").format(
                 links=_(" or ").join(undecided.links), words=side_choice(space, undecided)
             ),
@@ -158,8 +158,8 @@ def check_sides(kinematics: Kinematics) -> None:
         if name not in known:
             raise InputError(
                 f"[assembly] sides.{name}",
-                _("no group is assembled on a side of {name}").format(name=name),
-                _("take it out, or name one of: {names}").format(names=", ".join(known) or "-"),
+                _("{name} does not select the side of any group").format(name=name),
+                _("remove it, or name one of: {names}").format(names=", ".join(known) or "-"),
             )
 
 
@@ -181,8 +181,8 @@ def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> 
     if bool(np.all(np.abs(there.value) <= SAFETY * there.bound)):
         raise InputError(
             name_of(group),
-            _("its triangle is flat wherever the drive stands, so its assemblies never part"),
-            _("change a length, or take a link away"),
+            _("its triangle is degenerate for every value of the drive, so its assembly modes coincide"),
+            _("change a length, or remove a link"),
         )
 
 
@@ -230,7 +230,7 @@ def _of_aim(group: Aim, numbers: Dimensions, at: Positions) -> str:
     offset = space.reach(ARRAYS, aim_curve(group, numbers), pivot)
     by = float(offset - space.distance(ARRAYS, at.points[group.target], at.points[group.pivot]))
     if by <= 0.0:  # only circles can be too near as well
-        return _("{line} does not reach as far as {b}").format(line=line_name(group), b=group.target)
+        return _("{line} does not reach {b}").format(line=line_name(group), b=group.target)
     return _("the offset of {line} exceeds the distance {a}-{b} by {by}").format(
         line=line_name(group), a=group.pivot, b=group.target, by=f"{by:.4g} {space.unit}"
     )
@@ -379,9 +379,9 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
         off, unit = (value, "rad") if angular else (value * float(kinematics.numbers.scale), space.unit)
         raise InputError(
             label,
-            _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
-                off=off, unit=unit
-            ),
+            _(
+                "the initial position does not assemble: the residual of this constraint is {off:.3g} {unit}"
+            ).format(off=off, unit=unit),
             _repair_of_misfit(structure.drives),
         )
     return value
@@ -391,9 +391,12 @@ def _repair_of_misfit(drives: int) -> str:
     if drives > 1:
         # special dimensions move though the count says no: a drive may be one too many all the same
         return _(
-            "it repeats other constraints, so its dimensions must fit theirs: correct them, or take it or a drive away"
+            "it repeats other constraints, so its dimensions must agree with theirs: correct them, or remove it "
+            "or a drive"
         )
-    return _("it repeats other constraints, so its dimensions must fit theirs: correct them or take it away")
+    return _(
+        "it repeats other constraints, so its dimensions must agree with theirs: correct them or remove it"
+    )
 
 
 def check_touch(kinematics: Kinematics, at: Positions) -> None:

@@ -262,7 +262,7 @@ def motion(
         The description's own number, else 361 (with both ends).
     start, stop : float [rad or m, or s], or texts with a unit ("60 deg")
         Values of the drive; times where the drive is a law of time or there are several drives. One turn of
-        an angle drive if left out.
+        an angle drive by default.
     at : (n,) values of the drive [rad or m], times [s], or texts with a unit
         Exactly these places instead of evenly spaced ones; the three arguments before it are then not used.
     vary : path -> (batch,) values [m or rad], or texts with a unit

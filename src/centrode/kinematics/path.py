@@ -346,7 +346,7 @@ def _start_of_cylinder(drive: Drive, drawn: float | None, at_zero: float) -> flo
     if drive.start is None and drawn is None:
         raise InputError(
             f"[[drives]] {drive.id}",
-            _("nothing says how long the cylinder is in the initial position"),
+            _("the initial length of the cylinder is not given"),
             _("give start, or the initial angles of the links between its points"),
         )
     start = drive.start if drive.start is not None else (drawn or 0.0) - at_zero
@@ -369,10 +369,10 @@ def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:
     if abs(difference) > 1e-9:
         raise InputError(
             _("drive of link {link}").format(link=drive.link),
-            _("it starts at {value:.9g} rad, but the initial angle says {drawn:.9g} rad").format(
+            _("it starts at {value:.9g} rad, but the initial angle is {drawn:.9g} rad").format(
                 value=value, drawn=drawn
             ),
-            _("leave out one of the two"),
+            _("omit one of the two"),
         )
 
 
@@ -417,8 +417,8 @@ def even_grid(
     if isinstance(samples, bool) or not 1 <= samples <= reading.SAMPLES:
         raise InputError(
             _("samples"),
-            _("{samples} samples were asked for").format(samples=samples),
-            _("ask for 1 to {most}").format(most=reading.SAMPLES),
+            _("{samples} samples are given").format(samples=samples),
+            _("give 1 to {most}").format(most=reading.SAMPLES),
         )
     for name, value in (("from", start), ("to", stop)):
         if value is not None and not np.isfinite(value):
@@ -428,7 +428,7 @@ def even_grid(
     elif reachable and None in (start, stop):
         raise InputError(
             "[study] range",
-            _("the reachable range is that of one drive at constant speed; here the range is one of time"),
+            _("the reachable range is defined for one drive at constant speed; here the range is time"),
             _("give from and to, or --from and --to"),
         )
     else:
@@ -456,20 +456,20 @@ def _check_extent(path: Path, span: SampleGrid) -> None:
             raise InputError(
                 f"[[drives]] {driven.drive.id}",
                 what.format(time=jump.time, before=jump.before, after=jump.after),
-                _("no drive can jump: join the parts by a ramp or by segments, or ask for another range"),
+                _("a drive cannot jump: join the parts by a ramp or by segments, or choose another range"),
             )
         if not all(np.isfinite(part).all() for part in _derivatives(driven, span.time)):
             raise InputError(
                 f"[[drives]] {driven.drive.id}",
                 _("its law has no finite value with two derivatives everywhere in the range"),
-                _("correct the law, or ask for another range"),
+                _("correct the law, or choose another range"),
             )
         # a jump to no value is reported last, as the samples themselves may have hit it
         if jump is not None:
             raise InputError(
                 f"[[drives]] {driven.drive.id}",
                 _("its law has no finite value at t = {time:.9g} s").format(time=jump.time),
-                _("correct the law, or ask for another range"),
+                _("correct the law, or choose another range"),
                 # lengths count in units, so that 500 turns of the mesh are the same work for a displacement
             )
     if path.pace is not None:
@@ -480,8 +480,8 @@ def _check_extent(path: Path, span: SampleGrid) -> None:
     if turns > MAX_TURNS:
         raise InputError(
             _("range"),
-            _("it reaches too far: {turns:.3g} turns").format(turns=turns),
-            _("ask for at most {most:g}").format(most=MAX_TURNS),
+            _("it is too long: {turns:.3g} turns").format(turns=turns),
+            _("give at most {most:g}").format(most=MAX_TURNS),
         )
 
 
@@ -533,7 +533,7 @@ def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
         raise InputError(
             f"[[drives]] {path.driven[0].drive.id}",
             _("its range is unlimited"),
-            _("say from where to where: --from and --to, or [study] from and to"),
+            _("give the ends of the range: --from and --to, or [study] from and to"),
         )
     # next to limits speeds grow without bound: a little is left out at both ends
     inside = INSIDE * (high - low)
@@ -569,7 +569,7 @@ def _one_turn(path: Path) -> float:
     if not speeds:
         raise InputError(
             "[study]",
-            _("the drive is a law of time, and nothing says how long it is to run"),
+            _("the drive is a law of time, and its duration is not given"),
             _('give to = "2 s" under [study], or --to "2 s"'),
         )
     return 2.0 * np.pi / min(speeds)

@@ -152,5 +152,5 @@ def _check_redundant(kinematics: Kinematics, at: Positions) -> None:
             raise InputError(
                 label,
                 _("it holds in the initial position only, so the mechanism cannot move"),
-                _("correct the dimensions, or take the constraint away"),
+                _("correct the dimensions, or remove the constraint"),
             )

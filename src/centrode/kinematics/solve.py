@@ -169,7 +169,7 @@ def check_size(layout: PlanLayout, lanes: int, samples: int) -> None:
             _("{asked} positions would take {size:.3g} GB of memory").format(
                 asked=lanes * samples, size=size_of(layout, lanes, samples) / 1e9
             ),
-            _("ask for at most {most} at once, samples times mechanisms").format(most=most),
+            _("give at most {most} at once, samples times mechanisms").format(most=most),
         )
 
 

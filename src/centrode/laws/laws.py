@@ -156,10 +156,12 @@ def _check(times: tuple[float, ...], values: tuple[float, ...]) -> None:
     if len(times) < 2 or len(times) != len(values):
         raise InputError("", _("a table needs at least two rows of a time and a value"), _("add rows"))
     if not all(math.isfinite(number) for number in (*times, *values)):
-        raise InputError("", _("a table holds finite numbers only"), _("take out rows without a value"))
+        raise InputError("", _("a table holds finite numbers only"), _("remove rows without a value"))
     for number, (before, after) in enumerate(pairwise(times), 2):
         if not after > before:
-            what = _("the times of a table increase, row {number} does not: {before}, then {after}")
+            what = _(
+                "the times of a table must increase; they do not at row {number}: {before}, then {after}"
+            )
             raise InputError("", what.format(number=number, before=before, after=after), _("sort the rows"))
 
 

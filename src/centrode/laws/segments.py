@@ -110,7 +110,7 @@ def _coefficients_in_units(powers: list[int], unit: int, divisor: int) -> list[f
     try:
         return [c * unit**k / divisor for k, c in enumerate(powers)]
     except OverflowError:
-        what = _("a polynomial with these conditions is beyond what can be computed with")
+        what = _("a polynomial with these conditions cannot be computed")
         raise InputError("", what, _("give smaller rates, or a shorter time")) from None
 
 
@@ -156,7 +156,7 @@ def b_spline(conditions: Sequence[Condition], degree: int) -> list[tuple[float, 
     knots = _knots(places, rates, degree)
     coefficients = _coefficients(places, rates, knots, degree)
     if not all(map(math.isfinite, coefficients)):
-        what = _("a spline with these conditions is beyond what can be computed with")
+        what = _("a spline with these conditions cannot be computed")
         raise InputError("", what, _("give smaller rates, or a shorter time"))
     pieces = []
     for place, end, taylor in _stretches(knots, coefficients, degree):
@@ -359,19 +359,23 @@ class LawSegment:
         if not all(math.isfinite(number) for number in (*numbers, *(v for row in self.through for v in row))):
             raise InputError("", _("a segment holds finite numbers only"), _("correct them"))
         if self.time <= 0:
-            raise InputError("", _("the time of a segment is positive"), _("correct it"))
+            raise InputError("", _("the time of a segment must be positive"), _("correct it"))
         if self.curve not in SEGMENT_CURVES or (self.to is None) != (self.curve == DWELL):
             raise InputError("", _("a segment has a known curve, and a value at its end unless it dwells"))
         times = (0.0, *(time for time, _value in self.through), self.time)
         if not all(before < after for before, after in pairwise(times)):
-            what = _("the times of `through` increase and lie inside the segment, counted from its start")
+            what = _(
+                "the times of `through` must increase and lie inside the segment, counted from its start"
+            )
             raise InputError("", what, _("correct them, or the segment's time"))
         if not 1 <= self.degree <= MOST_DEGREE:
-            what = _("the degree of a B-spline lies between 1 and {most}").format(most=MOST_DEGREE)
+            what = _("the degree of a B-spline must lie between 1 and {most}").format(most=MOST_DEGREE)
             raise InputError("", what)
         rates = max(len(self.at_start), len(self.at_end))
         if self.curve == B_SPLINE and rates >= self.degree:
-            what = _("a B-spline of degree {degree} takes fewer derivatives at an end than that, got {count}")
+            what = _(
+                "a B-spline of degree {degree} admits fewer derivatives at an end than its degree, got {count}"
+            )
             told = what.format(degree=self.degree, count=rates)
             raise InputError("", told, _("raise the degree, or give fewer"))
 
@@ -428,7 +432,9 @@ class SegmentedLaw:
         for number, segment in enumerate(self.segments, 1):
             for end, piece in segment.pieces(breaks[-1], value):
                 if not end > breaks[-1]:
-                    what = _("segment {number} is too short beside those before it").format(number=number)
+                    what = _("segment {number} is too short compared with those before it").format(
+                        number=number
+                    )
                     raise InputError("", what, _("give it more time"))
                 breaks.append(end)
                 pieces.append(piece)

@@ -79,7 +79,9 @@ def _read_letter(key: object) -> str:
     if LETTER.fullmatch(name) and name not in ("phi", "pi", "e"):
         return name
     what = _("{name} cannot be a letter of a formula").format(name=value_text(name))
-    raise Problem(what, _("use letters, digits and underscores, a letter in front; phi, pi and e are taken"))
+    raise Problem(
+        what, _("use letters, digits and underscores, and begin with a letter; phi, pi and e are reserved")
+    )
 
 
 def read_flag(value: object) -> bool:
@@ -268,7 +270,7 @@ class Curvature(DescriptionPart):
 
 def _foreign(law: str, key: str) -> Problem:
     what = _("a law of kind {law} has no {key}").format(law=value_text(law), key=value_text(key))
-    return Problem(what, _("take it out, or change the law"))
+    return Problem(what, _("remove it, or change the law"))
 
 
 class Start(DescriptionPart):
@@ -480,14 +482,14 @@ class Cam(DescriptionPart):
 def _of_range(cam: Cam) -> list[Problem]:
     low, high = cam.range.start, cam.range.stop
     if not low <= 0 <= high or low == high:
-        what = _("the range has to hold phi = 0, where the path starts")
-        return [Problem(what, _('"from" is 0 or below, "to" 0 or above'), ("range",))]
+        what = _("the range must contain phi = 0, where the path starts")
+        return [Problem(what, _('"from" must be 0 or below, "to" 0 or above'), ("range",))]
     if cam.curvature.symmetric and low:
         what = _("a symmetric law gives the path on both sides of phi = 0")
-        return [Problem(what, _('leave "from" out'), ("range", "from"))]
+        return [Problem(what, _('omit "from"'), ("range", "from"))]
     if cam.curvature.symmetric and cam.start.pressure_angle:
         what = _("a symmetric path has a kink at phi = 0 unless the pressure angle there is zero")
-        return [Problem(what, _("set it to 0, or leave out symmetric"), ("start", "pressure_angle"))]
+        return [Problem(what, _("set it to 0, or omit symmetric"), ("start", "pressure_angle"))]
     return []
 
 
@@ -513,7 +515,9 @@ def _of_choice(cam: Cam) -> list[Problem]:
     for name in cam.choose.parameters:
         if not _has(cam, name):
             what = _("the cam has no {name}").format(name=value_text(name))
-            problems.append(Problem(what, _("choose what the description gives"), ("choose", "parameters")))
+            problems.append(
+                Problem(what, _("choose parameters that the description contains"), ("choose", "parameters"))
+            )
     stressed = cam.choose.stress is not None or "stress" in (cam.choose.minimise, cam.choose.trade_off)
     if stressed and cam.contact is None:
         what = _("the contact stress needs the force, the width and the materials")

@@ -49,7 +49,7 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
     where : str
         What messages call the text, such as the name of its file.
     folder : Path
-        Where the points of a spline lie; the current folder if left out.
+        Where the points of a spline lie; the current folder by default.
 
     Raises
     ------
@@ -83,7 +83,9 @@ def cam_from(
         return parse_tables(Cam, mapping, where, folder, bare_angles)
     other = [key for key in _OF_CURVATURE if key in mapping]
     if other:
-        what = _("{one} and {other} do not go together: a cam has a curvature law, or a follower's lift")
+        what = _(
+            "{one} and {other} exclude each other: a cam has either a curvature law or a follower's lift"
+        )
         told = what.format(
             one=f"[{other[0]}]", other="[follower]" if given[0] == "follower" else "[[segments]]"
         )

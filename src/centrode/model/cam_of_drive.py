@@ -39,7 +39,7 @@ def _text(name: str) -> str:
         return example_text(name)
     path = PurePosixPath(name.replace("\\", "/"))
     if not name.isprintable() or path.is_absolute() or ".." in path.parts or ":" in name:
-        what = _("{name} does not lie beside the description").format(name=value_text(name))
+        what = _("{name} is not in the folder of the description").format(name=value_text(name))
         raise Problem(what, _("put the cam's file into the folder of the description"))
     return read_file(READING.get().folder / path)
 

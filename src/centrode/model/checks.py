@@ -90,7 +90,7 @@ def joining_problems(mechanism: Description) -> Iterator[Problem]:
 def _once(identity: str, identities: set[str], at: Place) -> Iterator[Problem]:
     if identity in identities:
         what = _("there are two gears or rolling wheels {name}").format(name=value_text(identity))
-        yield Problem(what, _("give one of them a name of its own: name = ..."), at)
+        yield Problem(what, _("give one of them a different name: name = ..."), at)
     identities.add(identity)
 
 
@@ -123,7 +123,7 @@ def _rolling_problems(mechanism: Description, wheel: Rolling, at: Place) -> Iter
     circle, inside = wheel.along.radius, wheel.along.inside
     if inside and circle is not None and abs(circle - wheel.radius) <= SAME * max(circle, wheel.radius):
         what = _("a wheel as large as the circle fills it and cannot roll inside")
-        yield Problem(what, _("change one of the radii, or take inside out"), (*at, "radius"))
+        yield Problem(what, _("change one of the radii, or remove inside"), (*at, "radius"))
 
 
 def _on_track(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:
@@ -133,10 +133,10 @@ def _on_track(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Pro
             wheel.along.centre, points, "point", (*at, "along", "centre"), wheel.on
         )
     if wheel.centre in points:
-        what = _("point {point} is a point of {link} already, the wheel cannot roll on it")
+        what = _("point {point} already belongs to {link}, so the wheel cannot roll on this link")
         if wheel.on == FRAME:
-            what = _("point {point} is a point of the frame already, the wheel cannot roll on it")
-        repair = _("take it out of the link, or let the wheel roll on another one")
+            what = _("point {point} already belongs to the frame, so the wheel cannot roll on it")
+        repair = _("remove it from the link, or let the wheel roll on another one")
         yield Problem(what.format(point=value_text(wheel.centre), link=wheel.on), repair, at)
 
 
@@ -174,23 +174,23 @@ def space_problems(mechanism: Description) -> Iterator[Problem]:
 def _spherical_keys(mechanism: Description) -> Iterator[Problem]:
     """Keys that mean something on the sphere only."""
     if mechanism.radius is not None:
-        yield _spherical("radius", _("take it out"), ("radius",))
+        yield _spherical("radius", _("remove it"), ("radius",))
     for name, link in mechanism.links.items():
         for key in SPHERE_LINK_KEYS:
             if getattr(link, key) is not None:
-                repair = _("take it out")
+                repair = _("remove it")
                 if key == "reference":
-                    repair = _("take it out; in the plane angles are measured from the x axis")
+                    repair = _("remove it; in the plane angles are measured from the x axis")
                 yield _spherical(key, repair, ("links", name, key))
         if link.shape == "arc":
             yield _spherical("arc", _("write rod, disc or ring"), ("links", name, "shape"))
     for index, load in enumerate(mechanism.loads):
         if isinstance(load, TurningLoad) and load.axis is not None:
-            yield _spherical("axis", _("take it out"), ("loads", index, "axis"))
+            yield _spherical("axis", _("remove it"), ("loads", index, "axis"))
 
 
 def _spherical(key: str, repair: str, at: Place) -> Problem:
-    return Problem(_("{key} belongs to the sphere").format(key=key), repair, at)
+    return Problem(_("{key} is used on the sphere only").format(key=key), repair, at)
 
 
 def _planar_keys(mechanism: Description) -> Iterator[Problem]:
@@ -206,7 +206,7 @@ def _planar_keys(mechanism: Description) -> Iterator[Problem]:
             yield Problem(what, _("give one number"), ("links", name, "inertia"))
         if link.model is not None and link.centre_radius is not None:
             what = _("the mass of a ring and point mass lies on the sphere")
-            yield Problem(what, _("take centre_radius out"), ("links", name, "centre_radius"))
+            yield Problem(what, _("remove centre_radius"), ("links", name, "centre_radius"))
     for index, guide in enumerate(mechanism.guides):
         if isinstance(guide.pole, Placed):
             what = _("a pole cannot be placed")
@@ -222,7 +222,7 @@ def _planar_keys(mechanism: Description) -> Iterator[Problem]:
 
 
 def _planar(key: str, repair: str, at: Place) -> Problem:
-    return Problem(_("{key} belongs to the plane").format(key=key), repair, at)
+    return Problem(_("{key} is used in the plane only").format(key=key), repair, at)
 
 
 def _angles(mechanism: Description) -> Iterator[Problem]:
@@ -244,7 +244,7 @@ def _reference(mechanism: Description, link: Link, against: str, at: Place) -> I
     arcs = link.reference or ()
     if len(points) < 2:
         what = _("a link of one point has no angle on the sphere")
-        yield Problem(what, _("name its second point, or take the reference out"), at)
+        yield Problem(what, _("name its second point, or remove the reference"), at)
     elif arcs[0] != points[0]:
         what = _("the reference starts at {point}, the link's first point is {first}")
         repair = _("a link's angle is measured in its first point: start the reference there")
@@ -264,7 +264,10 @@ def _lengths_of(mechanism: Description, link: Link, at: Place) -> Iterator[Probl
     for places in known:
         for one, other in pairwise(places):
             if not makes_arc(unit_vector(one), unit_vector(other)):
-                what = _("two points that coincide or lie opposite make no arc to measure an angle from")
+                what = _(
+                    "two points that coincide or are diametrically opposite define no arc from which to measure "
+                    "an angle"
+                )
                 yield Problem(what, _("choose another second point"), at)
 
 
@@ -273,7 +276,7 @@ def _reference_problems(
 ) -> Iterator[Problem]:
     missing = [point for point in arcs if point not in points_on(mechanism, link)]
     if missing:
-        what = _("the drive is relative to {link}, but {point} of the reference is no point of it")
+        what = _("the drive is relative to {link}, but {point} of the reference is not a point of it")
         repair = _("name two points of {link}").format(link=link)
         yield Problem(what.format(link=link, point=value_text(missing[0])), repair, at)
 
@@ -406,7 +409,7 @@ def _link(name: str, link: Link, at: Place) -> Iterator[Problem]:
         if not link.points:
             yield Problem(_("the link has no points"), _("name them: points = { A = [0, 0] }"), at)
         if link.length is not None:
-            repair = _("take the length out")
+            repair = _("remove the length")
             yield Problem(_("a link whose points have coordinates has no length of its own"), repair, at)
         return
     if not link.points:
@@ -420,7 +423,7 @@ def _link(name: str, link: Link, at: Place) -> Iterator[Problem]:
     elif len(link.points) == 2 and link.length is None:
         yield Problem(_("length is missing"), _("give the distance of its points"), at)
     elif len(link.points) == 1 and link.length is not None:
-        yield Problem(_("a link of one point has no length"), _("name its second point, or take it out"), at)
+        yield Problem(_("a link of one point has no length"), _("name its second point, or remove it"), at)
 
 
 def _without_points(name: str, link: Link) -> tuple[str, str]:
@@ -439,7 +442,7 @@ def _guides(mechanism: Description) -> Iterator[Problem]:
         at: Place = ("guides", index)
         if guide.id in identities:
             what = _("there are two guides {name}").format(name=value_text(guide.id))
-            yield Problem(what, _("give one of them a name of its own: name = ..."), at)
+            yield Problem(what, _("give one of them a different name: name = ..."), at)
         identities.add(guide.id)
         yield from link_known(mechanism, guide.on, (*at, "on"))
         for key, line in (("through", guide.through), ("pole", guide.pole)):
@@ -448,8 +451,8 @@ def _guides(mechanism: Description) -> Iterator[Problem]:
                     line, points_on(mechanism, guide.on), "point", (*at, key), guide.on
                 )
         if guide.on in mechanism.links and guide.point in mechanism.links[guide.on].coordinates:
-            what = _("point {point} is a point of {link} already, it cannot slide on it")
-            repair = _("take it out of the link, or guide another point")
+            what = _("point {point} already belongs to {link}, so it cannot slide on this link")
+            repair = _("remove it from the link, or choose another point for the guide")
             yield Problem(what.format(point=value_text(guide.point), link=guide.on), repair, at)
         if guide.link is not None:
             yield from _guided_link(mechanism, guide.link, guide.point, guide.on, at)
@@ -475,7 +478,7 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
         at: Place = ("drives", index)
         if drive.id in identities:
             yield Problem(
-                _("{name} is driven twice").format(name=value_text(drive.id)), _("keep one of the drives"), at
+                _("{name} has two drives").format(name=value_text(drive.id)), _("keep one of the drives"), at
             )
         identities.add(drive.id)
         if drive.link:

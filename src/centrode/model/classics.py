@@ -97,7 +97,7 @@ def slider_crank(
     e = to_si(offset, "length")
     if abs(e) >= a + b:
         raise InputError(
-            "slider_crank", _("the offset is out of reach of crank and coupler"), _("shorten it")
+            "slider_crank", _("crank and coupler do not reach a guide with this offset"), _("shorten it")
         )
     lifted = math.asin(max(-1.0, min(1.0, e / a))) if abs(e) >= b else 0.0
     return _driven(
@@ -131,7 +131,7 @@ def inverted_slider_crank(
     e = to_si(offset, "length")
     if abs(e) >= a + d:
         raise InputError(
-            "inverted_slider_crank", _("the offset is out of reach of the crank"), _("shorten it")
+            "inverted_slider_crank", _("the crank does not reach the slot with this offset"), _("shorten it")
         )
     return _driven(
         "Inverted slider-crank",

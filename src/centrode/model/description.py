@@ -158,7 +158,7 @@ class Description(DescriptionPart):
             return guide.through
         if guide.through.at is None:
             where = f"[[guides]] {guide.id}, through"
-            raise InputError(where, _("the line is not placed yet"), _("give its coordinates"))
+            raise InputError(where, _("the position of the line is not known yet"), _("give its coordinates"))
         return guide.through.at
 
     def points_of(self, link: str) -> Mapping[str, Vector]:

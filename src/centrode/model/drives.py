@@ -55,14 +55,14 @@ class Drive(DescriptionPart):
     relative_to : str
         The link an angle is measured from.
     start : float [rad or m]
-        Value at t = 0, without the law's own value there; from the initial position if left out.
+        Value at t = 0, without the law's own value there; from the initial position by default.
     speed, law, table, segments, cam : float [rad/s or m/s], formula in t, rows of (time, value), Segments, PlateCam
         One of them. In a file, `table` may be the path of a CSV file beside it, `cam` that of a cam's description or
         the name of a built-in one.
     repeat : bool
         Whether the segments follow each other again and again.
     cam_speed : float [rad/s]
-        Of the cam; its description's own if left out.
+        Of the cam; its description's own by default.
     cam_angle : float [rad]
         Of the cam at t = 0.
     cam_point : str
@@ -99,14 +99,14 @@ class Drive(DescriptionPart):
         """What is wrong with the keys that are given, by the rules of this part."""
         wrong = one_of(given, ("link", "guide", "distance")) + one_of(given, _LAWS)
         if given.get("link") is None and given.get("relative_to", FRAME) != FRAME:
-            repair = _("take it out; a guide's displacement is along the link it is on")
-            wrong.append(Problem(_("relative_to belongs to the drive of a link's angle"), repair))
+            repair = _("remove it; a guide's displacement is along the link it is on")
+            wrong.append(Problem(_("relative_to is used with the drive of a link's angle only"), repair))
         if given.get("repeat") and given.get("segments") is None:
-            wrong.append(Problem(_("repeat belongs to segments"), _("take it out, or give segments")))
+            wrong.append(Problem(_("repeat is used with segments only"), _("remove it, or give segments")))
         if given.get("cam") is None:
             foreign = [key for key in _OF_CAM if given.get(key)]
-            told = _("{key} belongs to a cam")
-            wrong += [Problem(told.format(key=key), _("take it out, or give a cam")) for key in foreign]
+            told = _("{key} is used with a cam only")
+            wrong += [Problem(told.format(key=key), _("remove it, or give a cam")) for key in foreign]
         return super().key_problems(given) + wrong
 
     @field_validator("start", "speed", mode="plain")
@@ -181,23 +181,23 @@ def _kind(info: ValidationInfo, rate: bool = False) -> str:
 def _check_cam(drive: Drive, cam: PlateCam) -> None:
     """Raise Problem where a cam cannot drive what it is to drive."""
     if READING.get().space == "sphere":
-        raise Problem(_("plate cams are for the plane"), _("give another law"), ("cam",))
+        raise Problem(_("disc cams are planar"), _("give another law"), ("cam",))
     if drive.turning is None:
-        what = _("nothing says how fast the cam turns")
+        what = _("the speed of the cam is not given")
         raise Problem(what, _("give cam_speed, or speed in the cam's table [cam]"), ("cam",))
     if drive.distance is not None:
         what = _("a cam drives the angle of a link, or a displacement along a guide")
         raise Problem(what, _("name a link or a guide"), ("cam",))
     if drive.cam_point is not None and not cam.swings:
-        what = _("cam_point belongs to a follower that oscillates; a guide leads its own point")
-        raise Problem(what, _("take it out"), ("cam_point",))
+        what = _("cam_point is used with an oscillating follower only; a guide has its own point")
+        raise Problem(what, _("remove it"), ("cam_point",))
     if cam.swings and drive.link is None:
         what = _("the cam's follower oscillates, but a displacement is driven")
-        raise Problem(what, _("drive a link's angle, or take a translating follower"), ("cam",))
+        raise Problem(what, _("drive a link's angle, or choose a translating follower"), ("cam",))
     if not cam.swings and drive.guide is None:
         what = _("the cam's follower translates, but an angle is driven")
         raise Problem(
-            what, _("drive a displacement along a guide, or take an oscillating follower"), ("cam",)
+            what, _("drive a displacement along a guide, or choose an oscillating follower"), ("cam",)
         )
 
 

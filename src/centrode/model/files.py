@@ -65,7 +65,7 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     where : str
         What messages call the text, such as the name of its file.
     folder : Path
-        Where the tables of drives lie; the current folder if left out.
+        Where the tables of drives lie; the current folder by default.
 
     Raises
     ------

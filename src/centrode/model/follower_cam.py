@@ -163,7 +163,9 @@ def _belongs(
         return [missing_key(key)] if needed and not has else []
     if not has or given[key] == 0:
         return []
-    return [Problem(_("{key} belongs to {whose}").format(key=value_text(key), whose=whose), _("take it out"))]
+    return [
+        Problem(_("{key} is used with {whose} only").format(key=value_text(key), whose=whose), _("remove it"))
+    ]
 
 
 class FollowerBounds(DescriptionPart):
@@ -251,7 +253,7 @@ def _rate(value: object, kind: str, order: int) -> float:
 def _read_angle(value: object) -> float:
     angle = positive(value, "angle")
     if angle < LEAST_ANGLE:
-        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
+        what = _("{value} is outside the range that can be computed").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=LEAST_ANGLE))
     return angle
 
@@ -292,7 +294,7 @@ class LiftSegment(DescriptionPart):
         wrong = super().key_problems(given)
         curve = given.get("curve")
         if curve == laws.DWELL and given.get("to") is not None:
-            wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
+            wrong.append(Problem(_("the lift stays constant in a dwell, so it has no `to`"), _("remove it")))
         if curve != laws.DWELL and given.get("to") is None:
             wrong.append(missing_key("to"))
         return wrong + foreign_keys(given, ("at_start", "at_end", "through"))
@@ -324,12 +326,12 @@ class LiftSegment(DescriptionPart):
 def _lift_of(value: object) -> float:
     lift = si(value, DRIVEN.get())
     if lift < 0:
-        what = _("the lift is counted from its lowest place and not negative, got {value}")
+        what = _("the lift is measured from its lowest position and must not be negative, got {value}")
         raise Problem(
-            what.format(value=value_text(value)), _("let the base circle be that of the lowest place")
+            what.format(value=value_text(value)), _("let the base circle be that of the lowest position")
         )
     if 0 < lift < reading.LEAST:
-        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
+        what = _("{value} is outside the range that can be computed").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=reading.LEAST))
     return lift
 
@@ -393,7 +395,7 @@ def _start_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
             if segment.start > end:
                 what = _("it begins at {start:.9g} deg, but the one before ends at {end:.9g} deg: a gap")
             if number == 0:
-                what = _("the first segment begins at 0, not at {start:.9g} deg")
+                what = _("the first segment must begin at 0, not at {start:.9g} deg")
             told = what.format(start=math.degrees(segment.start), end=math.degrees(end))
             found.append(Problem(told, _("correct its angles, or add a dwell"), ("segments", number)))
         end += segment.angle
@@ -421,14 +423,14 @@ def _check_formulas(segment: LiftSegment, before: float) -> None:
     """Raise the problem of a segment that has no formulas, or such as run away."""
     angles = (0.0, *(angle for angle, _lift in segment.through), segment.angle)
     if not all(one < other for one, other in pairwise(angles)):
-        what = _("the angles of `through` increase and lie inside the segment, counted from its start")
+        what = _("the angles of `through` must increase and lie inside the segment, counted from its start")
         raise Problem(what, _("correct them, or the segment's angle"))
     try:
         reached = _lift_bound(segment.law.pieces(0.0, before))
     except InputError as error:
         raise Problem(error.what, error.repair) from None
     if not reached <= MOST_LIFT:
-        what = _("the lift runs away: with these conditions it may reach {lift:.3g} {unit}")
+        what = _("the lift grows too large: with these conditions it may reach {lift:.3g} {unit}")
         repair = _("give smaller lifts and rates, or points that lie further apart")
         raise Problem(what.format(lift=reached, unit=UNITS[DRIVEN.get()]), repair)
 

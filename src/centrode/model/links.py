@@ -233,7 +233,7 @@ class Guide(DescriptionPart):
         missing = [missing_key(key) for key in required if given.get(key) is None]
         wrong = [_foreign(key, sphere) for key in foreign if given.get(key) is not None]
         turning = given.get("angle") is not None and given.get("link") is None
-        alone = [Problem(_("angle belongs to a guide with a link"), _("add link = ..., or take it out"))]
+        alone = [Problem(_("angle is used for a guide with a link only"), _("add link = ..., or remove it"))]
         return super().key_problems(given) + missing + wrong + (alone if turning else [])
 
     @property
@@ -267,10 +267,10 @@ class Guide(DescriptionPart):
 def _foreign(key: str, sphere: bool) -> Problem:
     if sphere:
         return Problem(
-            _("{key} belongs to the plane").format(key=key), _("on the sphere give pole and radius")
+            _("{key} is used in the plane only").format(key=key), _("on the sphere give pole and radius")
         )
     return Problem(
-        _("{key} belongs to the sphere").format(key=key), _("in the plane give through and direction")
+        _("{key} is used on the sphere only").format(key=key), _("in the plane give through and direction")
     )
 
 
@@ -318,10 +318,12 @@ class Track(DescriptionPart):
         wrong = one_of(given, ("direction", "radius"))
         for key, partner in (("direction", "through"), ("radius", "centre")):
             if (given.get(key) is None) != (given.get(partner) is None):
-                wrong.append(Problem(_("{key} and {partner} go together").format(key=key, partner=partner)))
+                wrong.append(
+                    Problem(_("{key} and {partner} must be given together").format(key=key, partner=partner))
+                )
         if given.get("inside") and given.get("direction") is not None:
-            repair = _("take it out; turn the direction round to roll on the line's other side")
-            wrong.append(Problem(_("inside belongs to a circle"), repair))
+            repair = _("remove it; reverse the direction to roll on the line's other side")
+            wrong.append(Problem(_("inside is used with a circle only"), repair))
         return super().key_problems(given) + wrong
 
     @property

@@ -99,12 +99,12 @@ def _of_force(given: Mapping[str, Any], present: set[str], said: set[str]) -> li
     if "point" in present:
         missing = [] if "vector" in present else [missing_key("vector")]
         wrong = [key for key in _ALONG_GUIDE if key in present]
-        what = _("{key} belongs to a force along a guide")
+        what = _("{key} is used with a force along a guide only")
         repair = _("give vector, or a guide in place of the point")
     else:
         missing = one_of(given, _ALONG_GUIDE)
         wrong = [key for key in _IN_POINT if key in said]
-        what = _("{key} belongs to a force in a point")
+        what = _("{key} is used with a force in a point only")
         repair = _("give value or table, or a point in place of the guide")
     return missing + [Problem(what.format(key=value_text(key)), repair) for key in wrong]
 
@@ -121,12 +121,12 @@ def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) ->
         return _of_coefficient(present, said)
     wrong = [key for key in ("point", *_OF_HINGE, *_OF_SLIDER) if key in said]
     if wrong:
-        what = _("{key} belongs to friction by a coefficient")
+        what = _("{key} is used with Coulomb friction only")
         repair = _("give coefficient in place of {keys}").format(keys=", ".join(amounts))
         return [Problem(what.format(key=value_text(key)), repair) for key in wrong]
     if given.get("form") == "plain sum" and (amounts != ["quadratic"] or "link" not in present):
-        what = _("the plain sum belongs to quadratic friction in a hinge")
-        return [Problem(what, _("take form out, or give quadratic alone"))]
+        what = _("the plain sum is used with quadratic friction in a hinge only")
+        return [Problem(what, _("remove form, or give quadratic alone"))]
     return []
 
 
@@ -135,24 +135,29 @@ def _of_coefficient(present: set[str], said: set[str]) -> list[Problem]:
     problems = []
     if "guide" in present:
         wrong = [key for key in (*_OF_HINGE, "relative_to", "axis", "form") if key in said]
-        what, repair = _("{key} belongs to friction in a hinge"), _("take it out, or give point")
+        what, repair = _("{key} is used with friction in a hinge only"), _("remove it, or give point")
     else:
         if "point" not in present:
-            what = _("friction by a coefficient in a hinge needs the point of the hinge")
+            what = _("Coulomb friction in a hinge needs the point of the hinge")
             problems.append(
-                Problem(what, _("give point and radius; link says which link rubs, pin which not"))
+                Problem(
+                    what,
+                    _(
+                        "give point and radius; link names the link that rubs, pin the link in which the pin is fixed"
+                    ),
+                )
             )
         elif "radius" not in present:
             problems.append(Problem(_("the radius of the pin is missing"), _("give radius")))
         wrong = [key for key in (*_OF_SLIDER, "relative_to", "axis", "form") if key in said]
-        what, repair = _("{key} does not belong to friction by a coefficient there"), _("take it out")
+        what, repair = _("{key} is not used with Coulomb friction there"), _("remove it")
     return problems + [Problem(what.format(key=value_text(key)), repair) for key in wrong]
 
 
 def _foreign(key: str, kind: str) -> Problem:
     alternatives, needed, allowed = _KEYS_OF[kind]
     known = (*alternatives, *needed, *allowed)
-    what = _("{key} does not belong to a {kind}").format(key=value_text(key), kind=kind)
+    what = _("{key} is not used with a {kind}").format(key=value_text(key), kind=kind)
     return Problem(what, _("it has: {keys}").format(keys=", ".join(known)))
 
 

@@ -71,7 +71,7 @@ class InitialChain:
         """That the chain does not reach a point, naming the links on its shortest way that lack an angle."""
         way = [*self._ways.get(point, ()), *([link] if link else [])]
         missing = [name for name in dict.fromkeys(way) if self.mechanism.initial_angle(name) is None]
-        what = _("{point} cannot be placed: the chain from the frame does not reach it").format(
+        what = _("{point} cannot be placed: no chain of links connects it to the frame").format(
             point=value_text(point)
         )
         if not missing:

@@ -422,7 +422,8 @@ def read_name(value: object) -> str:
         raise Problem(_("{name} has characters a name may not have").format(name=value_text(value)), repair)
     if name == PLACED:
         raise Problem(
-            _('"placed" cannot be a name: it asks for a place along the chain'), _("choose another name")
+            _('"placed" cannot be a name: it means that the point is placed along the chain'),
+            _("choose another name"),
         )
     return name
 

@@ -90,7 +90,7 @@ class Segment(DescriptionPart):
         wrong = super().key_problems(given)
         curve = given.get("curve")
         if curve == laws.DWELL and given.get("to") is not None:
-            wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
+            wrong.append(Problem(_("the lift stays constant in a dwell, so it has no `to`"), _("remove it")))
         if curve != laws.DWELL and given.get("to") is None:
             wrong.append(missing_key("to"))
         return wrong + foreign_keys(given, _BY_CONDITIONS) + _gaps(given, AT_START) + _gaps(given, AT_END)
@@ -147,13 +147,13 @@ def foreign_keys(given: Mapping[str, Any], keys: Sequence[str]) -> list[Problem]
     """Keys of curves by conditions that are given for another curve."""
     wrong = []
     if given.get("curve") not in laws.THROUGH_POINTS:
-        repair = _('take it out, or write curve = "polynomial" or "b-spline"')
-        what = _("{key} belongs to a polynomial or a B-spline")
+        repair = _('remove it, or write curve = "polynomial" or "b-spline"')
+        what = _("{key} is used with a polynomial or a B-spline only")
         foreign = [key for key in keys if given.get(key) not in _NOTHING]
         wrong = [Problem(what.format(key=key), repair) for key in foreign]
     if given.get("curve") != laws.B_SPLINE and given.get("degree") is not None:
-        repair = _("take it out; that of a polynomial follows from what is asked of it")
-        wrong.append(Problem(_("degree belongs to a B-spline"), repair))
+        repair = _("remove it; the degree of a polynomial follows from its conditions")
+        wrong.append(Problem(_("degree is used with a B-spline only"), repair))
     return wrong
 
 

@@ -48,7 +48,7 @@ def read_samples(value: object) -> int:
         raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=value_text(value)))
     if not 1 <= value <= reading.SAMPLES:
         what = _("{key} must lie between 1 and {most}, got {value}")
-        repair = _("ask for fewer samples") if value > 0 else _("ask for more samples")
+        repair = _("choose fewer samples") if value > 0 else _("choose more samples")
         raise Problem(what.format(key=KEY, most=reading.SAMPLES, value=value_text(value)), repair)
     return value
 
@@ -163,11 +163,11 @@ def _ratio(value: object, kind: str) -> float:
 def _fluctuation(value: object, kind: str) -> float:
     number = positive(value, kind)
     if number < LEAST_FLUCTUATION:
-        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
+        what = _("{value} is outside the range that can be computed").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=LEAST_FLUCTUATION))
     if number >= 2:
         what = _("{key} must be smaller than 2, got {value}").format(key=KEY, value=value_text(value))
-        raise Problem(what, _("it is (greatest less least speed) over the mean one, such as 0.05"))
+        raise Problem(what, _("it is (greatest minus least speed) over the mean speed, such as 0.05"))
     return number
 
 

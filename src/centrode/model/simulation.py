@@ -128,11 +128,11 @@ class Simulation(DescriptionPart):
     Attributes
     ----------
     start : float [rad or m]
-        Value of the drive at t = 0; the initial one if left out.
+        Value of the drive at t = 0; the initial one by default.
     speed : float [rad/s or m/s]
         Speed at t = 0, positive in the sense of the drive.
     driving : formula of `t`, `q` and `v` [N m or N]
-        Moment of the drive, positive in its sense, as v is; none if left out.
+        Moment of the drive, positive in its sense, as v is; none by default.
     motor : Motor
         In place of `driving`.
     duration : float [s]

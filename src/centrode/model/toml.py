@@ -27,18 +27,18 @@ _CLOSED = mark("this table is complete already, nothing can be added to it")
 _SENTENCES = {
     r"Invalid statement": mark("this is neither a [heading] nor key = value"),
     r"Expected newline or end of document .*": mark("there is more on the line than one value"),
-    r"Cannot declare .* twice": mark("this table stands in the file already"),
+    r"Cannot declare .* twice": mark("this table is already in the file"),
     r"Cannot overwrite a value": _TWICE,
     r"Duplicate inline table key .*": _TWICE,
     r"Cannot (mutate|redefine) .*": _CLOSED,
     r"Expected '\]+' at the end of .*": mark("a heading is not closed: its bracket is missing"),
-    r"Expected '=' after a key .*": mark("= is missing behind a key"),
+    r"Expected '=' after a key .*": mark("= is missing after a key"),
     r"Invalid initial character for a key part": mark("a key is missing, or begins with a wrong character"),
     r"Unclosed array": mark("a list is not closed: its bracket is missing"),
     r"Unclosed inline table": mark("a table is not closed: its brace is missing"),
     r"Unterminated string": _OPEN_TEXT,
     r"(Illegal|Found invalid) character '\\n'|Expected ['\"]{3,}": _OPEN_TEXT,
-    r"Illegal character .*|Found invalid character .*": mark("this character may not stand here"),
+    r"Illegal character .*|Found invalid character .*": mark("this character is not allowed here"),
     r"Unescaped '\\' in a string": mark("a backslash in a text: double it, or use single quotes"),
     r"Invalid hex value|Escaped character .*": _NO_CHARACTER,
     r"Invalid date or datetime": mark("this date does not exist"),
@@ -109,7 +109,7 @@ def toml_tables(text: str, where: str) -> dict[str, Any]:
     if len(text) > reading.FILE_SIZE:
         what = _("the text has {size} characters, at most {most} are allowed")
         raise InputError(where, what.format(size=len(text), most=reading.FILE_SIZE))
-    repair = _("tables and lists lie at most {most} inside each other").format(most=reading.NESTING)
+    repair = _("tables and lists may be nested at most {most} deep").format(most=reading.NESTING)
     nested = InputError(where, _("the text nests too deeply"), repair)
     if _DOTTED.search(text):
         raise nested

@@ -229,7 +229,7 @@ def decimal_point_repair(text: str) -> str:
 
 def _other_kind(unit: str, kind: str, frequency: bool = False) -> InputError:
     if frequency and kind == "angular speed":
-        repair = _("{unit} does not tell turns from radians: write rpm or rad/s").format(unit=unit)
+        repair = _("{unit} does not distinguish turns from radians: write rpm or rad/s").format(unit=unit)
         return InputError("", _wrong(unit, kind).what, repair)
     return _wrong(unit, kind)
 

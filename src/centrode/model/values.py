@@ -105,7 +105,7 @@ def _bounded(value: object, kind: str) -> float:
         raise Problem(error.what, error.repair) from None
     most = reading.GREATEST_ANGLE if kind in ("angle", "arc") else reading.GREATEST
     if abs(number) > most:
-        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
+        what = _("{value} is outside the range that can be computed").format(value=value_text(value))
         raise Problem(what, _("stay below {most:g}").format(most=most))
     return number
 
@@ -116,7 +116,7 @@ def positive(value: object, kind: str) -> float:
     if number <= 0:
         raise Problem(_("{key} must be positive, got {value}").format(key=KEY, value=value_text(value)))
     if number < reading.LEAST:
-        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
+        what = _("{value} is outside the range that can be computed").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=reading.LEAST))
     if kind == "arc" and number >= math.pi:
         what = _("{key} must be shorter than half a great circle, got {value}")
@@ -154,7 +154,7 @@ def read_coordinates(value: object) -> Vector:
             value, ("arc", "arc"), _("[longitude, latitude] or a unit vector [x, y, z]")
         )
         if abs(latitude) > math.pi / 2 + 1e-9:
-            what = _("a latitude lies between -90 and 90 deg, got {value:.9g} deg")
+            what = _("a latitude must lie between -90 and 90 deg, got {value:.9g} deg")
             raise Problem(what.format(value=math.degrees(latitude)), _("write [longitude, latitude]"))
         return longitude, latitude
     x, y, z = numbers(value, ("ratio",) * 3, "[x, y, z]")
@@ -199,7 +199,7 @@ def read_heading(value: object) -> tuple[float, ...]:
     """Plain numbers along the axes of the space that give a direction."""
     found = read_axes(value, "ratio")
     if not math.hypot(*found) or not math.isfinite(math.hypot(*found)):
-        raise Problem(_("a direction is not zero, got {value}").format(value=list(found)))
+        raise Problem(_("a direction must not be zero, got {value}").format(value=list(found)))
     return found
 
 
@@ -207,7 +207,7 @@ def read_vector(value: object) -> Vector:
     """Two plain numbers that give a direction."""
     x, y = numbers(value, ("ratio", "ratio"), "[x, y]")
     if not math.hypot(x, y) or not math.isfinite(math.hypot(x, y)):
-        raise Problem(_("a direction is not zero, got {value}").format(value=f"[{x}, {y}]"))
+        raise Problem(_("a direction must not be zero, got {value}").format(value=f"[{x}, {y}]"))
     return x, y
 
 
@@ -293,7 +293,7 @@ def read_rows(value: object, columns: TableColumns, folder: Path) -> Rows:
 def _csv_rows(name: str, columns: TableColumns, folder: Path) -> Rows:
     path = PurePosixPath(name.replace("\\", "/"))
     if not name.isprintable() or path.is_absolute() or ".." in path.parts or ":" in name:
-        what = _("{name} does not lie beside the description").format(name=value_text(name))
+        what = _("{name} is not in the folder of the description").format(name=value_text(name))
         raise Problem(what, _("put the CSV file into the folder of the description"))
     try:
         lines = [
@@ -412,7 +412,9 @@ def _check_symmetric(tensor: Tensor) -> None:
     slack = PLAUSIBLE * sum(abs(x) for row in tensor for x in row)
     for i, j in ((0, 1), (1, 2), (2, 0)):
         if abs(tensor[i][j] - tensor[j][i]) > slack:
-            what = _("a tensor of inertia is symmetric, but it has {one:.6g} across from {other:.6g}")
+            what = _(
+                "a tensor of inertia is symmetric, but the symmetric elements {one:.6g} and {other:.6g} differ"
+            )
             text = what.format(one=tensor[i][j], other=tensor[j][i])
             raise Problem(
                 text, _("give the products of inertia, which are negative sums of x y, on both sides")

@@ -70,18 +70,18 @@ class SourceText:
         """Refuse what Python would read otherwise than a formula: other signs, look-alikes, names pasted to numbers."""
         strange = _STRANGE.search(self.text)
         if strange:
-            what = _("a formula has no such character")
+            what = _("this character is not allowed in a formula")
             raise self.error(strange.start(), what, _("use + - * / ** and parentheses"))
         for column, character in enumerate(self.text):
             # Python reads full-width and other compatibility letters as the plain ones (NFKC)
             if not character.isspace() and unicodedata.normalize("NFKC", character) != character:
-                what = _("a formula has no such character")
+                what = _("this character is not allowed in a formula")
                 raise self.error(column, what, _("write plain letters and digits"))
         # Python takes "2in x" or "1if" for words: a person forgot a sign
         pasted = _PASTED.search(self.text)
         if pasted:
             repair = _('write "{number}*..."').format(number=pasted.group())
-            raise self.error(pasted.end(), _("a sign is missing after a number"), repair)
+            raise self.error(pasted.end(), _("an operator is missing after a number"), repair)
 
 
 Node = Callable[[Any, Mapping[str, Number]], Number]
@@ -256,7 +256,7 @@ class _FormulaReader:
         exponent = self.exponent(node.right, depth + 1)
         twice = exponent * 2
         if twice != round(twice) or abs(exponent) > GREATEST_POWER:
-            what = _("an exponent is an integer or a half, at most {most}").format(most=GREATEST_POWER)
+            what = _("an exponent must be an integer or a half, at most {most}").format(most=GREATEST_POWER)
             raise self.at(node.right, what, _("write other powers as exp(y*log(x))"))
         if exponent == round(exponent):
             return lambda m, v: _power(m, base(m, v), round(exponent))
@@ -270,7 +270,9 @@ class _FormulaReader:
         except (ArithmeticError, ValueError):
             value = float("nan")
         if not math.isfinite(value):
-            raise self.at(node, _("an exponent is a fixed number"), _("write other powers as exp(y*log(x))"))
+            raise self.at(
+                node, _("an exponent must be a fixed number"), _("write other powers as exp(y*log(x))")
+            )
         return value
 
     def names(self, node: ast.expr) -> bool:

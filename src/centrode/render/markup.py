@@ -205,7 +205,7 @@ class MarkdownPage(MarkupPage):
 
     def table(self, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         """A table; Markdown has none without heads."""
-        heads = heads or (_("what"), _("value"))
+        heads = heads or (_("quantity"), _("value"))
         lines = (f"| {' | '.join(row)} |\n" for row in (heads, *rows))
         return next(lines) + "|" + "---|" * len(heads) + "\n" + "".join(lines)
 

@@ -64,7 +64,7 @@ def read_dataset(path: Path) -> xarray.Dataset:
         AssertionError,
         MemoryError,
     ) as failure:
-        raise InputError(str(path), _("it is no netCDF file that can be read"), repair) from failure
+        raise InputError(str(path), _("the file is not netCDF, or cannot be read"), repair) from failure
 
 
 def _empty_variables(text: str) -> dict[str, xarray.Variable]:

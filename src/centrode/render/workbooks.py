@@ -56,7 +56,7 @@ def write_workbook(path: str | Path, headers: Sequence[str], columns: Sequence[C
         raise InputError(
             str(path),
             _("a sheet holds {rows} rows and {columns} columns").format(rows=MOST_ROWS, columns=MOST_COLUMNS),
-            _("ask for fewer samples, or take the CSV file"),
+            _("give fewer samples, or use the CSV file"),
         )
     book = xlsxwriter.Workbook(str(path), {"nan_inf_to_errors": False})
     book.set_properties({"created": CREATED})

@@ -34,7 +34,7 @@ def report(
     options : ReportOptions, optional
         Go before the wishes of the description.
     language : "en", "ru" or "uk", optional
-        The language spoken at the moment if left out.
+        The language spoken at the moment by default.
     name : str
         The title where the description has none.
     said : function, optional
@@ -43,7 +43,7 @@ def report(
     Returns
     -------
     Report
-        A chapter that cannot be made says why in its place; those with nothing to tell are left out.
+        A chapter that cannot be made says why in its place; those with nothing to tell are omitted.
 
     Raises
     ------

@@ -88,7 +88,7 @@ def check_formats(formats: Sequence[str]) -> None:
         raise InputError("format", _("no format is named"), nearest("", FORMATS))
     for kind in formats:
         if kind not in FORMATS:
-            what = _("{kind} is no format of a report").format(kind=value_text(kind))
+            what = _("{kind} is not a format of a report").format(kind=value_text(kind))
             raise InputError("format", what, nearest(kind, FORMATS))
     if find_spec("typst") is None:
         raise lacking("typst")

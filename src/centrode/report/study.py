@@ -39,7 +39,7 @@ class ReportOptions:
     ----------
     chapters : names of chapters, in any order; all that apply if nobody chooses
     instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives]
-    points : names of points whose velocities and paths are told
+    points : names of points whose velocities and paths are given
     digits : significant digits of numbers
 
     Examples
@@ -88,7 +88,7 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     moving = description.moving_points if isinstance(description, Mechanism) else ()
     _check(found.points, moving, "points", _("point {name} does not move"))
     if not LEAST_DIGITS <= found.digits <= MOST_DIGITS:
-        what = _("numbers have {least} to {most} digits, {digits} were asked for")
+        what = _("the number of significant digits is {least} to {most}, {digits} is given")
         said = what.format(least=LEAST_DIGITS, most=MOST_DIGITS, digits=found.digits)
         raise InputError("digits", said)
     return found
@@ -248,7 +248,7 @@ class Moment:
     @property
     def missing(self) -> str:
         """Why there is nothing to tell of it."""
-        sentence = _("At {place} the sample is {status}: there are no velocities to be told.")
+        sentence = _("At {place} the sample is {status}: the velocities are not defined.")
         return sentence.format(place=self.title, status=status_word(self.status))
 
 

@@ -480,10 +480,10 @@ class NoTurning:
     @property
     def label(self) -> str:
         if self.on == FRAME:
-            return _("link {link} does not turn against the frame (guide {guide})").format(
+            return _("link {link} does not turn relative to the frame (guide {guide})").format(
                 link=self.link, guide=self.guide
             )
-        return _("link {link} does not turn against {body} (guide {guide})").format(
+        return _("link {link} does not turn relative to {body} (guide {guide})").format(
             link=self.link, body=self.on, guide=self.guide
         )
 

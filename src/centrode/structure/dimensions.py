@@ -49,9 +49,9 @@ def references_of(
         base = frame if drive.relative_to == FRAME else local[drive.relative_to]
         missing = [point for point in (pivot, towards) if point not in base]
         if missing:
-            what = _("its reference arc has to lie on {body}, and {point} is no point of it")
+            what = _("its reference arc has to lie on {body}, but {point} is not a point of {body}")
             if drive.relative_to == FRAME:
-                what = _("its reference arc has to lie on the frame, and {point} is no point of it")
+                what = _("its reference arc has to lie on the frame, but {point} is not a point of it")
             raise InputError(
                 _("drive of link {link}").format(link=drive.link),
                 what.format(body=drive.relative_to, point=missing[0]),

@@ -159,7 +159,7 @@ def _check_room(wheel: Rolling, radius: Number, track: Track) -> None:
         raise InputError(
             f"[[rolling]] {wheel.id}",
             _("a wheel as large as the circle fills it and cannot roll inside"),
-            _("change one of the radii, or take inside out"),
+            _("change one of the radii, or remove inside"),
         )
 
 

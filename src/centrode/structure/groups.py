@@ -76,7 +76,7 @@ class Rolloff:
     @property
     def sentence(self) -> str:
         """What it is, as a part of a sentence."""
-        return _("the place to which wheel {wheel} rolls").format(wheel=self.rolling.rolling)
+        return _("the position to which wheel {wheel} rolls").format(wheel=self.rolling.rolling)
 
 
 @dataclass(frozen=True)
@@ -366,7 +366,7 @@ class Stop:
     @property
     def sentence(self) -> str:
         """What it is, as a part of a sentence."""
-        return _("the stop that the drive of guide {guide} sets").format(guide=self.guide)
+        return _("the stop set by the drive of guide {guide}").format(guide=self.guide)
 
 
 @dataclass(frozen=True)

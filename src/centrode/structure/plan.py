@@ -263,7 +263,7 @@ def _spin(wheel: Rolling) -> float:
 def _singular(links: Sequence[str]) -> InputError:
     return InputError(
         _("gears of {links}").format(links=", ".join(link for link in links if link != FRAME)),
-        _("they lock each other or leave an angle open: their equations do not give every angle"),
+        _("they block each other or leave an angle undetermined: their equations do not give every angle"),
         _("change a ratio, or drive another link"),
     )
 
@@ -566,8 +566,8 @@ def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
     guided = next((guide.id for guide in mechanism.guides if guide.link is not None), None)
     distance = any(drive.kind == "distance" for drive in mechanism.drives)
     asked = [
-        ("guided links", guided is not None, f"[[guides]] {guided}, link", _("hinge the link at the pole")),
-        ("rolling", bool(mechanism.rolling), "[[rolling]]", _("take it out, or work in the plane")),
+        ("guided links", guided is not None, f"[[guides]] {guided}, link", _("place a hinge at the pole")),
+        ("rolling", bool(mechanism.rolling), "[[rolling]]", _("remove it, or work in the plane")),
         ("distance", distance, "[[drives]] distance", _("drive the angle of a link")),
     ]
     for what, present, where, repair in asked:
@@ -592,7 +592,7 @@ def _check_drives(
     repeated = [c.label for c, keep in zip(owners, kept, strict=True) if is_drive(c) and not keep]
     numbers = drives_against_mobility(drives, mobility)
     if repeated:
-        raise InputError("[[drives]]", numbers, _("take away: {drives}").format(drives="; ".join(repeated)))
+        raise InputError("[[drives]]", numbers, _("remove: {drives}").format(drives="; ".join(repeated)))
     # as many independent rows as unknowns: everything is fixed once the drives are
     if sum(kept) == matrix.shape[1]:
         return
@@ -601,7 +601,7 @@ def _check_drives(
         raise InputError(
             "; ".join(locked),
             _("it cannot move: the rest of the mechanism holds it"),
-            _("drive what can move, or take constraints away"),
+            _("drive a part that can move, or remove constraints"),
         )
     alike = look_alike_error(mechanism, numbers)
     if alike:

@@ -121,17 +121,17 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
         and isinstance(given[0], str)
         and isinstance(given[2], int)
     ):
-        raise InputError(path, _("a range stands where values are expected"), _("say ct.grid or ct.sample"))
+        raise InputError(path, _("a range is given where values are expected"), _("use ct.grid or ct.sample"))
     if isinstance(given, Sequence) and not isinstance(given, str) and any(isinstance(x, str) for x in given):
         given = [_number(mechanism, kind, path, value) for value in given]
     try:
         array = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise InputError(
-            path, _("its values are no numbers"), _("give numbers, or texts with a unit")
+            path, _("its values are not numbers"), _("give numbers, or texts with a unit")
         ) from None
     if array.ndim != 1 or not array.size:
-        raise InputError(path, _("it needs one value or more, in one dimension"))
+        raise InputError(path, _("a one-dimensional array of one or more values is required"))
     if array.size > LISTED:
         what = _("{count} values were given").format(count=array.size)
         raise InputError(path, what, _("give at most {most}, or a ct.grid").format(most=LISTED))
@@ -146,10 +146,10 @@ def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float,
     kind = kind_of(mechanism, path)
     low, high = (_number(mechanism, kind, path, end) for end in (first, last))
     if not low < high:
-        what = _("the range from {first} to {last} does not rise").format(
+        what = _("the range from {first} to {last} does not increase").format(
             first=value_text(first), last=value_text(last)
         )
-        raise InputError(path, what, _("give the lesser end first, and a greater one after it"))
+        raise InputError(path, what, _("give the smaller end first, and a larger one after it"))
     _refuse_negative(kind, path, low)
     return low, high
 
@@ -169,7 +169,7 @@ def count_of(path: str, given: Any, most: int) -> int:
     if isinstance(given, np.integer):
         given = int(given)
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= most:
-        what = _("{count} is no number of values").format(count=value_text(given))
+        what = _("{count} is not a valid number of values").format(count=value_text(given))
         raise InputError(path, what, _("give a whole number from 1 to {most}").format(most=most))
     return given
 
@@ -226,7 +226,7 @@ def draw_sample(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
         raise InputError("sample", what, nearest(str(asked.method), METHODS))
     seed: object = asked.seed
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError("sample", _("the seed is a whole number from 0"))
+        raise InputError("sample", _("the seed must be a whole number from 0"))
     bounds = {path: _bounds(mechanism, path, given) for path, given in asked.ranges.items()}
     unit = _in_unit_cube(asked.method, len(bounds), count, np.random.default_rng(seed))
     columns = zip(bounds.items(), unit.T, strict=True)
@@ -362,8 +362,8 @@ def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> 
         raise InputError("vary", _("give at most {most} paths, as texts").format(most=PATHS))
     design = _resolve_design(mechanism, vary)
     if math.prod(design.shape) > MECHANISMS:
-        what = _("{count} mechanisms were asked for").format(count=math.prod(design.shape))
-        raise InputError("vary", what, _("ask for at most {most}").format(most=MECHANISMS))
+        what = _("{count} mechanisms are given").format(count=math.prod(design.shape))
+        raise InputError("vary", what, _("give at most {most}").format(most=MECHANISMS))
     extremes = {
         # only the ends: what lies between them is possible where both are
         path: np.array([values.min(), values.max()])
@@ -383,7 +383,7 @@ def _resolve_design(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sampl
     if len(set(sizes.values())) > 1:
         told = ", ".join(f"{path} {size}" for path, size in sizes.items())
         what = _("every path needs the same number of values; got {counts}").format(counts=told)
-        raise InputError("vary", what, _("say ct.grid for every combination"))
+        raise InputError("vary", what, _("use ct.grid for every combination"))
     return Listed(values)
 
 

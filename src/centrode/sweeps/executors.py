@@ -53,7 +53,7 @@ def check_executor(name: object) -> str:
 def check_threads(given: object) -> int:
     """A number of threads; InputError for any other than 1 to `designs.THREADS`."""
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= designs.THREADS:
-        what = _("{count} is no number of threads").format(count=value_text(given))
+        what = _("{count} is not a valid number of threads").format(count=value_text(given))
         raise InputError(
             "threads", what, _("give a whole number from 1 to {most}").format(most=designs.THREADS)
         )
@@ -80,7 +80,7 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
             # chosen by itself it may fall back, and the result says why; by name it must not
             return arrays, f"{arrays.name} ({why.reason})"
         what = _("machine code cannot compute this: {reason}").format(reason=_(why.reason))
-        raise InputError("executor", what, _('say executor = "auto" or "arrays"')) from None
+        raise InputError("executor", what, _('use executor = "auto" or "arrays"')) from None
     return executor, executor.name
 
 
@@ -103,7 +103,7 @@ def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tu
         executor = _machine_code_executor(task, design, threads, kernels)
     except Untraceable as why:
         what = _("derivatives cannot be computed here: {reason}").format(reason=_(why.reason))
-        raise InputError("gradient", what, _("leave gradient out")) from None
+        raise InputError("gradient", what, _("omit gradient")) from None
     return executor, executor.name
 
 

@@ -281,7 +281,7 @@ def _through(path: str, varied: Varied) -> Through:
         if isinstance(track, Straight):
             directions[f"rolling.{wheel}.along.direction"] = track.direction
     if path not in directions or not all(isinstance(x, Node) for x in directions[path]):
-        raise Untraceable(mark("derivatives by what moves nothing"))
+        raise Untraceable(mark("derivatives by numbers that move nothing"))
     cosine, sine = directions[path]
     # d cos = -sin and d sin = cos by the angle
     return [(cosine, -sine), (sine, cosine)]

@@ -89,16 +89,14 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
     """
     names = [asked] if isinstance(asked, str) else list(asked)
     if not names:
-        raise InputError(
-            "outputs", _("no output is asked for"), _('name one, such as "position.C" or "angle"')
-        )
+        raise InputError("outputs", _("no output is given"), _('name one, such as "position.C" or "angle"'))
     if len(names) > designs.OUTPUTS:
-        what = _("{count} outputs are asked for").format(count=len(names))
-        raise InputError("outputs", what, _("ask for at most {most}").format(most=designs.OUTPUTS))
+        what = _("{count} outputs are given").format(count=len(names))
+        raise InputError("outputs", what, _("give at most {most}").format(most=designs.OUTPUTS))
     outputs: dict[str, Output] = {}
     for name in names:
         if name in outputs:
-            raise InputError("outputs", _("{name} is asked for twice").format(name=value_text(name)))
+            raise InputError("outputs", _("{name} is given twice").format(name=value_text(name)))
         outputs[name] = _output(motion, name)
     return tuple(outputs.values())
 
@@ -150,8 +148,8 @@ def output_of_quantity(motion: xr.Dataset, name: str, quantity: str, rest: str) 
         label, rest = _label(name, rest, labels)
         where.append(labels.index(label))
     if rest:
-        what = _("{name} has nothing called {rest}").format(name=value_text(name), rest=value_text(rest))
-        raise InputError("outputs", what, _("leave it out"))
+        what = _("{name} has no entry {rest}").format(name=value_text(name), rest=value_text(rest))
+        raise InputError("outputs", what, _("omit it"))
     shape = tuple(motion.sizes[dimension] for dimension in left)
     return Output(name, quantity, tuple(where), tuple(left), shape, dict(variable.attrs))
 
@@ -355,9 +353,9 @@ def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Va
     with np.errstate(all="ignore"):
         value = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
     if np.shape(value)[-1:] == (2,):
-        what = _("the formula has a value at every sample, not one a mechanism")
+        what = _("the formula has a value at every sample, not one per mechanism")
         raise InputError(
-            where, what, _("say of which sample: min(...), max(...), range(...), mean(...), sum(...)")
+            where, what, _("reduce the samples: min(...), max(...), range(...), mean(...), sum(...)")
         )
 
 
@@ -441,7 +439,7 @@ def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
     """
     if not asked.is_reduced:
         what = _("derivatives are those of reduced outputs")
-        raise InputError("gradient", what, _("say how to reduce them"))
+        raise InputError("gradient", what, _("give a reduction"))
     reduced = [column for column in asked.columns if column not in JUDGED]
     words = "derivatives by the varied values [SI]; NaN for mechanisms that are not ok everywhere or meet an event"
     slopes = [
@@ -474,8 +472,8 @@ def asked_of(
     if outputs:
         raise InputError(
             "outputs",
-            _("formulas name what they use themselves"),
-            _("leave outputs out, or reduce by one of {names}").format(names=", ".join(REDUCTIONS)),
+            _("formulas request the outputs they use themselves"),
+            _("omit outputs, or reduce by one of {names}").format(names=", ".join(REDUCTIONS)),
         )
     formulas = formulas_of(motion, design, reduce)
     columns = tuple(

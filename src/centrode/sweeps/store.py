@@ -393,7 +393,7 @@ class Marks:
         checksum = self._checksum(block, told)
         if checksum is None:
             what = _("block {block} cannot be read back").format(block=block)
-            raise InputError(str(self.store), what, _("name another place"))
+            raise InputError(str(self.store), what, _("give another path"))
         folder = self.folder / str(block // TOGETHER)
         folder.mkdir(parents=True, exist_ok=True)
         write_whole(folder / f"{block}.json", {"tally": told, "sha256": checksum})
@@ -604,14 +604,14 @@ def read_store(path: Path, frame: SweepFrame) -> xr.Dataset:
 
 def _refuse_other_folders(path: Path) -> None:
     if path.exists() and not path.is_dir():
-        raise InputError(str(path), _("is no folder"), _("name another place"))
+        raise InputError(str(path), _("is not a folder"), _("give another path"))
     if not path.exists() or not any(path.iterdir()):
         return
     progress = path / PROGRESS
     # an empty `progress` alone is what an interrupted beginning leaves
     begun = [entry.name for entry in path.iterdir()] == [PROGRESS] and not any(progress.iterdir())
     if not begun and not (progress / LOCK).is_file():
-        raise InputError(str(path), _("the folder holds something else"), _("name another place"))
+        raise InputError(str(path), _("the folder holds something else"), _("give another path"))
 
 
 def _stored_study(path: Path) -> dict[str, Any] | None:
@@ -643,7 +643,7 @@ def _blocks_of(found: Mapping[str, Any], path: Path, frame: SweepFrame) -> Block
 
 def _damage_error(path: Path, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
     what = _("{file} in it is damaged").format(file=name)
-    return InputError(str(path), what, _("delete the folder, or name another place"))
+    return InputError(str(path), what, _("delete the folder, or give another path"))
 
 
 def _too_great(blocks: Blocks, frame: SweepFrame) -> bool:
@@ -674,7 +674,7 @@ def _refuse_other_studies(path: Path, found: Mapping[str, Any], study: Mapping[s
     if not other:
         return
     what = _("it holds another sweep; what differs: {keys}").format(keys=", ".join(other))
-    raise InputError(str(path), what, _("name another place, or delete it"))
+    raise InputError(str(path), what, _("give another path, or delete it"))
 
 
 def _make(path: Path, frame: SweepFrame, blocks: Blocks, study: Mapping[str, Any]) -> None:
@@ -699,7 +699,7 @@ def _clear(path: Path, frame: SweepFrame) -> None:
     ours = {METADATA, PROGRESS, *map(str, frame.empty.coords), *names}
     remains = [entry for entry in path.iterdir() if entry.name != PROGRESS]
     if any(entry.name not in ours and not DRAFT.fullmatch(entry.name) for entry in remains):
-        raise InputError(str(path), _("the folder holds something else"), _("name another place"))
+        raise InputError(str(path), _("the folder holds something else"), _("give another path"))
     for entry in (*remains, path / PROGRESS / METADATA, path / PROGRESS / DONE):
         if entry.is_dir() and not entry.is_symlink():
             clear_folder(entry)

@@ -116,7 +116,7 @@ def sweep(
     blocks = _blocks(frame, task, chosen)
     if store is None:
         return _in_memory(frame, blocks, task, chosen, progress).assign_attrs(topic="sweep")
-    _check_size(frame, designs.IN_STORE, _("reduce it, or ask for fewer"))
+    _check_size(frame, designs.IN_STORE, _("reduce it, or choose fewer"))
     with open_store(Path(store), frame, blocks, task) as kept:
         finished = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
@@ -192,7 +192,7 @@ def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor) -> Blocks:
 def _in_memory(
     frame: SweepFrame, blocks: Blocks, task: SweepTask, executor: Executor, progress: Progress | None
 ) -> xr.Dataset:
-    _check_size(frame, designs.IN_MEMORY, _("reduce it, ask for fewer, or give a store"))
+    _check_size(frame, designs.IN_MEMORY, _("reduce it, choose fewer, or give a store"))
     kept = InMemory(frame, blocks)
     try:
         _compute(frame, kept, task, executor, progress)
@@ -345,7 +345,9 @@ def _refuse_unknown(where: str, table: Mapping[str, Any], known: tuple[str, ...]
 def _vary(tables: Mapping[str, Any]) -> Mapping[str, Any] | Grid | Sample:
     given = [way for way in WAYS if way in tables]
     if len(given) != 1:
-        what = _("exactly one of {ways} says what varies").format(ways=", ".join(f"[{way}]" for way in WAYS))
+        what = _("exactly one of {ways} defines what varies").format(
+            ways=", ".join(f"[{way}]" for way in WAYS)
+        )
         raise InputError(", ".join(f"[{way}]" for way in given), what, _("give one of them"))
     way = given[0]
     table = tables[way]

@@ -222,7 +222,7 @@ def write(result: Any, folder: str | Path) -> None:
 def open(path: str | Path) -> xarray.Dataset:
     """A dataset of a result from the netCDF file that a command or `ct.write` wrote.
 
-    Raises InputError for a file that cannot be read, and for one that is no result of centrode.
+    Raises InputError for a file that cannot be read, and for one that is not a result of centrode.
 
     Examples
     --------
@@ -233,6 +233,6 @@ def open(path: str | Path) -> xarray.Dataset:
     """
     dataset = render.read_dataset(Path(path))
     if not is_result(dataset):
-        what = _("it is no result: it names no topic, or no description")
+        what = _("it is not a result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))
     return dataset

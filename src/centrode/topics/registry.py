@@ -43,10 +43,10 @@ INTEGRATE = Topic(
                 "method",
                 "rk4|adaptive",
                 mark(
-                    "Fixed steps of Runge-Kutta's method of fourth order, or adaptive ones of eighth order."
+                    "Fixed steps of the fourth-order Runge-Kutta method, or adaptive steps of eighth order."
                 ),
             ),
-            ValueOption("steps", mark("N"), mark("Number of steps, and of rows less one."), int),
+            ValueOption("steps", mark("N"), mark("Number of steps; the result has one row more."), int),
             ValueOption("tolerance", mark("X"), mark("Tolerance of each adaptive step."), float),
             ValueOption(
                 "to",
@@ -73,19 +73,19 @@ LIMITS = Topic(
     view=Lazily("centrode.views.limits", "sheet"),
     concerns=Lazily("centrode.kinematics.several_inputs.limits", "has_one_drive"),
     command=Command(
-        help=mark("Find the limits of one drive while the others are held."),
+        help=mark("Find the limits of one drive with the others fixed."),
         options=(
-            ValueOption("drive", mark("NAME"), mark("The drive that moves; needed where there are several.")),
+            ValueOption("drive", mark("NAME"), mark("The drive that moves; required if there are several.")),
             ValueOption(
                 "hold",
                 mark("NAME=VALUE"),
-                mark('Value of another drive ("EC=30 deg"); its initial one if left out.'),
+                mark('Value of another drive ("EC=30 deg"); its initial value by default.'),
                 several=True,
                 parameter="held",
                 read=READ_PAIRS,
             ),
             ValueOption(
-                "about", mark("VALUE"), mark("Value from which it moves; its initial one if left out.")
+                "about", mark("VALUE"), mark("Value from which it moves; its initial value by default.")
             ),
         ),
         kinds=("json", "csv"),
@@ -106,14 +106,16 @@ REGION = Topic(
             ValueOption(
                 "drive",
                 mark("NAME"),
-                mark("One of the two drives; say it twice where there are more than two."),
+                mark("One of the two drives; give the option twice if there are more than two."),
                 several=True,
                 parameter="drives",
             ),
             ValueOption(
                 "range",
                 mark("NAME=FIRST:LAST"),
-                mark('Range of a drive ("EC=0 deg:90 deg"); one turn, or between its limits, if left out.'),
+                mark(
+                    'Range of a drive ("EC=0 deg:90 deg"); by default one turn, or the range between its limits.'
+                ),
                 several=True,
                 parameter="ranges",
                 read=READ_RANGES,
@@ -121,7 +123,7 @@ REGION = Topic(
             ValueOption(
                 "hold",
                 mark("NAME=VALUE"),
-                mark("Value of a further drive; its initial one if left out."),
+                mark("Value of a further drive; its initial value by default."),
                 several=True,
                 parameter="held",
                 read=READ_PAIRS,
@@ -152,7 +154,7 @@ REDUCTION = Topic(
     view=Lazily("centrode.views.reduction", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     command=Command(
-        help=mark("Reduce masses and loads to the drive, part by part."),
+        help=mark("Reduce masses and loads to the drive, with the share of each."),
         options=(RangeOptions(),),
     ),
     document=InDocuments(chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),)),
@@ -174,12 +176,12 @@ FLYWHEEL = Topic(
             ChoiceOption(
                 "mean",
                 ("middle", "time"),
-                mark("Mean speed: half of greatest and least (the rule), or turns over time."),
+                mark("Mean speed: mean of the greatest and the least (default), or average over time."),
             ),
             ChoiceOption(
                 "method",
                 ("exact", "first-order"),
-                mark("Real velocities by the energy equation (the rule), or by the first-order formula."),
+                mark("Real velocities by the energy equation (default), or by the first-order formula."),
             ),
         ),
     ),
@@ -200,16 +202,16 @@ SIMULATION = Topic(
     view=Lazily("centrode.views.simulation", "sheet"),
     concerns=Lazily("centrode.dynamics.simulation.results", "has_simulation"),
     command=Command(
-        help=mark("Let a machine run: loads, friction and a motor move it."),
+        help=mark("Simulate a machine under loads, friction and a motor."),
         options=(
-            ValueOption("duration", mark("T"), mark('How long it runs: "20 s".')),
-            ValueOption("turns", mark("N"), mark("End after so many turns of the drive."), float),
+            ValueOption("duration", mark("T"), mark('Duration of the motion: "20 s".')),
+            ValueOption("turns", mark("N"), mark("Stop after this many turns of the drive."), float),
             ValueOption("driving", mark("FORMULA"), mark('Moment of the drive in t, q and v: "20 - 2*v".')),
-            ValueOption("speed", mark("V"), mark('Speed of the drive at the start: "65 rpm".')),
+            ValueOption("speed", mark("V"), mark('Initial speed of the drive: "65 rpm".')),
             ChoiceOption(
                 "scheme",
                 ("adaptive", "stiff", "runge-kutta-4"),
-                mark("How to integrate: adaptive (the rule), for stiff laws, or fixed steps."),
+                mark("Integration scheme: adaptive (default), for stiff laws, or fixed steps."),
                 has_default=False,
             ),
             ValueOption("steps", mark("N"), mark("Number of fixed steps."), int),
@@ -232,15 +234,15 @@ REACTIONS = Topic(
     view=Lazily("centrode.views.reactions", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     command=Command(
-        help=mark("Find the forces in every joint and what the drives must give."),
+        help=mark("Find the reactions in every joint and the balancing moments of the drives."),
         options=(
             InstantsOption(
-                mark('Only at this value of the drive ("120 deg"), or time ("1 s"); as often as needed.')
+                mark('Only at this value of the drive ("120 deg"), or time ("1 s"); may be repeated.')
             ),
             FlagOption(
                 "steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")
             ),
-            FlagOption("frictionless", mark("Leave out friction that is given by coefficients.")),
+            FlagOption("frictionless", mark("Omit Coulomb friction.")),
             RangeOptions(),
         ),
         summary=False,
@@ -269,18 +271,20 @@ BALANCE = Topic(
                 mark('Link for a counterweight, or "LINK@POINT" with the point its radius is measured from.'),
                 several=True,
             ),
-            FlagOption("full", mark("Make the shaking force zero (the rule).")),
-            FlagOption("least_maximum", mark("Make the greatest effects as small as they can be.")),
+            FlagOption("full", mark("Make the shaking force zero (default).")),
+            FlagOption("least_maximum", mark("Minimise the greatest forces and moments.")),
             ValueOption(
                 "fraction",
                 mark("F"),
-                mark('Slider-crank: balance what turns, and this much of what moves to and fro ("1/2").'),
+                mark(
+                    'Slider-crank: balance the rotating masses and this fraction of the reciprocating ones ("1/2").'
+                ),
             ),
             FlagOption("moment", mark("With --full: balance the shaking moment too, by discs.")),
             ValueOption(
                 "weights",
                 mark("F,M,T"),
-                mark("With --least-maximum: weights of force, moment and drive (1,0,0 if left out)."),
+                mark("With --least-maximum: weights of force, moment and drive (1,0,0 by default)."),
             ),
             ValueOption(
                 "radius",
@@ -295,11 +299,11 @@ BALANCE = Topic(
                 several=True,
             ),
             ValueOption("thickness", mark("LENGTH"), mark("Counterweights are discs of this thickness.")),
-            ValueOption("density", mark("DENSITY"), mark("Density of discs (steel if left out).")),
+            ValueOption("density", mark("DENSITY"), mark("Density of discs (steel by default).")),
             ValueOption(
                 "about",
                 mark("PLACE"),
-                mark('What moments are taken about: a point of the frame, or "0.2,0.1" in metres.'),
+                mark('Reference point of moments: a point of the frame, or "0.2,0.1" in metres.'),
             ),
             FlagOption("steady", mark("At the real speed of the machine, not at its mean speed.")),
         ),
@@ -334,7 +338,7 @@ CENTRES = Topic(
                 "at",
                 mark("VALUE"),
                 mark(
-                    'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+                    'Value of the drive ("pi/2 rad"), or time; by default the instants of the study, or else the start.'
                 ),
                 several=True,
                 parameter="instants",
@@ -343,7 +347,7 @@ CENTRES = Topic(
             ValueOption(
                 "pair",
                 mark("LINK,LINK"),
-                mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
+                mark('Two links ("AC,frame"); all pairs by default. May be repeated.'),
                 several=True,
                 parameter="pairs",
                 read=READ_PAIRS_OF_BODIES,
@@ -383,11 +387,11 @@ CENTRODES = Topic(
             ValueOption(
                 "link", mark("LINK"), mark("The link that carries the moving centrode."), required=True
             ),
-            ValueOption("against", mark("LINK"), mark("The link that it rolls on; the frame if left out.")),
+            ValueOption("against", mark("LINK"), mark("The link that it rolls on; the frame by default.")),
             ValueOption(
                 "at",
                 mark("VALUE"),
-                mark("Also the curvature of the paths of the link's points there; as often as needed."),
+                mark("Also the curvature of the paths of the link's points there; may be repeated."),
                 several=True,
                 parameter="instants",
                 read=READ_INSTANTS,
@@ -441,26 +445,26 @@ ROTATABILITY = Topic(
     result=Lazily("centrode.analysis.rotatability.rotatability", "Rotatability"),
     view=Lazily("centrode.views.rotatability", "sheet"),
     command=Command(
-        help=mark("Tell whether a mechanism turns fully, and repair it."),
+        help=mark("Check whether a mechanism turns fully, and repair it."),
         needs=Lazily("centrode.analysis.redesign.results", "need_repair"),
         options=(
             FlagOption("repair", mark("Seek the smallest change after which it turns fully.")),
             ValueOption(
                 "vary",
                 mark("PATH[=LOW:HIGH]"),
-                mark('A number that may change ("links.CB.angle=200 deg:300 deg"); as often as needed.'),
+                mark('A number that may change ("links.CB.angle=200 deg:300 deg"); may be repeated.'),
                 several=True,
                 read=READ_VARIED,
             ),
             ValueOption(
                 "least_transmission_angle",
                 mark("ANGLE"),
-                mark("What every dyad keeps over the turn; 1 deg if left out."),
+                mark("Least transmission angle of every dyad over the turn; 1 deg by default."),
             ),
         ),
         progress=mark("seeking a repair, %"),
         kinds=("json", "toml"),
-        file_help=mark("Also write FILE.json, what was found, or FILE.toml, the repaired mechanism."),
+        file_help=mark("Also write FILE.json with the result, or FILE.toml with the repaired mechanism."),
         samples=False,
     ),
     document=InDocuments(
@@ -492,11 +496,11 @@ FORCE_POLYGONS = Topic(
         options=(
             InstantsOption(
                 mark(
-                    'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+                    'Value of the drive ("pi/2 rad"), or time; by default the instants of the study, or else the start.'
                 )
             ),
             ValueOption(
-                "paper", mark("SIZE"), mark("Sheet that scales are chosen for: A5, A4 (if left out) or A3.")
+                "paper", mark("SIZE"), mark("Sheet for which scales are chosen: A5, A4 (default) or A3.")
             ),
         ),
         samples=False,
@@ -520,11 +524,11 @@ PLAN = Topic(
     command=Command(
         help=mark("Draw the mechanism in numbered positions of its cycle."),
         options=(
-            ValueOption("positions", mark("N"), mark("Number of positions, else 12."), int),
+            ValueOption("positions", mark("N"), mark("Number of positions; 12 by default."), int),
             ValueOption(
                 "link",
                 mark("NAME"),
-                mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
+                mark("Link or guide whose velocity vanishes in position 0; a slider or rocker by default."),
             ),
         ),
         folder="plan",
@@ -550,7 +554,7 @@ DIAGRAMS = Topic(
                 "at",
                 mark("VALUE"),
                 mark(
-                    'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+                    'Value of the drive ("pi/2 rad"), or time; by default the instants of the study, or else the start.'
                 ),
                 several=True,
                 parameter="instants",
@@ -559,17 +563,17 @@ DIAGRAMS = Topic(
             ValueOption(
                 "angle_step",
                 mark("ANGLE"),
-                mark('Read directions to this ("1 deg"); exactly if left out.'),
+                mark('Reading step of directions ("1 deg"); exact by default.'),
             ),
             ValueOption(
                 "length_step",
                 mark("LENGTH"),
-                mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
+                mark('Reading step of lengths on paper ("0.5 mm"); exact by default.'),
             ),
             ValueOption(
                 "scale",
                 mark("NAME=VALUE"),
-                mark('What a millimetre stands for in SI: length, velocity or acceleration ("length=0.02").'),
+                mark('Scale in SI per millimetre: length, velocity or acceleration ("length=0.02").'),
                 several=True,
                 parameter="scales",
                 read=READ_SCALES,
@@ -617,7 +621,9 @@ CHECK = Topic(
     result=Lazily("centrode.kinematics.check", "MechanismCheck"),
     view=Lazily("centrode.views.structure", "sheet"),
     command=Command(
-        help=mark("Check a mechanism: mobility, loops, groups, plan."), samples=False, prints_only=True
+        help=mark("Check a mechanism: mobility, loops, groups, order of solution."),
+        samples=False,
+        prints_only=True,
     ),
     document=InDocuments(
         chapters=(ChapterOfTopic("data", mark("Data")), ChapterOfTopic("structure", mark("Structure"))),
@@ -648,13 +654,13 @@ EQUATIONS = Topic(
     result=Lazily("centrode.equations.derivation", "Equations"),
     view=Lazily("centrode.views.equations", "sheet"),
     command=Command(
-        help=mark("Write the constraint equations in symbols, solved."),
+        help=mark("Write the constraint equations in symbols and solve them."),
         options=(
             ValueOption(
                 "point",
                 mark("NAME"),
                 mark(
-                    "A point whose velocity is asked for, again for more; those on guides of the frame if left out."
+                    "A point whose velocity is given; may be repeated; points on guides of the frame by default."
                 ),
                 several=True,
                 parameter="points",
@@ -681,7 +687,7 @@ DESCRIBE = Topic(
     result=Lazily("centrode.analysis.operation", "PrincipleOfOperation"),
     view=Lazily("centrode.views.words", "sheet"),
     command=Command(
-        help=mark("Say in words how a mechanism works."),
+        help=mark("Describe in words how a mechanism works."),
         pages=("txt", "tex", "md"),
         file_help=WRITTEN_PAGE,
         samples=False,
@@ -764,7 +770,9 @@ PATH_ROUTES = Topic(
             ValueOption(
                 "terms",
                 mark("N"),
-                mark("Cut the power series after a_N; the description's own number, else 20."),
+                mark(
+                    "Truncate the power series after a_N; by default the number of the description, or else 20."
+                ),
                 int,
             ),
         ),
@@ -781,7 +789,9 @@ FOLLOWER_FORCES = Topic(
     restore=Lazily("centrode.cams.followers.force_results", "results_of_cam_forces"),
     view=Lazily("centrode.views.follower_forces", "sheet"),
     concerns=Lazily("centrode.cams.followers.force_results", "has_forces"),
-    document=InDocuments(chapters=(ChapterOfTopic("cam-forces", mark("Forces on cam and follower")),)),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("cam-forces", mark("Forces on the cam and the follower")),)
+    ),
     subject="cam",
 )
 

@@ -85,7 +85,7 @@ HARMONICS = (
     "moment_harmonic_phase",
 )
 GREATEST_FORCE = Sentence("greatest shaking force")
-GREATEST_ON_DRIVE = Sentence("greatest moment of the drive for the inertia")
+GREATEST_ON_DRIVE = Sentence("greatest moment of the drive due to inertia forces")
 CAPTIONS = {
     "counterweights": Sentence("The mechanism with its counterweights"),
     "shaking-hodograph": Sentence("Hodograph of the shaking force, before and after"),
@@ -148,7 +148,7 @@ def _aim(balance: Balance) -> Text:
     if balance.weights is not None:
         return _weights(balance.weights)
     return Sentence(
-        "what turns with the crank's pin, and {share} of what moves to and fro",
+        "the masses rotating with the crank pin, and {share} of the reciprocating masses",
         share=Number(100.0 * (balance.fraction or 0.0), "%", ".4g"),
     )
 
@@ -157,10 +157,10 @@ def _weights(weights: tuple[float, ...]) -> Text:
     names = (Sentence("shaking force"), Sentence("shaking moment"), Sentence("moment of the drive"))
     parts = [(name, weight) for name, weight in zip(names, weights, strict=True) if weight]
     if len(parts) == 1:
-        return Sentence("the least greatest value: {what}", what=parts[0][0])
+        return Sentence("least maximum of {what}", what=parts[0][0])
     terms = tuple(Joined((Number(weight, digits="g"), name), " x ") for name, weight in parts)
     return Sentence(
-        "the least sum of greatest values, each over that without counterweights: {sum}",
+        "the least sum of greatest values, each relative to that without counterweights: {sum}",
         sum=Joined(terms, " + "),
     )
 
@@ -201,14 +201,18 @@ def _proof(balance: Balance) -> Iterator[Fact]:
         )
     elif balance.proved:
         yield Fact(
-            Sentence("proved"), Sentence("no counterweights on these links, with these radii, do better")
+            Sentence("proved"), Sentence("no better counterweights exist on these links with these radii")
         )
     if not balance.unique:
-        text = Sentence("other counterweights on these links do the same; these have the least products")
+        text = Sentence(
+            "other counterweights on these links give the same; these have the least mass-radius products"
+        )
         yield Fact(Sentence("choice"), text)
     before, after = (data.attrs["greatest_shaking_moment"] for data in (balance.before, balance.after))
     if after > before * (1.0 + ROUNDING):
-        text = Sentence("it grows: counterweights that balance the force have inertia of their own")
+        text = Sentence(
+            "it increases: counterweights that balance the force have moments of inertia of their own"
+        )
         yield Fact(Sentence("shaking moment"), text)
 
 
@@ -297,9 +301,7 @@ def _steps(balance: Balance) -> Iterator[Text]:
     yield _turns_with(turning, loop.A)
     if loop.rocker is None:
         moved = coupler.at_second + loop.slider
-        yield Sentence(
-            "{mass} move to and fro with {point}", mass=Number(moved.real, "kg"), point=Name(loop.B)
-        )
+        yield Sentence("{mass} reciprocate with {point}", mass=Number(moved.real, "kg"), point=Name(loop.B))
     else:
         moved = balance.shares[2].at_second + coupler.at_second
         yield _turns_with(moved, loop.B)
@@ -329,7 +331,7 @@ def _share(share: Share) -> Text:
     if not _is_beside(share):
         return text
     beside = Sentence(
-        "its centre is beside the line, as {mass} at {second} turned by a right angle are",
+        "its centre of mass is not on the line: {mass} at {second}, rotated by a right angle, are added",
         mass=Number(share.at_second.imag, "kg"),
         second=Name(share.second),
     )
@@ -439,7 +441,7 @@ def _hodograph(balance: Balance) -> Hodograph:
         HodographCurve(name, data["shaking_force"].to_numpy(), place, compared)
         for name, data, place, compared in _pairs(balance)
     )
-    title = Sentence("Shaking force on the frame; its beginning is the great dot")
+    title = Sentence("Shaking force on the frame; the large dot marks its start")
     return Hodograph(title, Title(balance.mechanism.title), x, y, curves)
 
 
@@ -459,7 +461,7 @@ def _cycle(balance: Balance) -> Plot:
         scale = max(float(np.nanmax(np.abs(curve.values))) for curve in curves)
         rows.append((CurvePanel(label, curves, scale, legend=number == 0),))
     return Plot(
-        Sentence("What the inertia does to the frame and to the drive"),
+        Sentence("Effect of the inertia forces on the frame and the drive"),
         Title(balance.mechanism.title),
         motion_abscissa(balance.mechanism, balance.before),
         tuple(rows),
@@ -517,8 +519,8 @@ def _chapter(results: ShakingResults) -> Chapter:
     """Shaking force and moment, harmonics, and the full balance; why there is none, where there is none."""
     data = results.shaking
     text = Sentence(
-        "The inertia of the links acts on the frame with the shaking force and moment; weights and loads are not in"
-        " them."
+        "The inertia forces act on the frame as the shaking force and the shaking moment; weights and loads are "
+        "not included."
     )
     formula = Formula((("arrow(F)", "-sum_k m_k arrow(a)_k"), ("M", "-frac(d K, d t)")))
     greatest = tuple(_greatest(data))
@@ -548,7 +550,7 @@ def _amplitudes(data: xr.Dataset) -> Table:
             Column("greatest", _without_rounding(greatest, force), "N", Sentence("greatest")),
             Column("moment", _without_rounding(moment, moment), "N m", Expression("M")),
         ),
-        Sentence("Amplitudes of the shaking force and moment by orders of the drive's turning"),
+        Sentence("Amplitudes of the shaking force and moment by harmonics of the drive's rotation"),
     )
 
 
@@ -564,7 +566,7 @@ def _full_balance(balance: Balance) -> Iterator[Block]:
         yield Paragraph(Sentence("Masses replaced at the joints:"))
         yield Items(steps)
     before, after = (float(one.attrs["greatest_shaking_force"]) for one in (balance.before, balance.after))
-    text = Sentence("With the counterweights {share} of the greatest shaking force is left.")
+    text = Sentence("With the counterweights {share} of the greatest shaking force remains.")
     yield Check(text, after, before, 1e4 * float(np.finfo(float).eps))
     for name, caption in CAPTIONS.items():
         yield Illustration(name, caption)

@@ -68,16 +68,16 @@ def _facts(results: BaseRadiusResults) -> Iterator[Fact]:
     yield Fact(Sentence("admissible"), Joined(tuple(_admissible(results))))
     label = Sentence("least base radius")
     if results.is_free:
-        yield Fact(label, Sentence("none: no bound decides it"))
+        yield Fact(label, Sentence("none: no bound limits it"))
     elif results.least is not None:
         yield Fact(label, _decided(results.least))
     if results.refusal is not None:
         yield Fact(label, Name(results.refusal.what))
     if results.best is not None:
         radius, offset = length(results.best.base_radius), length(_offset(results.best))
-        text = Sentence("{offset}: base radius from {radius} on", offset=offset, radius=radius)
+        text = Sentence("{offset}: base radius of at least {radius}", offset=offset, radius=radius)
         if results.cam.follower.contact == "flat":
-            text = Sentence("{offset}: the face is touched as far on both sides", offset=offset)
+            text = Sentence("{offset}: the contact extends equally to both sides of the face", offset=offset)
         yield Fact(Sentence("best offset"), text)
 
 
@@ -93,7 +93,7 @@ def _admissible(results: BaseRadiusResults) -> Iterator[Text]:
 
 def _decided(least: Least) -> Text:
     return Sentence(
-        "{radius}, decided by {bound} at {at}",
+        "{radius}, determined by {bound} at {at}",
         radius=length(least.base_radius),
         bound=DECIDES[least.by],
         at=angle(least.at % tau),
@@ -129,7 +129,7 @@ def _failure(results: BaseRadiusResults) -> Failure | None:
     if results.least is None or results.is_free:
         return Failure(what)
     return Failure(
-        what, Sentence("take a base radius from {least} on", least=length(results.least.base_radius))
+        what, Sentence("choose a base radius of at least {least}", least=length(results.least.base_radius))
     )
 
 
@@ -146,7 +146,7 @@ def _chapter(results: BaseRadiusResults) -> Chapter:
             Section(NOTHING, (*_demands(results.body), *beginning)),
             Section(Sentence("The least base radius"), tuple(_least(results))),
             Section(
-                Sentence("Base radii beside each other"),
+                Sentence("Comparison of base radii"),
                 (_beside(results), *closed_form_checks(results.body)),
             ),
         ]
@@ -158,14 +158,14 @@ def _demands(body: FollowerCam) -> Iterator[Block]:
     formulas = FollowerFormulas(body, 0.0)
     if formulas.forms.has_pressure_angle:
         text = Sentence(
-            "The smaller the cam, the greater the pressure angle $alpha$ between the normal and the follower's way, and"
-            " the smaller the radius of curvature $R$ of the profile where it bulges; at $R <= 0$ the profile is"
-            " undercut."
+            "The smaller the cam, the greater the pressure angle $alpha$ between the normal and the follower's "
+            "motion, and the smaller the radius of curvature $R$ of the profile where it is convex; at $R <= 0$ "
+            "the profile is undercut."
         )
     else:
         text = Sentence(
-            "Under a flat face that is square to the follower's way the pressure angle is zero. The smaller the cam,"
-            " the smaller the radius of curvature $R$ of its profile; at $R <= 0$ it is undercut."
+            "Under a flat face perpendicular to the follower's motion the pressure angle is zero. The smaller "
+            "the cam, the smaller the radius of curvature $R$ of its profile; at $R <= 0$ it is undercut."
         )
     yield Paragraph(text)
     lines = (*formulas.start(), *formulas.pressure(), *formulas.radius())
@@ -186,21 +186,22 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
         free = Sentence(
             "No bounds are given, and no base radius undercuts the profile: the size of the cam is free."
         )
-        kept = Sentence("No bound decides the base radius: a cam as small as one likes keeps them all.")
+        kept = Sentence("No bound limits the base radius: every base radius satisfies them all.")
         yield Paragraph(kept if bounded else free)
         return
-    admissible = Sentence("The bounds of the description decide it.")
-    none = Sentence("No bounds are given: the profile is only kept from being undercut.")
+    admissible = Sentence("The bounds of the description determine it.")
+    none = Sentence("No bounds are given: only undercutting of the profile is avoided.")
     yield Paragraph(admissible if bounded else none)
     place = least.at % tau
     decided = {"radius": _measured(least.base_radius), "angle": Number(place, "rad", digits="")}
     if least.by == "pressure angle":
         text = Sentence(
-            "The least base radius is {radius}. The pressure angle decides it, at $phi$ = {angle}:", **decided
+            "The least base radius is {radius}. The pressure angle determines it, at $phi$ = {angle}:",
+            **decided,
         )
     else:
         text = Sentence(
-            "The least base radius is {radius}. The radius of curvature decides it, at $phi$ = {angle}:",
+            "The least base radius is {radius}. The radius of curvature determines it, at $phi$ = {angle}:",
             **decided,
         )
     yield Paragraph(text)
@@ -208,7 +209,7 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
     decisive = formulas.pressure() if least.by == "pressure angle" else formulas.radius()
     yield Formula((("r_0", length(least.base_radius)), *formulas.start(), *formulas.lift(), *decisive))
     statement = Sentence(
-        "With a base radius smaller by {part} of itself a bound is broken, with one so much greater none is.",
+        "A base radius smaller by a fraction {part} violates a bound; one larger by the same fraction violates none.",
         part=Number(NEAR, digits=".1e"),
     )
     yield Check(statement, 0.0 if is_least(results) else 1.0, 1.0, 0.0)
@@ -253,7 +254,7 @@ def _beside(results: BaseRadiusResults) -> Table:
         ("base_radius", "m", Expression("r_0")),
         ("rising", "rad", Sentence("$alpha$ where it rises")),
         ("falling", "rad", Sentence("$alpha$ where it falls")),
-        ("bend", "m", Sentence("least $R$ where it bulges")),
+        ("bend", "m", Sentence("least $R$ where it is convex")),
     ]
     if not ClosedForms(results.body).has_pressure_angle:
         columns = [columns[0], columns[-1]]
@@ -263,7 +264,7 @@ def _beside(results: BaseRadiusResults) -> Table:
             for name, unit, head in columns
         ),
         Sentence(
-            "Greatest pressure angles and least radius of curvature; a dash: the cam cannot lead the follower"
+            "Greatest pressure angles and least radius of curvature; a dash: the cam cannot drive the follower"
         ),
     )
 
@@ -272,12 +273,12 @@ def closed_form_checks(body: FollowerCam) -> Iterator[Check]:
     """Pressure angle and curvature by the closed forms against those of the envelope."""
     if ClosedForms(body).has_pressure_angle:
         text = Sentence(
-            "At {count} angles the formula of $alpha$ and the normal of the envelope agree to {share} of a radian.",
+            "At {count} angles the formula of $alpha$ and the normal of the envelope agree within {share} of a radian.",
             count=Number(len(TURN)),
         )
         yield Check(text, pressure_difference(body), 1.0, ROUNDED)
     apart, growth = curvature_difference(body)
     text = Sentence(
-        "There the formula of $R$ and the curvature of the envelope agree to {share} of the curvature."
+        "There the formula of $R$ and the curvature of the envelope agree within {share} of the curvature."
     )
     yield Check(text, apart, 1.0, ROUNDED * growth)

@@ -111,7 +111,7 @@ def _value(name: str, value: float) -> Number:
 def _facts(results: CamChoice) -> Iterator[Fact]:
     """What was made best, how the search ended, the bounds that bind, and the proof."""
     choice = results.choice
-    yield Fact(Sentence("made least"), _measure(choice.best))
+    yield Fact(Sentence("minimised"), _measure(choice.best))
     ended = Counted(
         "{agreeing} of {n} search ended there",
         "{agreeing} of {n} searches ended there",
@@ -126,26 +126,29 @@ def _facts(results: CamChoice) -> Iterator[Fact]:
         return
     for name, by in choice.binding.items():
         moved = Sentence(
-            "a bound greater by {step} changes the best value by {change}",
+            "a bound larger by {step} changes the best value by {change}",
             step=Number(1, "%"),
             change=Number(-MEASURES[name].sign * by, "%", "+.3g"),
         )
-        yield Fact(Sentence("binds: {measure}", measure=_measure(name)), moved)
+        yield Fact(Sentence("active bound: {measure}", measure=_measure(name)), moved)
     yield from _proof(results)
 
 
 def _proof(results: CamChoice) -> Iterator[Fact]:
     proof = results.proof
     excess = Number(max(proof.excess, LEAST_EXCESS), digits=".0e")
-    yield Fact(Sentence("bounds"), Sentence("kept along the path itself, to {excess} of them", excess=excess))
+    yield Fact(
+        Sentence("bounds"),
+        Sentence("satisfied along the path itself, within {excess} of them", excess=excess),
+    )
     counts = {
         "admissible": Number(proof.admissible, digits="d"),
         "all": Number(proof.neighbours, digits="d"),
     }
-    near = Sentence("{admissible} of {all} near by keep the bounds, none of them is better", **counts)
+    near = Sentence("of {all} neighbouring designs {admissible} satisfy the bounds; none is better", **counts)
     if proof.better is not None:
         near = Sentence(
-            "{admissible} of {all} near by keep the bounds, one is better by {gain} of the value",
+            "of {all} neighbouring designs {admissible} satisfy the bounds; one is better by {gain} of the value",
             gain=Number(proof.gain, digits=".2g"),
             **counts,
         )
@@ -160,7 +163,7 @@ def _missed(results: CamChoice) -> Sentence:
             for name, by in results.choice.chosen.misses.items()
         ]
     )
-    return Sentence("no design keeps all bounds; the nearest misses {bounds}", bounds=bounds)
+    return Sentence("no design satisfies all bounds; the closest one violates {bounds}", bounds=bounds)
 
 
 def _failure(results: CamChoice) -> Failure | None:
@@ -284,7 +287,7 @@ def _front_panel(results: CamChoice, front: TradeOff) -> FrontPanel:
 
 
 def _dot(design: CamDesign, front: TradeOff, name: Sentence, *, chosen: bool) -> DesignDot:
-    text = Sentence("{name}, misses a bound", name=name) if design.misses else name
+    text = Sentence("{name}, violates a bound", name=name) if design.misses else name
     x, y = (_measured(name)[0] * design.measures[name].value for name in (front.against, front.best))
     return DesignDot(text, x, y, not design.misses, chosen)
 
@@ -309,8 +312,8 @@ def _parameter_panel(results: CamChoice, front: TradeOff, name: str) -> FrontPan
 def _chapter(results: CamChoice) -> Chapter:
     """The parameters that make one measure least while others keep their bounds."""
     text = Sentence(
-        "The numbers named below are chosen so that one measure is least while the others keep their bounds; the rest"
-        " of this document is about the description as it is given, not about the choice."
+        "The parameters below minimise one measure while the others satisfy their bounds; the other chapters "
+        "describe the cam as it is given, not this choice."
     )
     blocks: tuple[Block, ...] = (
         Paragraph(text),
@@ -319,7 +322,7 @@ def _chapter(results: CamChoice) -> Chapter:
         _measures(results),
         *shortfall(_failure(results)),
     )
-    caption = Sentence("What a bound costs: the best values over the bound that is moved")
+    caption = Sentence("Effect of a bound: the best values over the bound that is moved")
     figures = illustrations(["cam-choice"], {"cam-choice": caption})
     drawn = (figures,) if results.front is not None and results.front.designs else ()
     return Chapter(Sentence("Chosen parameters"), (Section(NOTHING, blocks), *drawn))

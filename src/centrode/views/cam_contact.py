@@ -66,13 +66,13 @@ def _facts(results: CamContactResults) -> Iterator[Fact]:
     facts, label = results.dataset.attrs, Sentence("greatest contact stress")
     if math.isinf(facts["greatest_stress"]):
         endless = Sentence(
-            "without bound towards {angle}, where the follower stalls",
+            "unbounded towards {angle}, where the follower stalls",
             angle=angle(facts["greatest_stress_at"]),
         )
         yield Fact(label, endless)
         return
     if math.isnan(facts["greatest_stress"]):
-        yield Fact(label, Sentence("none: the cam is undercut all along"))
+        yield Fact(label, Sentence("none: the cam is undercut everywhere"))
         return
     greatest = Sentence(
         "{value} at {at}",
@@ -107,7 +107,7 @@ def _beside_admissible(text: Text, greatest: float, admissible: float | None) ->
 def _strip(results: CamContactResults) -> Sentence:
     worst = results.dataset.isel(sample=results.worst)
     return Sentence(
-        "{width} wide; greatest shear {shear} at a depth of {depth}",
+        "{width} wide; greatest shear stress {shear} at a depth of {depth}",
         width=_millimetres(2.0 * MILLI * float(worst["contact_half_width"])),
         shear=stress(float(worst["contact_shear"])),
         depth=_millimetres(MILLI * float(worst["contact_depth"])),
@@ -134,11 +134,11 @@ def _plot(results: CamContactResults) -> Plot:
     stresses = {
         "contact_stress": Sentence("greatest pressure (Hertz)"),
         "contact_stress_by_source": Sentence("by the source's formula ({factor})", factor=Number(0.418)),
-        "contact_shear": Sentence("greatest shear below the contact"),
+        "contact_shear": Sentence("greatest shear stress below the contact"),
     }
     strip = {
         "contact_half_width": Sentence("half width of the strip"),
-        "contact_depth": Sentence("depth of the greatest shear"),
+        "contact_depth": Sentence("depth of the greatest shear stress"),
     }
     upper = [
         Curve(name, MEGA * data[variable].to_numpy(), place, approximate=variable.endswith("source"))
@@ -172,8 +172,8 @@ def _plot(results: CamContactResults) -> Plot:
 def _chapter(results: CamContactResults) -> Chapter:
     """Hertzian stress between roller and cam."""
     text = Sentence(
-        "Roller and cam touch along a line of the length $b$; the force $P$ along the follower makes the normal force"
-        " $P \\/ cos gamma$. With the curvature $K$ of the path"
+        "Roller and cam touch along a line of the length $b$; the force $P$ along the follower causes the normal "
+        r"force $P \/ cos gamma$. With the curvature $K$ of the path"
     )
     relative = ("kappa", "1/r + 1/R", "frac(1, r (1 - r K))")
     if results.cam.contact is not None and results.cam.contact.outer:

@@ -101,7 +101,7 @@ def _closing(body: ProfileBody) -> Iterator[Fact]:
         return
     way = Sentence("the smoothest within the bounds")
     if not returned.additions:
-        way = Sentence("the smoothest by itself")
+        way = Sentence("the smoothest, without active bounds")
     shape = Sentence("convex")
     if returned.curvature.least < 0.0:
         hollow = Number(-1.0 / returned.curvature.least, "m")
@@ -165,7 +165,7 @@ def _bends(body: ProfileBody) -> Iterator[Fact]:
     depth, place = body.overlap
     if depth:
         across = Sentence(
-            "the roller at {place} overlaps the cam by {depth} across a waist",
+            "at {place} the roller cuts into the cam by {depth} across a narrow part",
             place=angle(place),
             depth=Number(depth, "m", ".3g"),
         )
@@ -249,8 +249,8 @@ def _joints(body: ProfileBody) -> list[float]:
 def _chapter(results: CamProfileResults) -> Chapter:
     """The profile that the roller leaves, how it closes, undercut."""
     text = Sentence(
-        "The profile lies by the radius $r$ of the roller inside its path, along the normal; the return arc joins the"
-        " working arc in value, slope and curvature."
+        "The profile is the inner parallel curve of the roller's path at the distance $r$, the radius of the "
+        "roller; the return arc joins the working arc with equal value, slope and curvature."
     )
     equations = Formula(
         (("x", "rho sin phi - r sin psi"), ("y", "rho cos phi - r cos psi"), ("psi", "phi - gamma"))
@@ -281,5 +281,5 @@ def _joining(body: ProfileBody, size: float) -> Iterator[Check]:
     yield Check(
         Sentence("The arcs join: the gap is {share} of the radius."), _greatest_gap(body), size, ROUNDED
     )
-    smooth = Sentence("They join without a kink, to {share} rad.")
+    smooth = Sentence("They join without a kink, within {share} rad.")
     yield Check(smooth, body.closed.greatest_kink, 1.0, ROUNDED)

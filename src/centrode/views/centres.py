@@ -105,7 +105,7 @@ def _printed_parts(results: CentreResults) -> Iterator[Section]:
         blocks: list[Block] = [_table(results, results.centres.isel(sample=sample), construction)]
         if results.pairs is not None and construction is not None:
             steps = tuple(_steps_leading_to(construction, results.pairs))
-            blocks += [Listing(Sentence("by way of"), steps)] if steps else []
+            blocks += [Listing(Sentence("through"), steps)] if steps else []
         yield Section(instant_place(results.mechanism, results.motion, sample), tuple(blocks))
 
 
@@ -145,7 +145,7 @@ def _table(results: CentreResults, centres: xr.Dataset, construction: Constructi
             *beside,
             Column("case", cases, head=Sentence("case")),
             Column("constructed from", ways, head=Sentence("constructed from")),
-            Column("off", off, head=Sentence("off")),
+            Column("off", off, head=Sentence("deviation")),
         )
     )
 
@@ -189,7 +189,7 @@ def step_text(step: KennedyStep, bodies: int, between: str = " ", *, named: bool
     if named:
         joints = {
             "hinge": Sentence("hinge {name}", name=name),
-            "guide": Sentence("square to guide {name}", name=name)
+            "guide": Sentence("perpendicular to guide {name}", name=name)
             if at_infinity
             else Sentence("pole of guide {name}", name=name),
             "rolling": Sentence("contact of {name}", name=name),
@@ -198,7 +198,7 @@ def step_text(step: KennedyStep, bodies: int, between: str = " ", *, named: bool
     else:
         joints = {
             "hinge": Sentence("hinge"),
-            "guide": Sentence("square to the guide") if at_infinity else Sentence("pole of the guide"),
+            "guide": Sentence("perpendicular to the guide") if at_infinity else Sentence("pole of the guide"),
             "rolling": Sentence("contact"),
             "gear": Sentence("gear"),
         }
@@ -386,7 +386,7 @@ def _instant(results: CentreResults, sample: int) -> Iterator[Block]:
     if status != Status.OK:
         yield Paragraph(
             Sentence(
-                "At {place} the sample is {status}: there are no velocities to be told.",
+                "At {place} the sample is {status}: the velocities are not defined.",
                 place=instant_title(mechanism, here, 0),
                 status=Sentence(status.word),
             )
@@ -408,16 +408,17 @@ def _instant(results: CentreResults, sample: int) -> Iterator[Block]:
     if few:
         yield Paragraph(
             Counted(
-                "Of {n} centre those against the frame are told.",
-                "Of {n} centres those against the frame are told.",
+                "The mechanism has {n} centre; those relative to the frame are listed.",
+                "The mechanism has {n} centres; those relative to the frame are listed.",
                 pairs,
             )
         )
     if construction is not None:
         yield Check(
             Sentence(
-                "The centres were constructed from places alone; with the velocities of the motion the bodies move"
-                " against each other there at {share} of the greatest velocity at most, {allowed} is allowed.",
+                "The centres were constructed from positions alone. With the velocities of the motion, the "
+                "relative velocity at each centre is at most {share} of the greatest velocity; {allowed} is "
+                "allowed.",
                 allowed=Number(ALLOWED, digits=".1e"),
             ),
             max(construction.mismatch.values(), default=0.0),
@@ -435,8 +436,8 @@ def _axes_chapter(results: CentreResults) -> dict[str, Chapter]:
     if not reached:
         return {}
     text = Sentence(
-        "At every instant a link turns against the frame about an axis through the centre; its end is given where the"
-        " link turns counter-clockwise about it as the drive's value grows."
+        "At every instant a link turns relative to the frame about an axis through the centre; the end given is "
+        "the one about which the link turns counter-clockwise as the drive's value increases."
     )
     instants = (
         Section(instant_title(results.mechanism, results.motion, sample), (_axes(results, sample),))

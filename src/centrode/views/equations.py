@@ -65,8 +65,8 @@ def sheet(equations: Equations) -> Sheet:
     explained, derived = tuple(_explained(equations)), tuple(_derived(equations))
     if equations.mechanism.space == "sphere":
         text = Sentence(
-            "Each dyad brings a new point: the law of cosines in the triangle of its two centres and that point gives"
-            " its angle, the angle of its other arc to its path follows."
+            "Each dyad adds one point: the law of cosines in the triangle of the dyad's two centres and this "
+            "point gives one angle, from which the angle of the other arc follows."
         )
         sections = (Section(NOTHING, (Paragraph(text),)), *explained, *derived)
         return Sheet(printed=(*explained, *derived), chapters={"equations": _constraints(sections)})
@@ -93,7 +93,7 @@ def _explained(equations: Equations) -> Iterator[Section]:
     if conditions:
         yield Section(Sentence("Constraints"), (Formula(tuple(map(_constraint, conditions))),))
         rates = [(SumFormula(one.rate(equations.board.moves)), SumFormula(ZERO)) for one in conditions]
-        yield Section(Sentence("Differentiated by time"), (Formula(tuple(rates)),))
+        yield Section(Sentence("Derivatives with respect to time"), (Formula(tuple(rates)),))
     given = [line for one in equations.given.drives for line in _given(one)]
     yield Section(Sentence("Given by the drives (SI)"), _blocks(given))
 
@@ -116,7 +116,7 @@ def _derived(equations: Equations) -> Iterator[Section]:
     if equations.points and through is not None:
         first, second = map(Name, through)
         words = Sentence(
-            "x runs through {first}, {second} lies in the half-plane of x and y", first=first, second=second
+            "x passes through {first}, {second} lies in the half-plane of x and y", first=first, second=second
         )
         yield Section(Sentence("Axes"), (Paragraph(words),))
     for point in equations.points:
@@ -154,17 +154,17 @@ def constraint_text(name: str) -> Text:
 # Translators: {first}, {second}, {third} are names of links, points and guides; names do not change.
 MEANINGS = {
     "link angle": Sentence("angle of link {first}"),
-    "relative angle": Sentence("angle of link {first} against link {second}"),
+    "relative angle": Sentence("angle of link {first} relative to link {second}"),
     "bearing": Sentence("direction of the centre of wheel {first} from that of its track"),
     "cylinder": Sentence("direction of cylinder {first}"),
-    "angle in link": Sentence("angle of {second}-{third} against the axis of link {first}"),
+    "angle in link": Sentence("angle of {second}-{third} relative to the axis of link {first}"),
     "angle of guide": Sentence("direction of guide {first} on {body}"),
     "angle of pair": Sentence("constant angle of the links that guide {first} keeps parallel"),
     "length": Sentence("{second}-{third} of link {first}"),
     "reach": Sentence("distance of the centres of wheel {first} and its track"),
     "stroke": Sentence("length of cylinder {first}"),
     "slide": Sentence("displacement along guide {first}"),
-    "offset along": Sentence("from {third} to where guide {first} is measured from, along it"),
+    "offset along": Sentence("from {third} to the origin of guide {first}, along it"),
     "offset beside": Sentence("distance of guide {first} from {third}"),
     "coordinate": Sentence("{second} of point {first}"),
     "ratio": Sentence("ratio of gear {first}"),
@@ -263,7 +263,7 @@ def _solution(solution: GroupSolution) -> Iterator[Line | Block]:
     matrix = tuple(tuple(map(_entry, row)) for row in system.matrix)
     yield LinearEquations(matrix, tuple(map(_letter, system.unknowns)), right)
     if system.determinant is None or system.numerators is None:
-        text = Sentence("The determinants have too many terms to be read; the system is solved as numbers.")
+        text = Sentence("The determinants have too many terms to print; the system is solved numerically.")
         yield Paragraph(text)
         return
     yield _letter(solution.under), FactoredFormula(system.determinant, differences_first=True)
@@ -320,7 +320,7 @@ def _with_formulas(
 
 def _as_number(letter: Letter, group: GroupEquations) -> Paragraph:
     sentence = Sentence(
-        "{letter}: as a number, from the system of group {group}",
+        "{letter}: numerically, from the system of group {group}",
         letter=_letter(letter),
         group=Name(group.label),
     )
@@ -388,8 +388,8 @@ def _checked(equations: NumberedEquations) -> Iterator[Section]:
     check = equations.check
     if check is not None:
         text = Sentence(
-            "With the angles and displacements of the motion in closed form put in, both sides of every constraint"
-            " agree to {share} at {count} positions; rounding allows {allowed} (lengths in m, angles in rad).",
+            "With angles and displacements in closed form substituted, both sides of every constraint equation "
+            "agree within {share} at {count} positions; rounding allows {allowed} (lengths in m, angles in rad).",
             count=Number(check.samples, digits="d"),
             allowed=Number(check.allowed, digits=".1e"),
         )
@@ -406,7 +406,7 @@ def _numbered(equations: NumberedEquations) -> Iterator[Section]:
         if numbers is None:
             status = Status(int(equations.motion["status"][sample]))
             missing = Sentence(
-                "At {place} the sample is {status}: there are no velocities to be told.",
+                "At {place} the sample is {status}: the velocities are not defined.",
                 place=place,
                 status=Sentence(status.word),
             )
@@ -571,15 +571,15 @@ def _beside(value: float, size: float) -> Number:
 def _compared(numbers: NumbersAtInstant) -> Block:
     """Rates and accelerations of the systems beside those of the motion in closed form."""
     if not numbers.rates:
-        return Paragraph(Sentence("The motion in closed form has no rates to compare these with."))
+        return Paragraph(Sentence("The closed-form solution gives no velocities to compare with."))
     # the first that does not agree, else the one that is nearest to what is allowed
     worst = min(
         numbers.rates,
         key=lambda rate: (rate.agrees, -abs(rate.solved - rate.closed) / max(rate.allowed, 1e-300)),
     )
     text = Sentence(
-        "The systems give the same rates and accelerations as the motion in closed form: the difference is at most"
-        " {share}, rounding and the condition of the systems allow {allowed} (rad or m, by s or s²).",
+        "The systems give the same velocities and accelerations as the motion in closed form: the difference is "
+        "at most {share}; rounding and the condition of the systems allow {allowed} (rad or m, by s or s²).",
         allowed=Number(worst.allowed, digits=".1e"),
     )
     return Check(text, abs(worst.solved - worst.closed), 1.0, worst.allowed)

@@ -90,7 +90,7 @@ WHEEL_UNITS = {
     "rim_speed": "m/s",
 }
 WHEELS = ("rim", "disc", "source_rim", "source_disc")
-MEANS = {"middle": Sentence("half of greatest and least"), "time": Sentence("turns over time")}
+MEANS = {"middle": Sentence("mean of the greatest and the least"), "time": Sentence("average over time")}
 
 ENERGIES_IN_TABLE = (
     ("turned", "phi"),
@@ -172,7 +172,7 @@ def _energies(flywheel: Flywheel) -> list[Fact]:
         Fact(
             Sentence("work of the loads"),
             Sentence(
-                "{work} a cycle, to {error}",
+                "{work} per cycle, within {error}",
                 work=Number(work, "J"),
                 error=Number(flywheel.error, "J", ".1e"),
             ),
@@ -194,7 +194,7 @@ def _inertias(flywheel: Flywheel) -> list[Fact]:
     if needed is None or first_order is None or in_time is None or by_tangents is None:
         return [present]
     exactly = Sentence(
-        "{middle} exactly ({time} where the mean speed is turns over time)",
+        "{middle} exactly ({time} where the mean speed is the average over time)",
         middle=Number(needed, "kg m^2"),
         time=Number(in_time, "kg m^2", unit_hidden=True),
     )
@@ -239,7 +239,7 @@ def _sizes(flywheel: Flywheel) -> Iterator[Fact]:
             yield Fact(
                 NOTHING,
                 Sentence(
-                    "by the coefficient {coefficient}: {outer}, {mass}, really {inertia} ({error})",
+                    "by the coefficient {coefficient}: {outer}, {mass}, actual {inertia} ({error})",
                     coefficient=Number(coefficient),
                     outer=Number(source.outer, "m", ".4g"),
                     mass=Number(source.mass, "kg", ".5g"),
@@ -402,13 +402,15 @@ def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapt
 def _groups(flywheel: Flywheel) -> tuple[Block, ...]:
     """What counts as what; the cycle."""
     cycle = Counted(
-        "A cycle has {n} turn of the drive; angles turned $phi$, works and moments count in the sense of the drive.",
-        "A cycle has {n} turns of the drive; angles turned $phi$, works and moments count in the sense of the drive.",
+        "A cycle has {n} turn of the drive; angles turned $phi$, works and moments are positive in the sense of "
+        "the drive.",
+        "A cycle has {n} turns of the drive; angles turned $phi$, works and moments are positive in the sense of "
+        "the drive.",
         flywheel.turns,
     )
     groups = Sentence(
-        "Group I is what turns with the drive at a constant ratio, shafts and flywheel; group II the links, whose"
-        ' inertia $J_upright("II")$ changes with the position.'
+        "Group I consists of the masses that turn with the drive at a constant ratio, shafts and flywheel; group "
+        'II of the links, whose inertia $J_upright("II")$ changes with the position.'
     )
     return Paragraph(cycle), Paragraph(groups)
 
@@ -478,8 +480,8 @@ def _needed_inertia(results: MachineResults) -> Iterator[Block]:
     yield Formula(((inertia, in_letters, with_numbers, Number(first_order, "kg m^2")),))
     yield Paragraph(
         Sentence(
-            "This takes the energy of the links at the mean speed. From the energy equation itself, without that"
-            " approximation:"
+            "This uses the energy of the links at the mean speed. The energy equation itself gives, without that "
+            "approximation:"
         )
     )
     yield Formula(((inertia, Number(needed, "kg m^2")),))
@@ -489,7 +491,10 @@ def _needed_inertia(results: MachineResults) -> Iterator[Block]:
         # an error of the works moves speeds by its share of the energy, extremes of the mesh by the root of rounding
         share = 2.0 * flywheel.error / (needed * flywheel.mean_speed**2)
         yield Check(
-            Sentence("The speed that this inertia gives fluctuates as asked to {share} of the coefficient."),
+            Sentence(
+                "The coefficient of fluctuation obtained with this moment of inertia equals the required one "
+                "within {share}."
+            ),
             abs(flywheel.obtained - fluctuation),
             fluctuation,
             share / fluctuation + float(np.sqrt(np.finfo(float).eps)),
@@ -513,9 +518,7 @@ def _wheels(results: MachineResults) -> Iterator[Block]:
         ratio=Factor(Number(ratio)),
     )
     yield Paragraph(
-        Sentence(
-            "$J_upright(s)$ is the inertia of the shafts that are there, $J_upright(f)$ that of the flywheel."
-        )
+        Sentence("$J_upright(s)$ is the inertia of the existing shafts, $J_upright(f)$ that of the flywheel.")
     )
     added = Number(flywheel.added, "kg m^2")
     yield Formula((("J_upright(f)", Expression(letters), with_numbers, added),))
@@ -545,7 +548,7 @@ def _energy_check(results: MachineResults) -> Check:
     energy, size = (kinetic - steady["work"]).to_numpy(), float(kinetic.max())
     return Check(
         Sentence(
-            "Kinetic energy at the real speed less the works stays the same over the cycle to {share} of it."
+            "Kinetic energy at the real speed minus the work of all forces is constant over the cycle within {share}."
         ),
         float(np.ptp(energy)),
         size,
@@ -587,8 +590,8 @@ def _real_motion_chapter(results: MachineResults) -> Chapter:
 def _speed_relations() -> tuple[Block, ...]:
     """The first-order formulas, and how links follow the drive."""
     meaning = Sentence(
-        "With the flywheel the speed $omega$ of the drive follows from the energy equation, its acceleration $epsilon$"
-        " from the equation of motion. To first order, as courses have it:"
+        "With the flywheel the speed $omega$ of the drive follows from the energy equation, its acceleration "
+        "$epsilon$ from the equation of motion. To first order, as in textbooks:"
     )
     speed = Expression(
         "omega_upright(m) + frac(Delta T_upright(I) - 1/2 (Delta T_(upright(I), max) + Delta T_(upright(I), min)),"
@@ -599,7 +602,7 @@ def _speed_relations() -> tuple[Block, ...]:
         ' - frac(omega^2 J\'_upright("II"), 2 (J_upright(I) + J_upright("II")))'
     )
     beside = Sentence(
-        "The numbers below are exact; those to first order ($omega_1$, $epsilon_1$) stand beside them."
+        "The numbers below are exact; first-order values ($omega_1$, $epsilon_1$) are given alongside."
     )
     links = Sentence(
         "Velocities and accelerations of the links follow with the derivatives by the angle of the drive:"

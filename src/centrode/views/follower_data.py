@@ -25,7 +25,7 @@ def data_chapter(cam: PlateCam) -> Chapter:
     blocks: list[Block] = [FactTable(tuple(_given(cam, cam.body.speed)), Sentence("Cam and follower"))]
     bounds = tuple(_bounds(cam))
     if bounds:
-        blocks.append(FactTable(bounds, Sentence("What is admissible")))
+        blocks.append(FactTable(bounds, Sentence("Admissible values")))
     return Chapter(Sentence("Data"), (Section(NOTHING, (*blocks, *_segments(cam))),))
 
 
@@ -80,7 +80,7 @@ def _given(cam: PlateCam, speed: float | None) -> Iterator[Fact]:
 def _turning(speed: float) -> Text:
     """The speed of a cam [rad/s] in turns a minute and in radians."""
     rate = Number(speed, "rad/s", digits="", unit_fixed=True)
-    return Sentence("{turns} turns a minute, {rate}", turns=_number(speed * 30.0 / np.pi), rate=rate)
+    return Sentence("{turns} turns per minute, {rate}", turns=_number(speed * 30.0 / np.pi), rate=rate)
 
 
 def _burden(cam: PlateCam) -> Iterator[Fact]:

@@ -95,7 +95,7 @@ def sheet(results: FollowerForceResults) -> Sheet:
     own = {PUSH: _push_unit(results), STIFFNESS: "N m/rad" if results.cam.swings else "N/m"}
     whole_turn = results.whole_turn
     return Sheet(
-        heading=Sentence("Forces on cam and follower"),
+        heading=Sentence("Forces on the cam and the follower"),
         facts=tuple(_facts(results)),
         scalars={
             f"cam_{name}": Scalar(whole_turn[name], own.get(unit, unit))
@@ -123,11 +123,11 @@ def _facts(results: FollowerForceResults) -> Iterator[Fact]:
     speed = turns_a_minute(whole_turn["speed"]) if whole_turn["speed"] else Sentence("none: forces at rest")
     yield Fact(Sentence("speed of the cam"), speed)
     if whole_turn["led"]:
-        led = Sentence("nothing presses the follower on the cam: it has to be led both ways")
+        led = Sentence("no force presses the follower on the cam: it needs form closure")
         yield Fact(Sentence("contact of cam and follower"), led)
     else:
         yield Fact(Sentence("contact of cam and follower"), _contact(results))
-        yield Fact(Sentence("the follower jumps"), _jumping(results))
+        yield Fact(Sentence("separation of the follower"), _jumping(results))
         yield from _springs(results)
     yield from _greatest(results)
 
@@ -136,7 +136,7 @@ def _contact(results: FollowerForceResults) -> Text:
     """The least push."""
     least, place = results.whole_turn["least_push"], results.whole_turn["least_push_at"]
     if least == -math.inf:
-        return Sentence("lost: the speed of the lift falls by a step at {angle}", angle=angle(place))
+        return Sentence("lost: the velocity of the lift drops by a step at {angle}", angle=angle(place))
     push = Number(least, _push_unit(results))
     if least < 0:
         return at(Sentence("lost: {push} along the follower", push=push), place)
@@ -165,7 +165,7 @@ def _springs(results: FollowerForceResults) -> Iterator[Fact]:
     yield Fact(Sentence("spring needed"), preloaded)
     stiff = Sentence("with this preload no stiffness")
     if math.isinf(stiffness):
-        stiff = Sentence("with this preload none is stiff enough")
+        stiff = Sentence("with this preload no stiffness is sufficient")
     elif stiffness > 0:
         value = Number(stiffness, "N m/rad") if results.cam.swings else Number(1e-3 * stiffness, "N/mm")
         stiff = Sentence("with this preload a stiffness of {value}", value=value)
@@ -177,7 +177,7 @@ def _greatest(results: FollowerForceResults) -> Iterator[Fact]:
     whole_turn, label = results.whole_turn, Sentence("greatest contact force")
     force, place = whole_turn["greatest_force"], whole_turn["greatest_force_at"]
     if math.isinf(force):
-        locked = Sentence("without bound: friction locks the follower at {angle}", angle=angle(place))
+        locked = Sentence("unlimited: friction locks the follower at {angle}", angle=angle(place))
         yield Fact(label, locked)
         return
     if math.isnan(force):
@@ -217,10 +217,10 @@ def _failure(results: FollowerForceResults) -> Failure | None:
     repair: Text = NOTHING
     if not whole_turn["led"] and whole_turn["least_push"] < 0:
         place = angle(whole_turn["least_push_at"])
-        what.append(Sentence("the follower jumps off the cam at {angle}", angle=place))
+        what.append(Sentence("the follower leaves the cam at {angle}", angle=place))
         if 0 < whole_turn["jump_speed"] < math.inf:
             repair = Sentence(
-                "turn it slower than {speed}, or preload the spring with {value}",
+                "run it slower than {speed}, or preload the spring with {value}",
                 speed=turns_a_minute(whole_turn["jump_speed"]),
                 value=Number(whole_turn["preload_needed"], _push_unit(results)),
             )
@@ -245,7 +245,9 @@ def _plot(results: FollowerForceResults) -> Plot:
             curve = Curve(Sentence(quantity.long_name), values, 0)
             rows.append((CurvePanel(AxisLabel(symbol=Symbol(quantity.symbol), unit=unit), (curve,)),))
     abscissa = over_samples(quantity_label("cam_angle"), dataset["cam_angle"].to_numpy())
-    return Plot(Sentence("Forces on cam and follower"), Title(results.cam.title), abscissa, tuple(rows))
+    return Plot(
+        Sentence("Forces on the cam and the follower"), Title(results.cam.title), abscissa, tuple(rows)
+    )
 
 
 # Chapter
@@ -266,7 +268,9 @@ def _chapter(results: FollowerForceResults) -> Chapter:
         Section(Sentence("Contact stress"), tuple(_stress(results)) if np.isfinite(stress) else ()),
         Section(Sentence("Over a turn"), (_table(results), plot)),
     )
-    return Chapter(Sentence("Forces on cam and follower"), tuple(one for one in sections if one.blocks))
+    return Chapter(
+        Sentence("Forces on the cam and the follower"), tuple(one for one in sections if one.blocks)
+    )
 
 
 def _si(value: float, unit: str = "1") -> Number:
@@ -291,14 +295,15 @@ def _laws(results: FollowerForceResults) -> Iterator[Block]:
     swings, friction = results.cam.swings, results.forces.friction
     if swings:
         text = Sentence(
-            "About the pivot the cam has to give the moment $Q$: preload and stiffness of the spring, the load and what"
-            " accelerates the moment of inertia. Along the normal that is the force $N$, about the cam's axis the"
-            " torque $T$."
+            "The cam must exert the moment $Q$ about the pivot: preload and stiffness of the spring, the load "
+            "and the inertia of the follower. The corresponding force along the normal is $N$, the torque about "
+            "the cam's axis is $T$."
         )
     else:
         text = Sentence(
-            "Along the follower the cam has to give the force $Q$: preload and stiffness of the spring, the load and"
-            " what accelerates the mass. Along the normal that is the force $N$, about the cam's axis the torque $T$."
+            "The cam must exert the force $Q$ along the follower: preload and stiffness of the spring, the load "
+            "and the inertia of the follower. The corresponding force along the normal is $N$, the torque about "
+            "the cam's axis is $T$."
         )
     yield Paragraph(text)
     letters, _numbers = _push_terms(results, (1.0, 1.0, 1.0))
@@ -312,9 +317,9 @@ def _laws(results: FollowerForceResults) -> Iterator[Block]:
     if friction:
         yield Paragraph(
             Sentence(
-                "The cam's surface slides on the follower and drags it along with $mu N$; $b_n$ and $b_t$ are what"
-                " forces of one along the normal and along the drag do on the follower's way, $g_n$ and $g_t$ their"
-                " arms about the cam's axis."
+                "The cam's surface slides on the follower and drags it with the friction force $mu N$; $b_n$ and "
+                "$b_t$ are unit forces along the normal and along the friction, reduced to the follower's "
+                "motion, $g_n$ and $g_t$ their arms about the cam's axis."
             )
         )
 
@@ -408,7 +413,7 @@ def _keeping(results: FollowerForceResults) -> Iterator[Block]:
     whole_turn, forces = results.whole_turn, results.forces
     yield Paragraph(
         Sentence(
-            "The push has to stay positive: a cam cannot pull. Where it is zero first, the follower jumps."
+            "The push must stay positive: a cam cannot pull. Where it first becomes zero, the follower leaves the cam."
         )
     )
     if np.isfinite(whole_turn["least_push"]):
@@ -419,7 +424,7 @@ def _keeping(results: FollowerForceResults) -> Iterator[Block]:
     if np.isfinite(speed) and speed > 0.0:
         place = float(whole_turn["jump_speed_at"])
         text = Sentence(
-            "The least speed at which it becomes zero belongs to $phi$ = {angle}:", angle=_place(place)
+            "The least speed at which the push becomes zero is found at $phi$ = {angle}:", angle=_place(place)
         )
         yield Paragraph(text)
         yield Formula((*_lift_lines(results, place), *_jump_lines(results, place, speed)))
@@ -437,7 +442,9 @@ def _keeping(results: FollowerForceResults) -> Iterator[Block]:
             sprung = replace(forces.burden, preload=needed)
             yield Check(statement, *vanishing_push(forces, sprung, forces.speed), FLAT_TOP)
         else:
-            yield Paragraph(Sentence("As it is not positive, the stiffness alone does it, without preload."))
+            yield Paragraph(
+                Sentence("As it is not positive, the stiffness alone is sufficient, without preload.")
+            )
 
 
 def _jump_lines(results: FollowerForceResults, place: float, speed: float) -> Iterator[Line]:
@@ -459,7 +466,7 @@ def _torques(results: FollowerForceResults) -> Iterator[Block]:
     """The greatest and the least torque; negative where the follower drives the cam."""
     greatest, least = (float(results.whole_turn[f"{name}_torque_at"]) for name in ("greatest", "least"))
     yield Paragraph(
-        Sentence("The camshaft has to give its greatest torque at $phi$ = {angle}:", angle=_place(greatest))
+        Sentence("The torque of the camshaft is greatest at $phi$ = {angle}:", angle=_place(greatest))
     )
     yield Formula(tuple(_torque_lines(results, greatest)))
     yield Paragraph(
@@ -470,14 +477,14 @@ def _torques(results: FollowerForceResults) -> Iterator[Block]:
     )
     yield Formula(tuple(_torque_lines(results, least)))
     statement = Sentence(
-        "At {count} angles the moment of the contact force about the cam's axis is what virtual work asks for, to"
-        " {share} of force times radius.",
+        "At {count} angles the moment of the contact force about the cam's axis agrees with virtual work within "
+        "{share} of force times radius.",
         count=Number(len(TURN)),
     )
     if results.forces.friction:
         statement = Sentence(
-            "At {count} angles the moment of the contact force about the cam's axis does what the push and the friction"
-            " do on their ways, to {share} of force times radius.",
+            "At {count} angles the work of the contact force's moment about the cam's axis equals that of push "
+            "and friction within {share} of force times radius.",
             count=Number(len(TURN)),
         )
     yield Check(statement, *virtual_work_difference(results.forces), ROUNDED)
@@ -530,8 +537,8 @@ def _stress(results: FollowerForceResults) -> Iterator[Block]:
     first, second = results.cam.body.material, results.cam.follower.material
     compliances = {"first": _compliance(first or second), "second": _compliance(second or first)}
     text = Sentence(
-        "Along the strip of contact of the length $b$ Hertz's formulas hold; the stress is greatest at"
-        " $phi$ = {angle}:",
+        "Hertz's formulas hold along the line of contact of length $b$; the stress is greatest at $phi$ = "
+        "{angle}:",
         angle=_place(place),
     )
     yield Paragraph(text)
@@ -559,7 +566,7 @@ def _stress(results: FollowerForceResults) -> Iterator[Block]:
         )
     )
     statement = Sentence(
-        "The elliptic pressures, added up across the strip, carry the load to {share} of it."
+        "The elliptic pressure, integrated across the strip, equals the load within {share} of it."
     )
     yield Check(statement, strip_loads_difference(forces), 1.0, ROUNDED)
 
@@ -578,5 +585,5 @@ def _table(results: FollowerForceResults) -> Table:
     columns = [(push, "Q"), ("contact_force", "N"), ("cam_torque", "T")]
     if "contact_stress" in results.dataset:
         columns += [("contact_stress", "sigma"), ("contact_half_width", "a")]
-    caption = Sentence("Forces over a turn; a dash where the contact is lost or nothing is known")
+    caption = Sentence("Forces over a turn; a dash where the contact is lost or the value is unknown")
     return course(results.dataset, columns, caption, brief=True)

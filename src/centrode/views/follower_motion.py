@@ -149,9 +149,9 @@ def _continuity(jump: int | None) -> Sentence:
     if jump is None:
         return Sentence("all derivatives up to the fourth")
     if jump == 1:
-        return Sentence("the lift; the velocity jumps: the follower takes blows")
+        return Sentence("the lift only; the velocity jumps: rigid impacts")
     if jump == 2:
-        return Sentence("up to the velocity; the acceleration jumps: the jerk has no bound")
+        return Sentence("up to the velocity; the acceleration jumps: soft impacts, unbounded jerk")
     return Sentence("up to {last}; {first} jumps", last=DERIVATIVES[jump - 1], first=DERIVATIVES[jump])
 
 
@@ -198,7 +198,9 @@ def _segments(results: FollowerMotionResults) -> Table:
             Column("curve", tuple(curve_name(one.curve) for one in segments), head=Sentence("curve")),
             *peaks,
         ),
-        Sentence("Segments, and their greatest velocity, acceleration and jerk in parts of h/β, h/β², h/β³"),
+        Sentence(
+            "Segments, and their greatest velocity, acceleration and jerk as multiples of h/β, h/β², h/β³"
+        ),
     )
 
 
@@ -302,8 +304,8 @@ def _given(results: FollowerMotionResults) -> Iterator[Block]:
     swings, speed = results.motion.swings, results.motion.speed
     yield Paragraph(
         Sentence(
-            "The lift {letter} is given over the angle $phi$ of the cam, segment by segment. A prime means a derivative"
-            " by $phi$ in radians; in time",
+            "The lift {letter} is given over the angle $phi$ of the cam, segment by segment. A prime denotes a "
+            "derivative with respect to $phi$ in radians; with respect to time",
             letter=Expression(letter_of(swings)),
         )
     )
@@ -351,8 +353,8 @@ def _laws(results: FollowerMotionResults) -> Iterator[Block]:
             yield Formula(lines)
     yield Check(
         Sentence(
-            "The formulas, with numbers put in at {count} angles of each segment, give the motion to {share} of its"
-            " size.",
+            "The formulas, evaluated at {count} angles of each segment, give the motion within {share} of its "
+            "magnitude.",
             count=Number(len(INSIDE)),
         ),
         formulas_difference(results),
@@ -365,8 +367,8 @@ def _segment_blocks(results: FollowerMotionResults) -> Iterator[Block]:
     """Each segment that moves the follower, from its rise to its greatest jerk."""
     yield Paragraph(
         Sentence(
-            "Greatest sizes of the derivatives are $C_v |h| \\/ beta$, $C_a |h| \\/ beta^2$, $C_j |h| \\/ beta^3$;"
-            " the coefficients depend on the curve alone."
+            r"The greatest magnitudes of the derivatives are $C_v |h| \/ beta$, $C_a |h| \/ beta^2$, $C_j |h| \/ "
+            "beta^3$; the coefficients depend on the curve alone."
         )
     )
     for number, (segment, (before, after)) in enumerate(
@@ -484,7 +486,7 @@ def _tables(results: FollowerMotionResults) -> Iterator[Block]:
         heads = [Expression("phi"), *map(Expression, letters)]
         yield _at_instants(results, heads, Sentence("At the chosen angles"))
     caption = Sentence(
-        "Lift and derivatives by the angle of the cam; where a derivative jumps, from there on"
+        "Lift and derivatives by the angle of the cam; where a derivative jumps, the value after the jump"
     )
     yield course(results.dataset, list(zip(by_angle, letters, strict=False)), caption, brief=True)
     if motion.speed is not None:
@@ -493,8 +495,8 @@ def _tables(results: FollowerMotionResults) -> Iterator[Block]:
         yield course(results.dataset, variables, caption, brief=True)
     yield Check(
         Sentence(
-            "Velocity, acceleration and jerk, integrated by Gauss' rule over each segment, give back what lift,"
-            " velocity and acceleration change by, to {share} of their greatest sizes."
+            "Velocity, acceleration and jerk, integrated over each segment by Gauss quadrature, reproduce the "
+            "changes of lift, velocity and acceleration within {share} of their greatest values."
         ),
         integrals_difference(motion),
         1.0,

@@ -137,7 +137,7 @@ def _facts(results: FollowerProfileResults) -> Iterator[Fact]:
 
 def _pressure(body: FollowerCam) -> Text:
     if not ClosedForms(body).has_pressure_angle:
-        return Sentence("{zero}: the face is square to its way", zero=angle(0.0))
+        return Sentence("{zero}: the face is perpendicular to its motion", zero=angle(0.0))
     pressure = body.pressure
     return Sentence(
         "{least} at {at_least} to {greatest} at {at_greatest}",
@@ -174,7 +174,7 @@ def _undercut(body: FollowerCam) -> Iterator[Fact]:
     depth, place = body.overlap
     if depth and not body.undercuts:
         text = Sentence(
-            "the roller at {place} overlaps the cam by {depth} across a waist",
+            "at {place} the roller cuts into the cam by {depth} across a narrow part",
             place=angle(place),
             depth=Number(depth, "m", digits=".3g"),
         )
@@ -423,8 +423,9 @@ def _formulas(results: FollowerProfileResults) -> Iterator[Block]:
     formulas = FollowerFormulas(results.body, results.shown)
     yield Paragraph(
         Sentence(
-            "In the axes of the cam, which are those of the frame at $phi = 0$, the follower goes about the cam against"
-            " its turning; the profile is the envelope of its places."
+            "In the axes of the cam, which coincide with those of the frame at $phi = 0$, the follower moves "
+            "round the cam opposite to the cam's rotation (kinematic inversion); the profile is the envelope of "
+            "its positions."
         )
     )
     letters = [line[:2] for line in formulas.start()]
@@ -433,8 +434,8 @@ def _formulas(results: FollowerProfileResults) -> Iterator[Block]:
         letters += [line[:2] for line in rates if line[0] in ("u_x", "u_y")]
         yield Paragraph(
             Sentence(
-                "$(u_x; u_y)$ is how the centre of the roller (the edge) goes in the cam, $(x_P; y_P)$ the contact,"
-                " both along the axes of the frame:"
+                "$(u_x; u_y)$ is the velocity coefficient of the roller's centre (the edge) relative to the cam, "
+                "$(x_P; y_P)$ the contact point, both in the axes of the frame:"
             )
         )
     yield Formula((*letters, *formulas.aids(), *(line[:2] for line in formulas.place())))
@@ -456,13 +457,14 @@ def _formulas(results: FollowerProfileResults) -> Iterator[Block]:
 def _second_routes(body: FollowerCam) -> Iterator[Check]:
     """Points by the closed forms and by the instant centre against those of the envelope."""
     text = Sentence(
-        "At {count} angles the formulas give the points of the envelope of the follower's places, to {share} of $r_0$.",
+        "At {count} angles the formulas give the points of the envelope of the follower's positions, within "
+        "{share} of $r_0$.",
         count=Number(len(TURN)),
     )
     yield Check(text, profile_difference(body), body.base_radius, ROUNDED)
     text = Sentence(
-        "The normal through the instant centre of cam and follower on the line of their axes leads to the same points,"
-        " to {share} of $r_0$."
+        "The normal through the instant centre of cam and follower on the line of their axes gives the same "
+        "points, within {share} of $r_0$."
     )
     yield Check(text, instant_centre_difference(body), body.base_radius, ROUNDED)
 
@@ -471,7 +473,7 @@ def _undercut_check(body: FollowerCam) -> Check:
     """Whether the follower cuts the profile away."""
     if body.undercuts:
         text = Sentence(
-            "The profile is undercut at {stretches}: there the lift is lost.",
+            "The profile is undercut at {stretches}: there the law of the lift is not reproduced.",
             stretches=_stretches(body.undercuts),
         )
         return Check(text, 1.0, 1.0, 0.0)

@@ -111,7 +111,7 @@ def course(
     if brief:
         kept = _unlike(rows, columns[1:])
         if len(kept) < len(rows):
-            rows, caption = kept, Sentence("{caption}; of alike rows the first and the last", caption=caption)
+            rows, caption = kept, Sentence("{caption}; of equal rows the first and the last", caption=caption)
     return Table(tuple(columns), caption, rows)
 
 

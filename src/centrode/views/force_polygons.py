@@ -131,7 +131,7 @@ def _speed(found: ForcePolygons) -> Text:
 def _rate(mechanism: Mechanism, drive: str, rate: float) -> Text:
     """The rate of a drive; a law gives it none of its own."""
     if math.isnan(rate):
-        return Sentence("as the drive moves")
+        return Sentence("by the law of the drive")
     return Number(rate, mechanism.motion_parameter.drive(drive).speed_unit, unit_fixed=True)
 
 
@@ -145,7 +145,7 @@ def _group_title(found: ForcePolygons, group: GroupForces) -> Text:
     if group.kind == "input":
         return Sentence("Input link {numbers}: {names}", numbers=numbers, names=names)
     if group.kind == "single":
-        return Sentence("Link {numbers} by itself: {names}", numbers=numbers, names=names)
+        return Sentence("Link {numbers} alone: {names}", numbers=numbers, names=names)
     other = {"together": Sentence("solved together"), "triad": Sentence("triad, by an Assur point")}
     kind = other.get(group.kind) or GROUP_KINDS[group.kind]
     return Sentence("Group {numbers} ({kind}): {names}", numbers=numbers, kind=kind, names=names)
@@ -175,7 +175,7 @@ def step_text(step: Step) -> Text:
         case MomentsOfBase(link, unknown, moment, outcome):
             left = _sum(_unknown(unknown), [(_moment(abs(moment)), moment < 0)])
             return Sentence(
-                "moments of base {link} about S, what the links carry at their hinges included: {equation}",
+                "moments of base {link} about S, including the loads of the links at their hinges: {equation}",
                 link=Number(link),
                 equation=_equation(left, outcome),
             )
@@ -287,7 +287,9 @@ def _guide_moment(step: MomentsOfLink) -> Text:
         return _outcome(step.outcome)
     symbol, arm = step.beside
     beside = Sentence(
-        "{symbol} acts {arm} beside", symbol=Name(symbol), arm=Number(arm, "m", ".5g", unit_fixed=True)
+        "{symbol} acts at an offset of {arm}",
+        symbol=Name(symbol),
+        arm=Number(arm, "m", ".5g", unit_fixed=True),
     )
     return Joined((_outcome(step.outcome), beside))
 
@@ -306,19 +308,19 @@ def _neglected(joint: StaticJoint, neglected: Neglect) -> Text:
     match neglected:
         case Neglect.TOOTH_PRESSURE:
             return Sentence(
-                "gear {name}: the part of the teeth's force that presses the wheels apart is left out",
+                "gear {name}: the radial component of the tooth force is neglected",
                 name=name,
             )
         case Neglect.PITCH_POINT:
             return Sentence(
-                "gear {name}: moments alone, because nothing tells its pitch point; what forces between teeth add in"
-                " the bearings is left out",
+                "gear {name}: moments only, because its pitch point is not defined; the bearing reactions due to "
+                "tooth forces are omitted",
                 name=name,
             )
         case Neglect.NORMAL_FORCE:
             return Sentence(
-                "wheel {name} is kept at its track by other joints: equilibrium does not determine its normal force,"
-                " which is taken as none, here and in the joints that keep it",
+                "wheel {name} is held on its track by other joints: equilibrium does not determine its normal "
+                "force, which is set to zero here and in those joints",
                 name=name,
             )
         case _:
@@ -391,7 +393,7 @@ def _routes(found: ForcePolygons, caption: Text = NOTHING) -> Table:
         ("polygons", Sentence("force polygons")),
         ("lever", Sentence("Zhukovsky's lever")),
         ("work", Sentence("virtual work")),
-        ("apart", Sentence("apart")),
+        ("apart", Sentence("difference")),
     )
     columns = zip(*rows, strict=True)
     return Table(
@@ -485,8 +487,8 @@ def _lever_lines(lever: Lever) -> Iterator[Text]:
 def _chapter(results: ForcePolygonResults) -> Chapter:
     """Force polygons of the instants."""
     text = Sentence(
-        "Groups are taken in reverse order: each is freed from its neighbours, moments give the tangential parts of"
-        " its outer reactions, the polygon the rest. The drawings are to the scales that they name."
+        "Groups are treated in reverse order: each is isolated, moment equations give the tangential components "
+        "of its outer reactions, the force polygon gives the rest. Drawings are to the scales stated."
     )
     instants = (
         Section(
@@ -542,7 +544,7 @@ def _checks(found: ForcePolygons) -> Iterator[Check]:
         others = [value for value in (levers.get(drive.id), found.work.get(drive.id)) if value is not None]
         yield Check(
             Sentence(
-                "Drive {drive}: polygons, lever and virtual work agree to {share}.", drive=Name(drive.id)
+                "Drive {drive}: polygons, lever and virtual work agree within {share}.", drive=Name(drive.id)
             ),
             max((abs(own - value) for value in others), default=0.0),
             max(size, abs(own)),

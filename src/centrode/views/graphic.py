@@ -227,8 +227,8 @@ def _trial_lines(step: ConstructionStep, order: int) -> list[Text]:
     ]
     for values, misfits in zip(trial.values, trial.misfits, strict=True):
         amiss = Joined([Number(_rounded(x, apart)) for x in misfits])
-        lines.append(Sentence("{tried}: amiss by {amiss}", tried=rates(values), amiss=amiss))
-    return [*lines, Sentence("so {found}", found=rates(trial.found))]
+        lines.append(Sentence("{tried}: residual {amiss}", tried=rates(values), amiss=amiss))
+    return [*lines, Sentence("hence {found}", found=rates(trial.found))]
 
 
 # Pages
@@ -409,7 +409,7 @@ def _instant(
     if check is None:
         yield Paragraph(
             Sentence(
-                "At {place} the sample is {status}: there are no velocities to be told.",
+                "At {place} the sample is {status}: the velocities are not defined.",
                 place=instant_title(results.mechanism, results.motion, sample),
                 status=Sentence(Status(int(results.motion["status"][sample])).word),
             )

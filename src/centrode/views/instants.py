@@ -63,9 +63,9 @@ def body_text(mechanism: Mechanism, name: str) -> Text:
 def pair_text(mechanism: Mechanism, first: str, second: str) -> Text:
     """One body against another; the frame in the case that its word takes there."""
     if second == FRAME:
-        return Sentence("{name} against the frame", name=body_text(mechanism, first))
+        return Sentence("{name} relative to the frame", name=body_text(mechanism, first))
     return Sentence(
-        "{first} against {second}", first=body_text(mechanism, first), second=body_text(mechanism, second)
+        "{first} relative to {second}", first=body_text(mechanism, first), second=body_text(mechanism, second)
     )
 
 

@@ -76,7 +76,7 @@ def _facts(results: IntegrationResults) -> Iterator[Fact]:
     yield Fact(Sentence("range"), Sentence("{first} to {last}", first=first, last=last))
     yield Fact(Sentence("rows"), Joined((Number(len(status), digits="d"), counted_statuses(status)), ": "))
     yield Fact(Sentence("stops"), stops if stops.parts else Sentence("nowhere"))
-    yield Fact(Sentence("closed forms"), _events(results))
+    yield Fact(Sentence("closed-form solution"), _events(results))
     yield Fact(Sentence("greatest drift"), _drift(results))
     yield Fact(Sentence("greatest difference"), _difference(results))
     yield Fact(Sentence("last row"), _return(results))
@@ -106,11 +106,12 @@ def _stops(results: IntegrationResults) -> Iterator[Sentence]:
     stop, lost = (results.integration.attrs[name] for name in ("stop_time", "lost_time"))
     if isfinite(lost):
         yield Sentence(
-            "fixed steps leave the mechanism at {time}: ask for more steps", time=_at(results, lost)
+            "fixed steps drift off the mechanism at {time}: increase the number of steps",
+            time=_at(results, lost),
         )
     if isfinite(stop):
         yield Sentence(
-            "at {time} the determinant of the equations is zero, so they give no velocities",
+            "at {time} the determinant of the equations is zero: they do not determine the velocities",
             time=_at(results, stop),
         )
 
@@ -121,7 +122,7 @@ def _failure(results: IntegrationResults) -> Failure | None:
         return None
     # steps that are too coarse are told with their repair
     ends = isfinite(results.integration.attrs["stop_time"])
-    repair = Sentence("ask for a range that ends before it, or change the dimensions") if ends else NOTHING
+    repair = Sentence("choose a range that ends before it, or change the dimensions") if ends else NOTHING
     return Failure(Joined(stops, "; "), repair)
 
 
@@ -152,7 +153,7 @@ def _events(results: IntegrationResults) -> Text:
         )
         # several groups may lock at one place
         places.setdefault((kind, format(value, at.digits)), text)
-    return Joined(list(places.values()), "; ") if places else Sentence("nothing that stops it")
+    return Joined(list(places.values()), "; ") if places else Sentence("no obstacle")
 
 
 def _drift(results: IntegrationResults) -> Text:
@@ -203,11 +204,13 @@ def _return(results: IntegrationResults) -> Text:
         return Sentence("not reached")
     if closed > RETURNS:
         return Sentence(
-            "does not repeat the first: {own} apart, {closed} in closed form",
+            "does not repeat the first: difference {own}, in closed form {closed}",
             own=Number(own, digits=".3g"),
             closed=Number(closed, digits=".3g"),
         )
-    return Sentence("repeats the first to {own}", own=_small(own)) if own else Sentence("repeats the first")
+    return (
+        Sentence("repeats the first within {own}", own=_small(own)) if own else Sentence("repeats the first")
+    )
 
 
 # Table
@@ -280,7 +283,7 @@ def _errors(results: IntegrationResults) -> Plot:
         ),
     )
     return Plot(
-        Sentence("Drift of the constraints, and difference from the closed forms"),
+        Sentence("Drift of the constraints, and difference from the closed-form solution"),
         Title(mechanism.title),
         over_time(integration),
         ((drift,), (angles,)),
@@ -297,8 +300,8 @@ def _chapter(results: IntegrationResults, facts: tuple[Fact, ...]) -> Chapter:
     worst = float(np.nanmax(np.abs(integration["angle_difference"].to_numpy()), initial=0.0))
     check = Check(
         Sentence(
-            "Where the equations can be integrated, they give the angles of the closed forms: "
-            "the greatest difference is {worst}, at a tolerance of {tolerance} for each step.",
+            "Where the equations can be integrated, they give the angles of the closed-form solution: the "
+            "greatest difference is {worst}, at a tolerance of {tolerance} for each step.",
             worst=_small(worst, "rad"),
             tolerance=_small(integration.attrs.get("tolerance", 0.0)),
         ),
@@ -306,6 +309,6 @@ def _chapter(results: IntegrationResults, facts: tuple[Fact, ...]) -> Chapter:
         1.0,
         AGREE,
     )
-    caption = Sentence("Difference of the integrated motion from the closed forms")
+    caption = Sentence("Difference of the integrated motion from the closed-form solution")
     blocks = (FactTable(facts), check, Illustration(ERRORS, caption))
     return Chapter(Sentence("Integration of the equations"), (Section(NOTHING, blocks),))

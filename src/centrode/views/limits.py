@@ -34,8 +34,8 @@ def _facts(limits: Limits) -> tuple[Fact, ...]:
     changes = [Joined((place_number(end.value, unit), Name(end.group)), ", ") for end in limits.change_points]
     return (
         Fact(Sentence("drive"), Name(limits.drive)),
-        Fact(Sentence("held"), Joined(held) if held else Sentence("none")),
-        Fact(Sentence("about"), place_number(limits.about, unit)),
+        Fact(Sentence("held drives"), Joined(held) if held else Sentence("none")),
+        Fact(Sentence("initial value"), place_number(limits.about, unit)),
         Fact(Sentence("from"), _end(limits.low, unit)),
         Fact(Sentence("to"), _end(limits.high, unit)),
         Fact(Sentence("change points"), Joined(changes, "; ") if changes else Sentence("none")),
@@ -85,7 +85,7 @@ def unreached_failure(
     unit = mechanism.motion_parameter.variable.unit
     bounds = [
         Sentence(
-            "limit at {value}, where {group} is a dead point",
+            "limit at {value}, {group} in a dead position",
             value=place_number(end.value, unit),
             group=Name(end.group),
         )
@@ -94,15 +94,15 @@ def unreached_failure(
     if bounds:
         text = Sentence("{value} ({remark})", value=text, remark=Joined(bounds, "; "))
     if single:
-        return Failure(text, Sentence("ask for places between the limits"))
+        return Failure(text, Sentence("choose positions between the limits"))
     return Failure(text, _repair(mechanism))
 
 
 def _repair(mechanism: Mechanism) -> Sentence:
     """What to ask for: the range between the limits, by a word where one drive has them."""
     if not mechanism.motion_parameter.is_uniform:
-        return Sentence("ask for a range between the limits, or change the dimensions")
+        return Sentence("choose a range between the limits of the drive, or change the dimensions")
     return Sentence(
-        'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
+        'choose the range between the limits (range = "reachable" under [study], or --range reachable), or '
         "change the dimensions"
     )

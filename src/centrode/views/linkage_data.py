@@ -179,7 +179,7 @@ def _guides(mechanism: Mechanism) -> Iterator[Table]:
             *_kept(guides),
             Column("through", through, head=Sentence("through $(x, y)$")),
             _cells([guide.direction_angle for guide in guides], "rad", Sentence("direction")),
-            Column("link", own, head=Sentence("link that does not turn against it")),
+            Column("link", own, head=Sentence("link that does not turn relative to it")),
         )
         yield Table(columns, Sentence("Guides"))
 
@@ -225,7 +225,7 @@ def _drives(mechanism: Mechanism) -> Iterator[Block]:
         )
         columns = (
             _names([drive.id for drive in drives], Sentence("drive")),
-            Column("given", tuple(map(_given, drives)), head=Sentence("what is given")),
+            Column("given", tuple(map(_given, drives)), head=Sentence("given quantity")),
             Column("start", starts, head=Sentence("initial value")),
             Column("law", laws, head=Sentence("law")),
         )
@@ -254,7 +254,9 @@ def _given(drive: Drive) -> Text:
         link = Name(drive.link)
         if drive.relative_to == FRAME:
             return Sentence("angle of link {link}", link=link)
-        return Sentence("angle of link {link} against link {other}", link=link, other=Name(drive.relative_to))
+        return Sentence(
+            "angle of link {link} relative to link {other}", link=link, other=Name(drive.relative_to)
+        )
     if drive.guide is not None:
         return Sentence("displacement along guide {guide}", guide=Name(drive.guide))
     first, second = map(Name, drive.distance or ("", ""))

@@ -125,7 +125,7 @@ def _loads(mechanism: Mechanism) -> Iterator[Block]:
             (load_text(mechanism, one.label), KINDS[one.kind], _acts_on(one), _amount(one))
             for one in mechanism.loads
         ]
-        heads = (Sentence("load"), Sentence("kind"), Sentence("acts on"), Sentence("amount (SI)"))
+        heads = (Sentence("load"), Sentence("kind"), Sentence("acts on"), Sentence("magnitude (SI)"))
         names = ("load", "kind", "acts_on", "amount")
         columns = zip(names, zip(*texts, strict=True), heads, strict=True)
         yield Table(tuple(Column(name, values, head=head) for name, values, head in columns))

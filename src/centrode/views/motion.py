@@ -164,19 +164,19 @@ def _notes(results: MotionResults) -> Iterator[Text]:
         )
     if len(mechanism.drives) > 1 and results.coefficients is None:
         yield Sentence(
-            "kinematic coefficients by each drive are left out; ask for at most {most} samples",
+            "kinematic coefficients by each drive are omitted; choose at most {most} samples",
             most=Number(results.most_samples, digits="d"),
         )
     if not results.comes_back:
-        yield Sentence("after one turn of the drive the mechanism is not back in its first position")
+        yield Sentence("after one turn of the drive the mechanism does not return to its initial position")
     if mechanism.loads and mechanism.machine is None:
         yield Sentence(
-            "the motion is given, loads do not change it: centrode reduce reduces them to the drive"
+            "the motion is prescribed, loads do not change it: centrode reduce reduces them to the drive"
         )
     if (refusal := results.refusals.get("flywheel")) is not None:
-        yield Sentence("the machine is left out: {reason}", reason=_reason(refusal))
+        yield Sentence("the machine is omitted: {reason}", reason=_reason(refusal))
     if (refusal := results.refusals.get("reactions")) is not None:
-        yield Sentence("reactions are left out: {reason}", reason=_reason(refusal))
+        yield Sentence("reactions are omitted: {reason}", reason=_reason(refusal))
     if results.reactions is not None and (locked := self_locking_samples(results.reactions.reactions)):
         yield self_locking_text(locked)
 
@@ -351,7 +351,7 @@ CAPTIONS = {
 }
 """Of the figures in a document."""
 ON_SPHERE = {
-    "mechanism": Sentence("The mechanism from outside; dashed what is behind"),
+    "mechanism": Sentence("The mechanism from outside; hidden lines are dashed"),
     "slides": Sentence("Motion along the circles"),
 }
 """Those that differ on the sphere."""

@@ -56,7 +56,9 @@ def sheet(results: MotionLawResults) -> Sheet:
     """Everything there is to say about laws of motion beside each other."""
     coefficients = _coefficients(
         results,
-        Sentence("Peak coefficients: greatest v, a, j in parts of h/β, h/β², h/β³; of v a in parts of h²/β³"),
+        Sentence(
+            "Peak coefficients: greatest v, a, j as multiples of h/β, h/β², h/β³; of v a as multiples of h²/β³"
+        ),
     )
     return Sheet(
         heading=Sentence("Laws of motion for one rise"),
@@ -123,7 +125,7 @@ def _sizes(results: MotionLawResults) -> Table:
         values = (peaks.sel(derivative=order).to_numpy() * scale).tolist()
         cells = tuple(Number(value, unit, unit_hidden=True) for value in values)
         columns.append(Column(name, cells, unit, head))
-    return Table(tuple(columns), Sentence("Greatest sizes in this rise"))
+    return Table(tuple(columns), Sentence("Greatest magnitudes in this rise"))
 
 
 def _shares(results: MotionLawResults) -> Table:
@@ -164,13 +166,14 @@ def _plot(results: MotionLawResults) -> SpanPlot:
 def _chapter(results: MotionLawResults) -> Chapter:
     """What other laws would do for the same rise."""
     meaning = Sentence(
-        "A rise $h$ over the angle $beta$ has the greatest velocity $C_v h \\/ beta$, acceleration $C_a h \\/ beta^2$"
-        " and jerk $C_j h \\/ beta^3$; the torque that a mass asks of the camshaft grows with the greatest velocity"
-        " times acceleration, $C_T h^2 \\/ beta^3$. Where a derivative jumps at the ends, those above it have no bound."
+        r"A rise $h$ over the angle $beta$ has the greatest velocity $C_v h \/ beta$, acceleration $C_a h \/ "
+        r"beta^2$ and jerk $C_j h \/ beta^3$; the camshaft torque that accelerates a mass is proportional to the "
+        r"greatest product of velocity and acceleration, $C_T h^2 \/ beta^3$. Where a derivative jumps at the "
+        "ends, higher ones are unbounded."
     )
     check = Check(
         Sentence(
-            "Looked for on the exact derivatives, the greatest values are those of the closed forms to {share}."
+            "The greatest values, found on the exact derivatives, agree with those of the closed forms within {share}."
         ),
         results.closed_forms_difference,
         1.0,

@@ -64,7 +64,7 @@ def _instant(results: MotionResults, shown: xarray.Dataset, sample: int) -> Iter
     status = Status(int(shown["status"][sample]))
     if status != Status.OK:
         text = Sentence(
-            "At {place} the sample is {status}: there are no velocities to be told.",
+            "At {place} the sample is {status}: the velocities are not defined.",
             place=instant_title(results.mechanism, shown, sample),
             status=Sentence(STATUS_WORDS[status]),
         )
@@ -128,7 +128,7 @@ def _points(here: xarray.Dataset) -> Table:
             columns.append(_column(head, values[:, k], unit, size))
         if letter:
             columns.append(_column(Expression(letter), np.hypot(*values.T), unit, size))
-    caption = Sentence("Points: place, velocity and acceleration by components and size")
+    caption = Sentence("Points: position, velocity and acceleration by components and magnitude")
     return Table(tuple(columns), caption)
 
 
@@ -163,7 +163,9 @@ def _coefficients_of_points(here: xarray.Dataset) -> Table:
         for axis in "xy":
             head = Expression(axis + order * "'")
             columns.append(_column(head, values.sel(axis=axis), _unit(values), _greatest(values)))
-    caption = Sentence("Kinematic coefficients of the points: analogs of their velocities and accelerations")
+    caption = Sentence(
+        "Kinematic coefficients of the points: derivatives of their coordinates by the value of the drive"
+    )
     return Table(tuple(columns), caption)
 
 
@@ -178,7 +180,7 @@ def _hinges(here: xarray.Dataset) -> Iterator[Table]:
         yield _with_rates(here, "joint", variables, "psi", caption)
     if here.sizes["guide"]:
         slides = ("slide", "slide_velocity", "slide_acceleration")
-        yield _with_rates(here, "guide", slides, "s", Sentence("Ways along the circles"))
+        yield _with_rates(here, "guide", slides, "s", Sentence("Displacements along the circles"))
 
 
 def _rotations(here: xarray.Dataset) -> Table:
@@ -200,7 +202,7 @@ def _points_on_sphere(here: xarray.Dataset) -> Table:
         for k, axis in enumerate(here["axis"].to_numpy().tolist()):
             head = Expression(f"{letter}_{axis}" if letter else axis)
             columns.append(_column(head, values[:, k], unit, size))
-    caption = Sentence("Places, velocities and accelerations of the points on the unit sphere")
+    caption = Sentence("Positions, velocities and accelerations of the points on the unit sphere")
     return Table(tuple(columns), caption)
 
 
@@ -240,7 +242,7 @@ def _over_motion(results: MotionResults, rows: tuple[int, ...]) -> Iterator[Bloc
         ]
         for point in results.points
     ]
-    yield from _tables(results, rows, groups, Sentence("Points: places, velocities, accelerations"))
+    yield from _tables(results, rows, groups, Sentence("Points: positions, velocities, accelerations"))
 
 
 def _component(letter: str, point: str, axis: str) -> Expression:
@@ -330,7 +332,7 @@ def _hinges_over_motion(results: MotionResults, rows: tuple[int, ...]) -> Table:
             for variable, notation in ((value, letter), (rate, f"dot({letter})")):
                 below = Expression(f"{notation}_({{name}})", name=Name(name))
                 columns.append(Column("", one[variable].to_numpy(), _unit(one[variable]), below))
-    return Table(tuple(columns), Sentence("The motion at even steps"), rows)
+    return Table(tuple(columns), Sentence("The motion at equal steps"), rows)
 
 
 # Checks
@@ -353,8 +355,8 @@ def _checks(results: MotionResults, rows: tuple[int, ...]) -> Iterator[Block]:
     if flat:
         yield Paragraph(
             Counted(
-                "The tables show {rows} row of {samples} samples; {sign} stands where nothing is known.",
-                "The tables show {rows} rows of {samples} samples; {sign} stands where nothing is known.",
+                "The tables show {rows} row of {samples} samples; {sign} marks unknown values.",
+                "The tables show {rows} rows of {samples} samples; {sign} marks unknown values.",
                 len(rows),
                 rows=Number(len(rows), digits="d"),
                 samples=Number(results.motion.sizes["sample"], digits="d"),
@@ -372,8 +374,9 @@ def _identity(check: RigidBodyCheck) -> Sentence:
     match check.identity:
         case "velocity":
             return Sentence(
-                "Euler's theorem: for all points of each link the velocity is that of another point and the rotation "
-                "about it; the greatest difference is {off} of the greatest velocity, {allowed} is allowed.",
+                "Euler's theorem: for all points of each link the velocity is the sum of that of another point "
+                "and of the rotation about it; the greatest difference is {off} of the greatest velocity, "
+                "{allowed} is allowed.",
                 **off,
             )
         case "acceleration":
@@ -384,10 +387,10 @@ def _identity(check: RigidBodyCheck) -> Sentence:
             )
         case "arcs":
             return Sentence(
-                "The arcs of all links stay what they are: their chords are off by {share} of the sphere's radius."
+                "The arcs of all links stay constant: their chords deviate by {share} of the sphere's radius."
             )
         case "rotation":
             return Sentence(
-                "Every point of a link moves as its rotation wants, $arrow(v) = arrow(omega) times arrow(r)$, to "
-                "{share}."
+                "The velocity of every point of a link agrees with the link's rotation, $arrow(v) = arrow(omega) "
+                "times arrow(r)$, within {share}."
             )

@@ -50,10 +50,10 @@ REAL = 1e-12
 LEAST_DRAWN = 1e-17
 """Differences [m] below this are not drawn."""
 DIFFERENCES = {
-    "parting": Sentence("series: ({second}) less ({slope})", second=Number(16), slope=Number(15)),
-    "foretold_error": Sentence("series: foretold by its next terms"),
-    "series_error": Sentence("series less steps"),
-    "routes_difference": Sentence("integrated less steps"),
+    "parting": Sentence("series: ({second}) minus ({slope})", second=Number(16), slope=Number(15)),
+    "foretold_error": Sentence("series: estimated from its next terms"),
+    "series_error": Sentence("series minus steps"),
+    "routes_difference": Sentence("integrated minus steps"),
 }
 BY_SECOND, BY_SLOPE = Number(16), Number(15)
 """Numbers of the two formulas of the radius in the paper."""
@@ -104,9 +104,7 @@ def _facts(results: PathRoutesResults) -> Iterator[Fact]:
     yield Fact(Sentence("(c) integrated"), integrated)
     if math.isfinite(facts["stall"]):
         apart = Number(abs(facts["stall"] - facts["stall_integrated"]), "rad", ".1e", unit_fixed=True)
-        yield Fact(
-            Sentence("stall by two routes"), Sentence("(b) and (c) find it {apart} apart", apart=apart)
-        )
+        yield Fact(Sentence("stall by two routes"), Sentence("(b) and (c) differ by {apart}", apart=apart))
 
 
 def _series(results: PathRoutesResults) -> Sentence:
@@ -114,12 +112,12 @@ def _series(results: PathRoutesResults) -> Sentence:
     term, zero = Symbol("a", str(int(results.dataset.attrs["terms"])), slanted=True), Number(0.0)
     if math.isnan(results.series_error):
         return Sentence(
-            "power series about φ = {zero}, cut after {term}: no sample to compare it at",
+            "power series about φ = {zero}, truncated after {term}: no sample to compare it at",
             zero=zero,
             term=term,
         )
     return Sentence(
-        "power series about φ = {zero}, cut after {term}: greatest error of ρ {error}",
+        "power series about φ = {zero}, truncated after {term}: greatest error of ρ {error}",
         zero=zero,
         term=term,
         error=Number(results.series_error, "m", ".3g"),
@@ -130,9 +128,11 @@ def _convergence(facts: Mapping[str, Any]) -> Sentence:
     """How far the series converges, and how that is known."""
     radius, estimate = facts["radius_of_convergence"], facts["radius_by_coefficients"]
     if math.isnan(radius):
-        return Sentence("how far it converges is not known: its coefficients leave the range of numbers")
+        return Sentence(
+            "its radius of convergence is unknown: its coefficients exceed the range of floating-point numbers"
+        )
     if math.isinf(radius):
-        return Sentence("it ends by itself: its coefficients vanish, it converges everywhere")
+        return Sentence("the series terminates: its further coefficients vanish, it converges everywhere")
     x, y = facts["singularity"]
     if not math.isfinite(x):
         return Sentence(
@@ -143,7 +143,7 @@ def _convergence(facts: Mapping[str, Any]) -> Sentence:
     if y > REAL:
         place = Joined((Number(x, "rad"), Number(y, "rad")), " ± i·")
     return Sentence(
-        "it converges up to {radius}: cos γ = {zero} at φ = {place}; its coefficients alone tell {estimate}",
+        "it converges up to {radius}: cos γ = {zero} at φ = {place}; its coefficients alone give {estimate}",
         radius=angle(radius, ".7g"),
         zero=Number(0.0),
         place=place,
@@ -161,9 +161,9 @@ def _validity(results: PathRoutesResults) -> Sentence:
             high=angle(facts["series_to"]),
         )
     if math.isnan(results.parting):
-        return Sentence("formula ({second}) says nothing where the curvature is constant", second=BY_SECOND)
+        return Sentence("formula ({second}) does not apply where the curvature is constant", second=BY_SECOND)
     parts = Sentence(
-        "formulas ({slope}) and ({second}) part by up to {parting}",
+        "formulas ({slope}) and ({second}) differ by up to {parting}",
         slope=BY_SLOPE,
         second=BY_SECOND,
         parting=Number(results.parting, "m", ".3g"),
@@ -211,13 +211,14 @@ def _table(results: PathRoutesResults) -> Table:
         Column("eta", _cells(sine[1], "1", ".6f"), head=Joined((steps, Symbol("η")), " ")),
         Column("eta_slope", _cells(slope[1], "1", ".6f"), head=Joined((steps, Symbol("η′")), " ")),
         _difference(shown, "series_error", Name("(a) − (b)")),
-        _difference(shown, "foretold_error", Sentence("foretold")),
+        _difference(shown, "foretold_error", Sentence("estimate")),
         _difference(shown, "parting", Name("(16) − (15)")),
         _difference(shown, "routes_difference", Name("(c) − (b)")),
     )
     unit = Unit("m", shown=True)
     return Table(
-        columns, Sentence("Differences in {unit}; foretold: by the next four terms of the series", unit=unit)
+        columns,
+        Sentence("Differences in {unit}; estimate: from the next four terms of the series", unit=unit),
     )
 
 
@@ -255,7 +256,7 @@ def _plot(results: PathRoutesResults) -> Plot:
     radius, circle = facts["radius_of_convergence"], Sentence("circle of convergence")
     return Plot(
         Sentence(
-            "Differences of the radius, series cut after {last}",
+            "Differences of the radius, series truncated after {last}",
             last=Symbol("a", str(int(facts["terms"])), slanted=True),
         ),
         Title(results.cam.title),
@@ -272,9 +273,9 @@ def _plot(results: PathRoutesResults) -> Plot:
 def _chapter(results: PathRoutesResults) -> Chapter:
     """One power series, series expanded anew, an integrator, beside each other."""
     text = Sentence(
-        "(a) one power series about $phi = 0$, cut off; (b) series expanded anew step by step, by which everything else"
-        " is computed; (c) a Runge-Kutta method along the arc of the path, which shares neither variable nor method"
-        " with the others."
+        "(a) one power series about $phi = 0$, truncated; (b) series expanded anew step by step, by which "
+        "everything else is computed; (c) a Runge-Kutta method along the arc of the path, which shares neither "
+        "variable nor method with the others."
     )
     formulas = Formula(
         (
@@ -286,7 +287,7 @@ def _chapter(results: PathRoutesResults) -> Chapter:
     )
     facts = results.dataset.attrs
     agree = Check(
-        Sentence("The integrated path is off from the one by steps by {share} of its radius."),
+        Sentence("The integrated path differs from the one by steps by {share} of its radius."),
         facts["worst_difference"],
         1.0,
         facts["tolerance"] * (1.0 + facts["steps"]) + ROUNDED,

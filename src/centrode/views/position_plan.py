@@ -43,9 +43,13 @@ def _facts(plan: PositionPlan) -> list[Fact]:
     first = Sentence("position {number}", number=Number(0, digits="d"))
     facts = [Fact(Sentence("positions"), Sentence("{count}, {reached} of them reached", **counts))]
     if plan.link:
-        at_rest = Sentence("{link} at rest at {value}", link=Name(plan.link), value=shown(plan.zero))
+        at_rest = Sentence(
+            "extreme position of {link} at {value}", link=Name(plan.link), value=shown(plan.zero)
+        )
         facts.append(Fact(first, at_rest))
-        facts.append(Fact(Sentence("at rest at"), Joined([shown(value) for value in plan.extremes], "; ")))
+        facts.append(
+            Fact(Sentence("extreme positions"), Joined([shown(value) for value in plan.extremes], "; "))
+        )
     else:
         facts.append(Fact(first, shown(plan.zero)))
     facts.append(Fact(Sentence("step"), shown(float(values[1] - values[0]))))

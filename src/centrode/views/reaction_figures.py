@@ -53,8 +53,8 @@ def pictures(results: ReactionResults) -> Iterator[tuple[str, Picture]]:
         "joint-components": (Sentence("Forces in the hinges by components"), _components(reactions)),
         "centre-forces": (Sentence("Forces of the centre of the sphere"), _centre(reactions)),
         "other-reactions": (Sentence("Reactions of guides, gears and wheels"), _others(reactions)),
-        "balancing": (Sentence("What the drives must give"), _drives(results)),
-        "friction": (Sentence("What friction takes"), _friction(reactions)),
+        "balancing": (Sentence("Balancing moments and forces of the drives"), _drives(results)),
+        "friction": (Sentence("Losses to friction"), _friction(reactions)),
         "frame-force": (Sentence("Force and moment on the frame"), _frame(reactions)),
     }
     for name, (what, panels) in plots.items():
@@ -200,7 +200,7 @@ def _frame(reactions: xarray.Dataset) -> list[CurvePanel]:
         ("frame_moment", "shaking_moment", _size),
     ):
         curves = {
-            "whole": (Sentence("all of it"), size(reactions[whole])),
+            "whole": (Sentence("total"), size(reactions[whole])),
             "inertia": (Sentence("of inertia alone"), size(reactions[inertia])),
         }
         panels += _panels(whole, curves)
@@ -381,4 +381,4 @@ def _drive_lines(here: xarray.Dataset) -> Iterator[Text]:
     units = str(here["balancing"].attrs["units"]).split(", ")
     for k, name in enumerate(here["drive"].to_numpy().tolist()):
         value = Number(float(here["balancing"].to_numpy()[k]), units[k % len(units)], ".5g")
-        yield Joined((Sentence("drive {name} gives", name=Name(name)), value), " ")
+        yield Joined((Sentence("balancing moment or force of drive {name}", name=Name(name)), value), " ")

@@ -139,7 +139,7 @@ def _failure(results: ReactionResults) -> Failure | None:
     if failure is not None or not locked:
         return failure
     return Failure(
-        self_locking_text(locked), Sentence("make the coefficients or radii less, or the sliders longer")
+        self_locking_text(locked), Sentence("reduce the coefficients or radii, or lengthen the sliders")
     )
 
 
@@ -207,7 +207,7 @@ def _facts(results: ReactionResults) -> Iterator[Fact]:
         absent = np.isnan(reactions["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
         gears = reactions["gear"].to_numpy()[absent].tolist()
         if gears and np.isfinite(reactions["gear_moment"].to_numpy()).any():
-            text = Sentence("{gears}: nothing tells the radii", gears=enumerate_names(gears))
+            text = Sentence("{gears}: the radii are not defined", gears=enumerate_names(gears))
             yield Fact(Sentence("no tooth force"), text)
     if "friction" in reactions.dims:
         yield from _friction(reactions)
@@ -240,18 +240,16 @@ def _friction(reactions: xarray.Dataset) -> Iterator[Fact]:
         yield Fact(Sentence("held by friction"), text)
     turning = int((reactions["friction_turns"] != 0).any("friction").sum())
     if turning:
-        text = Counted(
-            "{n} sample, told as just after it", "{n} samples, each told as just after it", turning
-        )
-        yield Fact(Sentence("friction turns round"), text)
+        text = Counted("{n} sample, values just after it", "{n} samples, values just after each", turning)
+        yield Fact(Sentence("friction reverses"), text)
     if reactions.attrs["standing"]:
         contacts = Joined(tuple(map(contact_text, reactions.attrs["standing"].split("; "))))
         standing = Sentence(
-            "{contacts}: nothing moves there, friction is taken as {zero}", contacts=contacts, zero=Number(0)
+            "{contacts}: no motion there, friction is set to {zero}", contacts=contacts, zero=Number(0)
         )
         yield Fact(Sentence("no friction"), standing)
     solved = Sentence(
-        "off by {share} after at most {n} steps",
+        "residual {share} after at most {n} steps",
         share=Number(reactions.attrs["friction_residual"], digits=".1e"),
         n=Number(int(reactions.attrs["friction_iterations"])),
     )
@@ -267,15 +265,15 @@ def _residuals(reactions: xarray.Dataset) -> tuple[Fact, ...]:
     return (
         Fact(
             Sentence("equilibrium of links"),
-            Sentence("off by {share} of the greatest force", share=equilibrium),
+            Sentence("residual {share} of the greatest force", share=equilibrium),
         ),
         Fact(
             Sentence("sum over the frame"),
-            Sentence("off by {share} of the greatest force from the rates of momentum", share=frame),
+            Sentence("difference {share} of the greatest force from the rates of momentum", share=frame),
         ),
         Fact(
             Sentence("power balance"),
-            Sentence("off by {share} of the greatest power from virtual work", share=power),
+            Sentence("difference {share} of the greatest power from virtual work", share=power),
         ),
     )
 
@@ -533,8 +531,8 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
     """Kinetostatics: inertia, the table of joints, reactions at instants, the worst over the motion, checks."""
     mechanism, reactions = results.mechanism, results.reactions
     meaning = Sentence(
-        "{one} marks the link on which the reaction of a joint acts, {opposite} the one that bears its opposite; the"
-        " rows are the equations of equilibrium of the links.",
+        "{one} marks the link on which the reaction of a joint acts, {opposite} the link on which the opposite "
+        "force acts; rows correspond to the equilibrium equations of the links.",
         one=Number(1),
         opposite=Number(-1),
     )
@@ -544,8 +542,8 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
         "joint-components": Sentence("Forces in the hinges by components"),
         "centre-forces": Sentence("Forces of the centre of the sphere"),
         "other-reactions": Sentence("Reactions of guides, gears and wheels"),
-        "balancing": Sentence("What the drives must give"),
-        "friction": Sentence("What friction takes"),
+        "balancing": Sentence("Balancing moments and forces of the drives"),
+        "friction": Sentence("Losses to friction"),
         "frame-force": Sentence("Force and moment on the frame"),
         "bearing-loads": Sentence("Loads of the bearings on the bushes, in the axes of the frame"),
         "journal-loads": Sentence("Loads on the journals, in the axes of their links"),
@@ -555,7 +553,7 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
     extremes = loads_table(
         mechanism, loads, Sentence("Extremes are found between the samples too; means are over time.")
     )
-    losses = (Table(table.columns, Sentence("What friction takes")) for table in _losses(reactions))
+    losses = (Table(table.columns, Sentence("Losses to friction")) for table in _losses(reactions))
     sections = (
         Section(NOTHING, (*_relations(mechanism), FactTable(tuple(_facts(results))))),
         Section(Sentence("Table of joints"), (Paragraph(meaning), joints)),
@@ -571,8 +569,9 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
 def _relations(mechanism: Mechanism) -> tuple[Block, ...]:
     """Inertia as a force, equilibrium of every link, one list of constraints."""
     text = Sentence(
-        "With inertia counted as a force each link is in equilibrium. The reactions follow for all links together from"
-        " one system, in which every constraint is a row of derivatives and its reaction a multiplier $lambda$."
+        "With inertia forces included, each link is in equilibrium (d'Alembert's principle). One system gives "
+        "the reactions of all links; every constraint is a row of derivatives and its reaction a multiplier "
+        "$lambda$."
     )
     system = ("upright(bold(J))^upright(T) upright(bold(lambda))", "-upright(bold(Q))")
     inertia: tuple[tuple[Leaf, ...], ...] = (
@@ -593,7 +592,7 @@ def _instants(mechanism: Mechanism, instants: ReactionsAtInstants) -> Iterator[S
     for k in range(instants.reactions.sizes["sample"]):
         title = instant_title(mechanism, instants.motion, k)
         if not np.isfinite(instants.reactions["frame_force"].to_numpy()[k]).all():
-            missing = Sentence("The mechanism does not get there: there are no numbers.")
+            missing = Sentence("The mechanism does not reach this position: there are no values.")
             yield Section(title, (Paragraph(missing),))
             continue
         reactions = _instant_table(mechanism, instants.reactions, k, Sentence("Reactions"))
@@ -664,12 +663,12 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
         moment=Number(abs(moment), unit_hidden=True),
     )
     symbol = "M_upright(b)" if unit == "N m" else "F_upright(b)"
-    yield Paragraph(Sentence("By virtual work, at the constant rate of the drive:"))
+    yield Paragraph(Sentence("By virtual work, at the constant speed of the drive:"))
     yield Formula(((symbol, "1/2 J' dot(q)^2 - M", with_numbers, Number(work, unit, unit_fixed=True)),))
     balancing = float(reactions["balancing"].to_numpy().flat[0])
     if np.isfinite(balancing):
         yield Check(
-            Sentence("The reactions give the same to {share} of its terms."),
+            Sentence("The reactions give the same within {share} of its terms."),
             abs(work - balancing),
             abs(0.5 * slope * rate**2) + abs(moment),
             float(reactions["reaction_loss"]),
@@ -682,24 +681,26 @@ def _checks(reactions: xarray.Dataset) -> Iterator[Check]:
     allowed = float(np.max(loss, where=np.isfinite(loss) & (loss < 1.0), initial=0.0))
     for text, name in (
         (
-            Sentence("Equilibrium of every link is off by {share} of the greatest force."),
+            Sentence(
+                "The residual of the equilibrium of every link is at most {share} of the greatest force."
+            ),
             "equilibrium_residual",
         ),
         (
             Sentence(
-                "The sum over the frame is off from the rates of momentum by {share} of the greatest force."
+                "The sum over the frame differs from the rates of momentum by {share} of the greatest force."
             ),
             "frame_residual",
         ),
         (
-            Sentence("The power of the drives is off from virtual work by {share} of the greatest power."),
+            Sentence("The power of the drives differs from virtual work by {share} of the greatest power."),
             "power_residual",
         ),
     ):
         yield Check(text, float(reactions.attrs[name]), 1.0, allowed)
     if reactions.attrs["undetermined"]:
         text = Sentence(
-            "Constraints that repeat each other leave open: {names}. These have no numbers.",
+            "Redundant constraints leave undetermined: {names}. These have no values.",
             names=contacts_text(reactions.attrs["undetermined"]),
         )
         yield Check(text, 0.0, 1.0, 0.0)

@@ -137,7 +137,7 @@ def _number(value: float, unit: str) -> Text:
 def _label(mechanism: Mechanism, one: PartExtremes) -> Text:
     drives = Joined(tuple(map(Name, one.drives)))
     if one.variable == "inertia_matrix":
-        return Sentence("inertia {drives}", drives=drives)
+        return Sentence("inertia coefficient {drives}", drives=drives)
     if one.variable == "generalised_force":
         return Sentence("force by {drives}", drives=drives)
     if not one.label:
@@ -158,7 +158,7 @@ def _facts(results: ReductionResults) -> Iterator[Fact]:
     yield Fact(Sentence("loads"), Joined(loads) if loads else Sentence("none"))
     if "drive_rate" in reduction:
         yield Fact(Sentence("speed of the drive"), _speed(results))
-        yield Fact(Sentence("loads jump or bend at"), _jumps(results))
+        yield Fact(Sentence("jumps and kinks of the loads at"), _jumps(results))
     status = reduction["status"].to_numpy()
     counts = tuple(
         Joined((Sentence(STATUS_WORDS[Status(code)]), Number(int(np.sum(status == code)), digits="d")), " ")
@@ -309,14 +309,14 @@ def _chapter(results: ReductionResults) -> Chapter:
 def _meaning(results: ReductionResults) -> tuple[Block, ...]:
     if "reduced_inertia" not in results.reduction:
         text = Sentence(
-            "With several drives the masses make an inertia matrix and the loads a generalised force of each drive:"
-            " kinetic energy and power stay those of the mechanism."
+            "With several drives the masses give an inertia matrix and the loads a generalised force of each "
+            "drive: kinetic energy and power remain those of the mechanism."
         )
         lines: Lines = (("T", "1/2 sum_(i, k) M_(i k) dot(q)_i dot(q)_k"), ("P", "sum_i Q_i dot(q)_i"))
         return Paragraph(text), Formula(lines)
     text = Sentence(
-        "The mechanism is replaced by its drive alone, with an inertia $J(q)$ of the same kinetic energy and a moment"
-        " $M(q)$ of the same power. Primes are derivatives by the value $q$ of the drive."
+        "The mechanism is replaced by its drive alone, with an inertia $J(q)$ of the same kinetic energy and a "
+        "moment $M(q)$ of the same power. Primes denote derivatives with respect to the value $q$ of the drive."
     )
     if results.mechanism.space == "sphere":
         meaning = Sentence(
@@ -351,7 +351,7 @@ def _course(results: ReductionResults) -> Table:
             Column("instant", np.asarray(parameter.instants(data)), parameter.instant.unit, head),
             *quantities,
         ),
-        Sentence("Reduced inertia, its derivative and the reduced moment at even steps"),
+        Sentence("Reduced inertia, its derivative and the reduced moment at equal steps"),
         rows_shown(data.sizes["sample"]),
     )
 
@@ -368,7 +368,7 @@ def _sums(results: ReductionResults) -> Iterator[Section]:
 
 def _sums_at(mechanism: Mechanism, here: xr.Dataset, links: Sequence[LinkMotion]) -> Iterator[Block]:
     if not np.isfinite(float(here["reduced_inertia"])):
-        yield Paragraph(Sentence("The mechanism does not get there: there are no numbers."))
+        yield Paragraph(Sentence("The mechanism does not reach this position: there are no values."))
         return
     if links:
         yield _table_of_links(mechanism, links)
@@ -456,13 +456,15 @@ def _checks(here: xr.Dataset, links: Sequence[LinkMotion]) -> tuple[Check, Check
     inertia, slope = sum(one.reduced for one in links), sum(one.slope for one in links)
     return (
         Check(
-            Sentence("The inertia, summed up from the motion of the links, is off by {share} of it."),
+            Sentence("The reduced moment of inertia agrees with the sum over the links within {share}."),
             abs(inertia - float(here["reduced_inertia"])),
             inertia,
             allowed,
         ),
         Check(
-            Sentence("Its derivative, summed up likewise, is off by {share} of its greatest terms."),
+            Sentence(
+                "Its derivative agrees with the sum over the links within {share} of its greatest terms."
+            ),
             abs(slope - float(here["reduced_inertia_slope"])),
             sum(one.slope_terms for one in links),
             allowed,

@@ -206,7 +206,7 @@ def _closure(results: RollerPathResults) -> Text:
         return Sentence("the path ends where the follower stalls")
     if results.gap is not None:
         return Sentence(
-            "after a turn ρ is {gap} greater and the path has a kink of {kink}",
+            "after a turn ρ is {gap} larger and the path has a kink of {kink}",
             gap=Number(results.gap, "m", ".4g"),
             kink=angle(results.kink, ".4g"),
         )
@@ -321,8 +321,8 @@ def _rays(results: RollerPathResults) -> Iterator[Ray]:
 def _data(cam: Cam) -> Chapter:
     """What the cam is, and every number of its description."""
     text = Sentence(
-        "A roller rides on a fixed cam, led by a carrier that turns about the cam's centre. The curvature of the path"
-        " of its centre is given."
+        "A roller moves along a fixed cam, guided by a carrier that turns about the cam's centre. The curvature "
+        "of the path of its centre is given."
     )
     blocks = (Paragraph(text), FactTable(tuple(_given(cam))))
     return Chapter(Sentence("Data"), (Section(NOTHING, blocks),))
@@ -387,9 +387,9 @@ def _chapter(results: RollerPathResults) -> Chapter:
         ("pressure_sine", "eta"), ("pressure_sine_slope", "eta'"), ("law_curvature", "K"),
     ]  # fmt: skip
     residual, term = results.equation_residual
-    holds = Sentence("The equation of $eta$ holds along the path to {share} of its greatest term.")
+    holds = Sentence("The equation of $eta$ holds along the path within {share} of its greatest term.")
     over_range = (
-        course(results.dataset, variables, Sentence("The path at even steps of the carrier")),
+        course(results.dataset, variables, Sentence("The path at equal steps of the carrier")),
         Check(holds, residual, term, ROUNDED),
     )
     captions = {

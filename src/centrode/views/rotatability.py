@@ -75,7 +75,8 @@ def sheet(turning: Rotatability) -> Sheet:
 def repair_sheet(repair: Repair) -> Sheet:
     """What changes and by how much, what that reaches, and what was tried; the repaired mechanism as a file."""
     failure = Failure(
-        Sentence("no change was found after which it turns so"), Sentence("widen the bounds, or vary more")
+        Sentence("no change was found that satisfies the requirement"),
+        Sentence("widen the bounds, or vary more"),
     )
     return Sheet(
         facts=tuple(_repair_facts(repair)),
@@ -93,21 +94,23 @@ def cause_text(cause: Cause) -> Text:
     bodies = dict(zip(("one", "other"), map(_body, cause.bodies), strict=False))
     match cause.kind:
         case CauseKind.TURNS_BACK:
-            return Sentence("the positions of the group turn back: the determinant of its equations is zero")
+            return Sentence(
+                "the curve of positions of the group turns back: the determinant of its equations is zero"
+            )
         case CauseKind.POSITIONS_MEET:
-            return Sentence("positions of the group meet: the determinant of its equations is zero")
+            return Sentence("positions of the group coincide: the determinant of its equations is zero")
         case CauseKind.RODS_IN_LINE:
-            return _of_two_rods(cause, Sentence("{one} and {other} fall in line", **bodies))
+            return _of_two_rods(cause, Sentence("{one} and {other} are collinear", **bodies))
         case CauseKind.RODS_PARALLEL:
-            return _of_two_rods(cause, Sentence("{one} and {other} stand parallel", **bodies))
+            return _of_two_rods(cause, Sentence("{one} and {other} are parallel", **bodies))
         case CauseKind.RODS_ON_GREAT_CIRCLE:
             return _of_two_rods(cause, Sentence("{one} and {other} lie on one great circle", **bodies), "rad")
         case CauseKind.ROD_SQUARE:
-            return Sentence("{rod} stands square to {guide}", rod=bodies["one"], guide=bodies["other"])
+            return Sentence("{rod} is perpendicular to {guide}", rod=bodies["one"], guide=bodies["other"])
         case CauseKind.ROD_ALONG:
-            return Sentence("{rod} lies along {guide}", rod=bodies["one"], guide=bodies["other"])
+            return Sentence("{rod} is parallel to {guide}", rod=bodies["one"], guide=bodies["other"])
         case CauseKind.LINES_PARALLEL:
-            return Sentence("{one} and {other} are parallel: where they meet goes to infinity", **bodies)
+            return Sentence("{one} and {other} are parallel: their intersection goes to infinity", **bodies)
         case CauseKind.CIRCLES_TOUCH:
             return Sentence("the circles of {one} and {other} touch", **bodies)
         case CauseKind.NO_LENGTH:
@@ -117,13 +120,13 @@ def cause_text(cause: Cause) -> Text:
 
 
 def _of_two_rods(cause: Cause, line: Text, unit: str = "m") -> Text:
-    how = Sentence("stretched out") if cause.stretched else Sentence("folded over each other")
+    how = Sentence("extended") if cause.stretched else Sentence("folded")
     sentence = Sentence("{line}, {how}", line=line, how=how)
     if cause.distance is None:
         return sentence
     first, second = map(Name, cause.points)
     return Sentence(
-        "{sentence} ({first} and {second} are {apart} apart)",
+        "{sentence} (distance of {first} and {second}: {apart})",
         sentence=sentence,
         first=first,
         second=second,
@@ -136,13 +139,13 @@ def _of_aiming_link(cause: Cause) -> Text:
     names = dict(zip(("link", "guide"), (Name(name) for _tracer, name in cause.bodies), strict=True))
     names |= dict(zip(("pivot", "target"), map(Name, cause.points), strict=True))
     if cause.kind == CauseKind.WHEEL_NEAREST:
-        return Sentence("{link} cannot come nearer to the wheel about {target}", **names)
+        return Sentence("{link} cannot come closer to the wheel about {target}", **names)
     if cause.kind == CauseKind.PIN_AT_PIVOT:
-        return Sentence("{target} comes to the pivot {pivot} of {link}", **names)
+        return Sentence("{target} reaches the pivot {pivot} of {link}", **names)
     if cause.distance is None:
-        return Sentence("the arc from {pivot} to {target} stands square to guide {guide}", **names)
+        return Sentence("the arc from {pivot} to {target} is perpendicular to guide {guide}", **names)
     return Sentence(
-        "the line from {pivot} to {target} stands square to guide {guide}: {target} comes no nearer than {by}",
+        "the line from {pivot} to {target} is perpendicular to guide {guide}: {target} comes no closer than {by}",
         **names,
         by=Number(cause.distance, "m"),
     )
@@ -220,12 +223,12 @@ def _rule(loop: FourBar) -> Text:
     shortest = _link(loop.shortest)
     meaning = (
         Sentence(
-            "shortest and longest ({one}, {other}) against the others",
+            "shortest and longest link ({one}, {other}) compared with the two others",
             one=shortest,
             other=_link(rule.longest),
         )
         if rule.longest
-        else Sentence("shorter link {one} and offset against the longer one", one=shortest)
+        else Sentence("shorter link {one} plus offset compared with the longer link", one=shortest)
     )
     return Joined((sums, meaning), ": ")
 
@@ -271,15 +274,15 @@ class _Turning:
         if turning.turns_fully is None:
             return Sentence("a displacement does not turn")
         if not turning.turns_fully and not turning.limits:
-            return Sentence("no; it does not close all over the turn, though no limit was found")
+            return Sentence("no; the position does not close over the whole turn, though no limit was found")
         if not turning.turns_fully:
             return Sentence("no")
         if turning.period is None:
-            return Sentence("yes; not back in its position after two turns")
-        return Counted("yes, back after {n} turn", "yes, back after {n} turns", turning.period)
+            return Sentence("yes; it does not return to its position after two turns")
+        return Counted("yes, it returns after {n} turn", "yes, it returns after {n} turns", turning.period)
 
     def limit(self, limit: LimitFound) -> Iterator[Fact]:
-        label = Sentence("stops below") if limit.end == "low" else Sentence("stops above")
+        label = Sentence("lower limit") if limit.end == "low" else Sentence("upper limit")
         place = self.place(limit.value)
         yield Fact(label, Sentence("{place}, {group}", place=place, group=Name(limit.group)))
         yield Fact(NOTHING, _stop(limit.cause, limit.condition))
@@ -291,8 +294,8 @@ class _Turning:
             return
         parts: list[Text] = [
             Counted(
-                "{n}; assembled in number {own}",
-                "{n}; assembled in number {own}",
+                "{n}; the mechanism is assembled in number {own}",
+                "{n}; the mechanism is assembled in number {own}",
                 len(found.circuits),
                 own=Number(found.own + 1, digits="d"),
             ),
@@ -323,7 +326,7 @@ class _Turning:
         )
         if stroke.kind == "still":
             angular = stroke.unit == "rad"
-            yield Fact(label, Sentence("keeps its angle") if angular else Sentence("stands still"))
+            yield Fact(label, Sentence("constant angle") if angular else Sentence("at rest"))
             return
         if stroke.kind == "turns":
             yield Fact(label, self.turns(stroke))
@@ -347,7 +350,7 @@ class _Turning:
 
     def turns(self, stroke: LinkStroke) -> Text:
         if not stroke.turns or self.turning.period is None:
-            return Sentence("runs on")
+            return Sentence("rotates in one sense")
         text = Counted("turns {n} time in a period", "turns {n} times in a period", abs(stroke.turns))
         return Joined((text, Sentence(", against the drive")), "") if stroke.turns < 0 else text
 
@@ -376,7 +379,7 @@ class _Turning:
                 if point.driver == driver
             ]
             text = Sentence("driven at {driver}: {places}", driver=Name(driver), places=Joined(places, "; "))
-            yield Fact(NOTHING if number else Sentence("dead points"), text)
+            yield Fact(NOTHING if number else Sentence("dead positions"), text)
 
     def transmission(self, one: Transmission) -> Iterator[Fact]:
         least = _degrees(one.least if one.least > ROUNDING else 0.0)
@@ -431,7 +434,7 @@ def _uncounted(reason: Uncounted | None) -> Text:
 
 def _repair_facts(repair: Repair) -> Iterator[Fact]:
     yield Fact(
-        Sentence("asked for"),
+        Sentence("requirement"),
         Sentence(
             "turns fully, transmission angles of {angle} or more",
             angle=_degrees(repair.least_transmission_angle),
@@ -442,21 +445,21 @@ def _repair_facts(repair: Repair) -> Iterator[Fact]:
         yield Fact(Sentence("found"), Sentence("impossible: {reason}", reason=reason))
         return
     if repair.found and not repair.changes:
-        yield Fact(Sentence("found"), Sentence("it does so as it is"))
+        yield Fact(Sentence("found"), Sentence("the requirement is already satisfied"))
         yield _reached(repair)
         return
     if repair.found:
-        yield Fact(Sentence("found"), Sentence("a change of size {size}", size=Number(repair.size)))
+        yield Fact(Sentence("found"), Sentence("a change of magnitude {size}", size=Number(repair.size)))
         for change in repair.changes:
             yield Fact(Name(change.path), _change(change))
         yield _reached(repair)
     else:
-        none = Sentence("none within the bounds; that does not say that there is none")
+        none = Sentence("none found within the bounds; this does not prove that none exists")
         yield Fact(Sentence("found"), none)
     yield Fact(
         Sentence("tried"),
         Sentence(
-            "{tried}; of the {spread} spread over the bounds {turning} turn so",
+            "{tried}; of the {spread} spread over the bounds {turning} are feasible",
             tried=Counted("{n} candidate", "{n} candidates", repair.tried),
             spread=Number(repair.spread, digits="d"),
             turning=Number(repair.turning, digits="d"),
@@ -483,8 +486,8 @@ def impossibility_text(reason: Impossibility) -> Text:
     if len(reason.rods) == 2:
         one, other = map(Name, reason.rods)
         return Sentence(
-            "{inequality}: {low} > {high}; the slider's stroke is at least twice the crank, and no way so long and"
-            " straight lies between the least and the greatest reach of {one} and {other}",
+            "{inequality}: {low} > {high}; the slider's stroke is at least twice the crank's length, and no "
+            "straight path of this length lies between the least and the greatest reach of {one} and {other}",
             inequality=Expression(
                 "{crank} > 2 sqrt({one} {other} cos {angle})", crank=crank, one=one, other=other, angle=angle
             ),
@@ -496,16 +499,14 @@ def impossibility_text(reason: Impossibility) -> Text:
     rod = Name(reason.rods[0])
     offset = " + e" if reason.offset else ""
     return Sentence(
-        "{inequality}: {low} > {high}{remark}; over a turn the crank's pin comes so far from the guide, and {rod}"
-        " does not reach so far",
+        "{inequality}: {low} > {high}{remark}; over a turn the crank's pin moves farther from the guide than "
+        "{rod} reaches",
         inequality=Expression(
             f"{{crank}}{offset} > {{rod}} cos {{angle}}", crank=crank, rod=rod, angle=angle
         ),
         low=low,
         high=high,
-        remark=Sentence(" (e = {e}, which nothing changes)", e=Number(reason.offset, "m"))
-        if reason.offset
-        else NOTHING,
+        remark=Sentence(" (e = {e}, not varied)", e=Number(reason.offset, "m")) if reason.offset else NOTHING,
         rod=rod,
     )
 
@@ -527,9 +528,9 @@ def _repair_blocks(found: RotatabilityResults) -> Iterator[Block]:
     """The smallest change after which the drive turns fully, or why there is none."""
     repair = found.repair
     if repair is None:
-        yield Paragraph(Sentence("No repair was looked for: {reason}", reason=Name(str(found.refusal))))
+        yield Paragraph(Sentence("No repair was sought: {reason}", reason=Name(str(found.refusal))))
         return
-    yield Paragraph(Sentence("A change of the description was looked for after which the drive turns fully."))
+    yield Paragraph(Sentence("A change of the dimensions was sought after which the drive turns fully."))
     yield FactTable(tuple(_repair_facts(repair)))
     if repair.repaired is not None:
         turns = repair.after is not None and repair.after.turns_fully is True

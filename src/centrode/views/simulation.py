@@ -64,12 +64,12 @@ SCHEMES = {
     "runge-kutta-4": Sentence("Runge-Kutta of fourth order, fixed steps"),
 }
 OCCASIONS = {
-    "turns_back": Sentence("it turns back"),
-    "sticks": Sentence("it sticks"),
-    "breaks_loose": Sentence("it breaks loose"),
-    "limit": Sentence("it comes to a limit"),
-    "change_point": Sentence("it comes to a change point"),
-    "standstill": Sentence("it comes to a standstill"),
+    "turns_back": Sentence("reversal"),
+    "sticks": Sentence("stopped by friction"),
+    "breaks_loose": Sentence("breakaway"),
+    "limit": Sentence("limit"),
+    "change_point": Sentence("change point"),
+    "standstill": Sentence("final stop"),
 }
 IN_TABLE = (
     ("time", "t"),
@@ -89,7 +89,7 @@ PANELS = {
     ),
 }
 TITLES = {
-    "simulation-speed": Sentence("Speed of the drive and what moves it"),
+    "simulation-speed": Sentence("Speed of the drive and the moments on it"),
     "simulation-phase": Sentence("Speed over the value of the drive"),
     "simulation-energies": Sentence("Energies and works"),
 }
@@ -160,10 +160,10 @@ def _ending(run: xr.Dataset) -> Text:
     time = Number(float(run["time"].to_numpy()[-1]), "s")
     return {
         "duration": Sentence("after {time}", time=time),
-        "turns": Sentence("after the turns asked for, in {time}", time=time),
+        "turns": Sentence("after the given number of turns, in {time}", time=time),
         "limit": Sentence("at a limit of the mechanism, after {time}", time=time),
         "change point": Sentence("at a change point, where its path ends, after {time}", time=time),
-        "standstill": Sentence("it stands still; {time} are shown", time=time),
+        "standstill": Sentence("the machine has stopped; {time} are shown", time=time),
         "interrupted": Sentence("interrupted at {time}", time=time),
     }[run.attrs["ended"]]
 
@@ -225,7 +225,7 @@ def _regime_facts(results: SimulationResults) -> tuple[Fact, ...]:
         return tuple(_of_regime(results.regime))
     if not results.no_regime:
         return ()
-    reason = Sentence("none is found: {reason}", reason=Name(results.no_regime))
+    reason = Sentence("none found: {reason}", reason=Name(results.no_regime))
     return (Fact(Sentence("steady regime"), reason),)
 
 
@@ -242,7 +242,7 @@ def _of_regime(regime: Regime) -> Iterator[Fact]:
     yield Fact(Sentence("least speed"), _speed_at(regime.least_speed, regime.least_at))
     yield Fact(Sentence("greatest speed"), _speed_at(regime.greatest_speed, regime.greatest_at))
     mean = Number(regime.mean_speed, "rad/s", unit_fixed=True)
-    yield Fact(Sentence("mean speed"), Sentence("{speed} (turns over time)", speed=mean))
+    yield Fact(Sentence("mean speed"), Sentence("{speed} (average over time)", speed=mean))
     yield Fact(Sentence("fluctuation"), Number(regime.fluctuation))
     yield Fact(Sentence("mean driving moment"), Number(regime.driving_moment, "N m"))
     yield Fact(Sentence("stability"), _stability(regime))
@@ -258,13 +258,13 @@ def _speed_at(speed: float, value: float) -> Text:
 
 def _stability(regime: Regime) -> Text:
     if regime.indifferent:
-        return Sentence("any speed comes back: it runs up to none")
+        return Sentence("every speed repeats after a period: there is no limit cycle")
     if regime.multiplier > 1.0:
-        return Sentence("a deviation of the speed does not die away")
+        return Sentence("a deviation of the speed does not decay")
     if abs(regime.multiplier) < NO_DEVIATION:
-        return Sentence("nothing of a deviation is left after a period")
+        return Sentence("a deviation vanishes within one period")
     share = Number(regime.multiplier, digits=".3g")
-    return Sentence("{share} of a deviation is left after a period", share=share)
+    return Sentence("{share} of a deviation remains after one period", share=share)
 
 
 # Figures
@@ -303,7 +303,8 @@ def _panel(run: xr.Dataset, variables: Sequence[str]) -> CurvePanel:
 def _chapter(results: SimulationResults) -> Chapter:
     """The motion under loads and a drive, and the steady regime."""
     text = Sentence(
-        "The drive is not led: its motion follows from the reduced inertia and the reduced moments of drive and loads."
+        "The motion of the drive is not prescribed: it follows from the reduced moment of inertia and the "
+        "reduced moments of drive and loads."
     )
     equation = Formula((("J dot.double(q) + 1/2 J' dot(q)^2", "M_upright(d) + M"),))
     sections = (
@@ -328,7 +329,7 @@ def _course(run: xr.Dataset) -> Table:
         for name, letter in IN_TABLE
         if name in run.variables
     )
-    return Table(columns, Sentence("The motion at even steps of time"), rows_shown(run.sizes["sample"]))
+    return Table(columns, Sentence("The motion at equal steps of time"), rows_shown(run.sizes["sample"]))
 
 
 def _energy_check(results: SimulationResults) -> Iterator[Check]:
@@ -342,7 +343,7 @@ def _energy_check(results: SimulationResults) -> Iterator[Check]:
     steps = int(run.attrs["evaluations"]) / EVALUATIONS
     yield Check(
         Sentence(
-            "Works and energies do not account for {share} of the greatest of them, over the whole motion."
+            "Residual of the energy balance over the whole motion: {share} of the greatest work or energy."
         ),
         float(np.abs(run["energy_residual"].to_numpy()).max()),
         float(max(works)),

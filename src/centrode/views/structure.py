@@ -90,7 +90,8 @@ def facts(checked: MechanismCheck) -> Iterator[Fact]:
     for number, group in enumerate(checked.groups):
         yield Fact(NOTHING if number else Sentence("groups"), _group(group))
     closes = Sentence(
-        "closes to {residual} of the greatest length", residual=Number(checked.initial_residual, digits=".1e")
+        "closes within {residual} of the greatest length",
+        residual=Number(checked.initial_residual, digits=".1e"),
     )
     yield Fact(Sentence("initial position"), closes)
 
@@ -111,7 +112,7 @@ def _group(group: AssurGroup) -> Text:
     if group.roman == "I":
         return Sentence("{name}: input, class I", name=name)
     if group.roman == "0":
-        return Sentence("{name}: follows, repeats other links", name=name)
+        return Sentence("{name}: passive link, repeats other links", name=name)
     return Sentence(
         "{name}: class {roman}, order {order}, {kind}",
         name=name,
@@ -125,7 +126,7 @@ def _plan(checked: MechanismCheck) -> Iterator[Fact]:
     """The steps of the solution."""
     for number, step in enumerate(checked.plan):
         text = Joined((_whole(number + 1), Name(step)), ". ")
-        yield Fact(NOTHING if number else Sentence("plan"), text)
+        yield Fact(NOTHING if number else Sentence("order of solution"), text)
 
 
 # Chapter
@@ -193,7 +194,10 @@ def _mobility(checked: MechanismCheck) -> Iterator[Block]:
     yield Formula((("W", "3 n - 2 p_5 - p_4", numbers, _whole(count.mobility)),))
     if checked.redundant:
         listed = Joined(tuple(map(Name, checked.redundant)))
-        text = Sentence("Redundant constraints, which only have to fit: {constraints}.", constraints=listed)
+        text = Sentence(
+            "Redundant constraints (their dimensions have to be consistent with the others): {constraints}.",
+            constraints=listed,
+        )
         yield Paragraph(text)
     rank = Sentence(
         "The rank of the Jacobian of all constraints at real positions gives the mobility {rank}, as many as there are"
@@ -227,7 +231,7 @@ def _groups(checked: MechanismCheck) -> Iterator[Block]:
     yield Table(columns, Sentence("Groups in the order of solving"))
     yield Items(tuple(map(Name, checked.plan)), numbered=True)
     closes = Sentence(
-        "The initial position closes to {residual} of the greatest length.",
+        "The initial position closes within {residual} of the greatest length.",
         residual=Number(checked.initial_residual, digits=".1e"),
     )
     yield Check(closes, checked.initial_residual, 1.0, CLOSES)

@@ -29,8 +29,8 @@ def sheet(results: SweepResults) -> Sheet:
     """How many mechanisms, how far they move, how well they close, extremes of what is reduced; the table of these."""
     data = results.data
     failure = Failure(
-        Sentence("no mechanism is ok at any sample"),
-        Sentence("ask for another range, or change what varies"),
+        Sentence("no mechanism has a valid sample"),
+        Sentence("choose another range, or change what varies"),
     )
     return Sheet(
         facts=tuple(_facts(data)),

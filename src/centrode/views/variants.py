@@ -244,7 +244,7 @@ def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
             tuple(_orders(links, (("phi", "rad"), ("omega", "rad/s"), ("epsilon", "rad/s^2")))),
         ),
         Section(Sentence("Points"), tuple(_orders(points, speeds))),
-        Section(Sentence("What the drives must give"), tuple(drives)),
+        Section(Sentence("Balancing moments and forces of the drives"), tuple(drives)),
     )
     return Chapter(_title(variants, instant), tuple(section for section in sections if section.blocks))
 

@@ -82,7 +82,7 @@ def _facts(results: WalkingWheelResults) -> tuple[Fact, ...]:
 
 def _travel(results: WalkingWheelResults, wheel: WheelMover) -> Iterator[Fact]:
     rates = wheel.rates
-    legs = Sentence("{count}, each stands over ±{half}", count=Number(wheel.legs), half=angle(wheel.half))
+    legs = Sentence("{count}, each in contact over ±{half}", count=Number(wheel.legs), half=angle(wheel.half))
     yield Fact(Sentence("legs"), legs)
     yield Fact(Sentence("height of the hub"), Number(wheel.height, "m"))
     turn = Number(wheel.step * wheel.legs, "m")
@@ -118,7 +118,8 @@ def _rolling(results: WalkingWheelResults, wheel: WheelMover, proof: WheelRollin
     """The proof: level, without slip; what else keeps the wheel going."""
     level = Number(proof.level, "m", ".2g")
     yield Fact(
-        Sentence("level"), Sentence("the shoe put on the ground holds the hub level to {error}", error=level)
+        Sentence("level"),
+        Sentence("with the shoe on the ground the height of the hub is constant within {error}", error=level),
     )
     if results.uneven:
         where = Joined(
@@ -134,7 +135,7 @@ def _rolling(results: WalkingWheelResults, wheel: WheelMover, proof: WheelRollin
     )
     yield Fact(Sentence("no slip"), slip)
     lengths = Sentence(
-        "arc of the shoe {arc}, ground travelled {ground}, apart by {apart}",
+        "arc of the shoe {arc}, ground travelled {ground}, difference {apart}",
         arc=Number(proof.shoe_arc, "m", ".10g"),
         ground=Number(proof.ground, "m", ".10g"),
         apart=Number(abs(proof.shoe_arc - proof.ground), "m", ".2g"),
@@ -147,7 +148,7 @@ def _rolling(results: WalkingWheelResults, wheel: WheelMover, proof: WheelRollin
     if not _digs(wheel, proof):
         yield Fact(Sentence("returning legs"), Sentence("clear of the ground"))
     if not _overlap(wheel, proof):
-        apart = Sentence("{room} apart", room=Number(proof.room, "m"))
+        apart = Sentence("clearance {room}", room=Number(proof.room, "m"))
         yield Fact(Sentence("neighbouring rollers"), apart)
 
 
@@ -181,8 +182,8 @@ def _failure(results: WalkingWheelResults) -> Failure | None:
     if _overlap(wheel, proof):
         texts.append(
             Sentence(
-                "the rollers of neighbouring legs overlap by {depth} where one leg is at {at}; take smaller rollers or"
-                " fewer legs",
+                "the rollers of neighbouring legs overlap by {depth} where one leg is at {at}; use smaller "
+                "rollers or fewer legs",
                 depth=Number(-proof.room, "m"),
                 at=angle(proof.room_at),
             )
@@ -253,9 +254,9 @@ def _chapter(results: WalkingWheelResults) -> Chapter:
 
 def _proof(wheel: WheelMover, proof: WheelRolling) -> Iterator[Check]:
     """Level, without slip, equal arcs: by the shoe's curve alone, put on the ground."""
-    level = Sentence("The shoe on the ground holds the hub level to {share} of its height.")
+    level = Sentence("The shoe on the ground keeps the height of the hub constant within {share} of it.")
     yield Check(level, proof.level, wheel.height, ROUNDED)
     slip = Sentence("The shoe's point at the contact moves at {share} of the speed of the hub.")
     yield Check(slip, proof.slip, 1.0, ROUNDED)
-    arcs = Sentence("The arc of the shoe is as long as the ground travelled, to {share} of it.")
+    arcs = Sentence("The arc of the shoe equals the ground travelled, within {share} of it.")
     yield Check(arcs, abs(proof.shoe_arc - proof.ground), wheel.print_length, ROUNDED)

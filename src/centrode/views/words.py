@@ -48,14 +48,15 @@ def sheet(operation: PrincipleOfOperation) -> Sheet:
 def _on_freedom(operation: PrincipleOfOperation) -> Iterator[Text]:
     """Mobility, redundant constraints, and whether the drive turns fully."""
     yield Counted(
-        "The mobility is {n}: one drive determines the place of every link.",
-        "The mobility is {n}: {n} drives together determine the place of every link.",
+        "The mobility is {n}: one drive determines the position of every link.",
+        "The mobility is {n}: {n} drives together determine the position of every link.",
         operation.mobility,
     )
     redundant = [Name(constraint.label) for constraint in operation.structure.redundant]
     if redundant:
         yield Sentence(
-            "Redundant constraints, which only have to fit: {constraints}.", constraints=Joined(redundant)
+            "Redundant constraints (their dimensions have to be consistent with the others): {constraints}.",
+            constraints=Joined(redundant),
         )
     turning, limits = operation.rotatability, operation.first_limits
     if turning.turns_fully:
@@ -140,7 +141,7 @@ SLIDING_LINKS = {
     "inclined": Sentence(
         "Link {link} moves along a fixed guide at {angle} to the horizontal without turning."
     ),
-    "circle": Sentence("Link {link} moves along a fixed circle without turning against it."),
+    "circle": Sentence("Link {link} moves along a fixed circle without turning relative to it."),
 }
 ROLLING = {
     ("line", True): Sentence("Wheel {wheel} rolls without slip on a fixed straight track."),
@@ -239,7 +240,7 @@ def _on_guide(mechanism: Mechanism, guide: Guide) -> Text:
         sentences = SLIDING_LINKS if own else SLIDERS if links else LONE_SLIDERS
         return sentences[way].fill(**place)
     if own:
-        return Sentence("Link {link} slides along link {on} and does not turn against it.", **place)
+        return Sentence("Link {link} slides along link {on} and does not turn relative to it.", **place)
     if links:
         return Sentence("A slider, hinged to {links} in {point}, moves along link {on}.", **place)
     if guide.point in mechanism.frame.points:
@@ -363,8 +364,8 @@ DRIVEN = {
     ("link", False): Sentence("Link {link} is driven: it turns about {pivot} by a given law."),
     ("free", True): Sentence("Link {link} is driven: its angle changes at a constant {speed}."),
     ("free", False): Sentence("Link {link} is driven: its angle follows a given law."),
-    ("relative", True): Sentence("Link {link} is driven against link {base} at a constant {speed}."),
-    ("relative", False): Sentence("Link {link} is driven against link {base} by a given law."),
+    ("relative", True): Sentence("Link {link} is driven relative to link {base} at a constant {speed}."),
+    ("relative", False): Sentence("Link {link} is driven relative to link {base} by a given law."),
     ("slider", True): Sentence("The slider in {point} is driven along its guide at a constant {speed}."),
     ("slider", False): Sentence("The slider in {point} is driven along its guide by a given law."),
     ("guided", True): Sentence("Link {link} is driven along its guide at a constant {speed}."),
@@ -432,7 +433,7 @@ FOLLOWERS = {
     "moves": Sentence(
         "Coupler {coupler} passes the motion on to link {follower}, which turns about {pivot}."
     ),
-    "still": Sentence("Coupler {coupler} leads to link {follower}, which does not turn."),
+    "still": Sentence("Coupler {coupler} is connected to link {follower}, which does not turn."),
 }
 
 
@@ -449,7 +450,7 @@ def _on_motion(structure: Structure, roles: LinkRoles) -> Iterator[Text]:
                 (roman for members, roman in classes.items() if set(group.links) <= set(members)), ""
             )
             yield Sentence(
-                "Links {links} form a group of class {roman}: none of them can be placed without the others.",
+                "Links {links} form a group of class {roman}: their positions are found together.",
                 links=_links(group.links),
                 roman=Name(roman),
             )
@@ -470,7 +471,7 @@ def _on_group(structure: Structure, roles: LinkRoles, group: Group, named: set[s
         yield from _on_turned_link(roles, group)
     elif isinstance(group, TwoPointLink):
         yield Sentence(
-            "Link {link}, hinged in {first} and {second}, only follows: without it everything else moves the same.",
+            "Link {link}, hinged in {first} and {second}, is passive: without it the motion is the same.",
             link=quoted_name(group.link),
             first=Name(group.first),
             second=Name(group.second),
@@ -516,7 +517,9 @@ def _on_meeting(structure: Structure, roles: LinkRoles, group: Meet) -> Iterator
     elif rods:
         yield Sentence("Link {link} follows.", link=quoted_name(rods[0].link))
     elif not group.is_input:
-        yield Sentence("The slider in {point} is led by both its guides.", point=Name(group.points[0]))
+        yield Sentence(
+            "Both guides determine the position of the slider in {point}.", point=Name(group.points[0])
+        )
 
 
 def _moved_by_cylinder(roles: LinkRoles, cylinder: str, link: str) -> Text:
@@ -550,9 +553,9 @@ def _on_carriage(roles: LinkRoles, group: Meet) -> Iterator[Text]:
     guides = [guide for guide in roles.mechanism.guides if guide.link == link and guide.on == FRAME]
     if guides and guides[0].id in roles.strokes:
         text = (
-            Sentence("Link {link} moves to and fro along its guide; its stroke is {stroke}.")
+            Sentence("Link {link} reciprocates along its guide; its stroke is {stroke}.")
             if roles.comes_back(guides[0].id)
-            else Sentence("Link {link} moves along its guide, by {stroke} in all.")
+            else Sentence("Link {link} moves along its guide by {stroke} in total.")
         )
         yield text.fill(link=quoted_name(link), stroke=_length(roles.mechanism, roles.strokes[guides[0].id]))
     elif guides:
@@ -611,9 +614,9 @@ def _on_slider(roles: LinkRoles, rod: Rod, rail: Rail) -> Text:
         return Sentence("Coupler {coupler} moves the slider in {point} along its guide.", **place)
     text = (
         Sentence(
-            "Coupler {coupler} moves the slider in {point} to and fro along its guide; its stroke is {stroke}."
+            "Coupler {coupler} reciprocates the slider in {point} along its guide; its stroke is {stroke}."
         )
         if roles.comes_back(guide.id)
-        else Sentence("Coupler {coupler} moves the slider in {point} along its guide, by {stroke} in all.")
+        else Sentence("Coupler {coupler} moves the slider in {point} along its guide, by {stroke} in total.")
     )
     return text.fill(stroke=_length(roles.mechanism, roles.strokes[guide.id]), **place)

@@ -89,8 +89,8 @@ def _construct(group: Group, stage: ConstructionStage) -> tuple[list[str], Trian
         case Train():
             return _train(stage, group), None
         case Newton():
-            what = _("the construction does not apply to it")
-            raise InputError(group.sentence, what, _("take it from the motion"))
+            what = _("this construction cannot be used here")
+            raise InputError(group.sentence, what, _("use the values of the motion"))
         case _:
             assert_never(group)
 

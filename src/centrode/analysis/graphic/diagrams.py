@@ -52,7 +52,7 @@ def chosen_scale(name: str, extent: float, room: float, scales: Mapping[str, flo
         if other not in NAMES:
             raise InputError(
                 "scales",
-                _("{name} is no scale").format(name=other),
+                _("{name} is not a scale").format(name=other),
                 _("one of: {names}").format(names=", ".join(NAMES)),
             )
     given = scales.get(name)
@@ -66,7 +66,7 @@ def chosen_scale(name: str, extent: float, room: float, scales: Mapping[str, flo
         raise InputError(
             f"scales, {name}",
             _("the drawing would be {size:.4g} mm long").format(size=extent / given),
-            _("take at least {least:g} a millimetre").format(least=round_scale(extent, PAGE)),
+            _("use at least {least:g} per millimetre").format(least=round_scale(extent, PAGE)),
         )
     return given
 
@@ -253,13 +253,13 @@ def diagrams(
         The sphere, where diagrams do not apply; a group that needs more than two trials; steps out of range; scales
         with which a drawing does not go on the page.
     MotionError
-        The mechanism does not close there, or stands at a limit, a change point or a dead point.
+        The mechanism does not close there, or stands at a limit, a change point or a dead position.
     """
     if mechanism.space != "plane":
         raise InputError(
             "space",
             _("velocity and acceleration diagrams do not apply on the sphere"),
-            _("take velocities from the motion"),
+            _("use the velocities of the motion"),
         )
     refuses_bare = mechanism.display.refuses_bare_angles
     board = DrawingBoard(_step(angle_step, "angle", refuses_bare=refuses_bare), _step(length_step, "length"))
@@ -298,7 +298,7 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
     if status not in (Status.OK, Status.CUT_OFF):
         raise MotionError(
             "at",
-            _("at {at:.9g} the mechanism is {status}: there is nothing to construct").format(
+            _("at {at:.9g} the mechanism is {status}: nothing can be constructed").format(
                 at=at, status=status_word(status)
             ),
             _("choose another instant"),

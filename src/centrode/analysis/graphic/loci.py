@@ -494,7 +494,7 @@ def _interpolate_trial(values: Array, misfits: Array) -> Array:
     if not sizes.all() or np.linalg.cond(slopes / sizes) > 1 / SINGULAR:
         raise MotionError(
             "",
-            _("the trials all fit alike: the group stands at a dead point"),
+            _("all trials fit equally well: the group is in a dead position"),
             _("choose another instant, or a finer reading step"),
         )
     return np.asarray(values[0] - np.linalg.solve(slopes, misfits[0]))
@@ -567,8 +567,10 @@ def open_up(structure: Structure, group: Newton) -> Opened:
                     return Opened(chosen, turned, groups)
     raise InputError(
         group.sentence,
-        _("the method of false position does not apply: two trials at once do not make dyads of the group"),
-        _("take velocities from the motion"),
+        _(
+            "the method of false position does not apply: two simultaneous trials do not split the group into dyads"
+        ),
+        _("use the velocities of the motion"),
     )
 
 

@@ -48,7 +48,7 @@ def graphic_analysis(
     Parameters
     ----------
     instants : values of the drive [rad or m], times [s], or texts with a unit, as `at` of `motion`; those of
-        the study if left out, else the initial position
+        the study by default, else the initial position
     angle_step, length_step, scales : as of `graphic_check`
     incomplete : an instant that cannot be drawn fails alone, and the others are drawn
 
@@ -89,6 +89,6 @@ def need_few_instants(_mechanism: Mechanism, *, instants: Sequence[float] = (), 
     if len(instants) > MOST_INSTANTS:
         raise InputError(
             "--at",
-            _("{count} instants were asked for").format(count=len(instants)),
-            _("ask for at most {most}").format(most=MOST_INSTANTS),
+            _("{count} instants are given").format(count=len(instants)),
+            _("give at most {most}").format(most=MOST_INSTANTS),
         )

@@ -39,13 +39,13 @@ class DrawingBoard:
         if self.angle_step is not None and not 0.0 < self.angle_step <= COARSEST_ANGLE:
             raise InputError(
                 "angle_step",
-                _("a reading step of {step:g} rad is none").format(step=self.angle_step),
+                _("a reading step of {step:g} rad is not allowed").format(step=self.angle_step),
                 _("give one above 0 and at most 30 deg"),
             )
         if self.paper_step is not None and not 0.0 < self.paper_step <= COARSEST_LENGTH:
             raise InputError(
                 "length_step",
-                _("a reading step of {step:g} m is none").format(step=self.paper_step),
+                _("a reading step of {step:g} m is not allowed").format(step=self.paper_step),
                 _("give one above 0 and at most 10 mm on paper"),
             )
 
@@ -78,7 +78,7 @@ def meet(first: complex, along: complex, second: complex, other: complex) -> com
     if abs(sine) < PARALLEL:
         raise MotionError(
             "",
-            _("two lines of the construction are parallel: the group stands at a dead point"),
+            _("two lines of the construction are parallel: the group is in a dead position"),
             _("choose another instant, or a finer reading step"),
         )
     # Cramer's rule, with unit vectors: the sine is the determinant

@@ -193,7 +193,7 @@ def refuse_batch(motion: xr.Dataset) -> None:
     """Refuse several mechanisms where one is meant."""
     if BATCH in motion.dims:
         raise InputError(
-            "vary", _("this is asked of one mechanism"), _("select one: motion.isel(mechanism=0)")
+            "vary", _("this is computed for one mechanism only"), _("select one: motion.isel(mechanism=0)")
         )
 
 

@@ -192,14 +192,14 @@ class Case(IntEnum):
 
 _WORDS: Mapping[Case, str] = {
     Case.ABSENT: mark("no position"),
-    Case.REST: mark("at rest against each other"),
+    Case.REST: mark("at rest relative to each other"),
     Case.HINGE: mark("common hinge"),
     Case.ROLLING: mark("rolling contact"),
     Case.DIRECTIONS: mark("two velocity directions"),
     Case.SAME_SENSE: mark("parallel velocities, same sense"),
     Case.OPPOSITE_SENSE: mark("parallel velocities, opposite sense"),
     Case.TRANSLATION: mark("equal velocities: translation"),
-    Case.STANDSTILL: mark("a point that stands still"),
+    Case.STANDSTILL: mark("a point at rest"),
 }
 
 
@@ -314,7 +314,7 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
         As `motion` returns it; a batch too.
     pairs : sequence of (body, body), optional
         Names of links, "frame", or sliders ("slider C": a point on a guide without a link of its own). All
-        pairs if left out, each the later body against the earlier one.
+        pairs by default, each the later body against the earlier one.
 
     Returns
     -------
@@ -423,9 +423,9 @@ def number_pairs(bodies: Named, pairs: Sequence[tuple[str, str]] | None) -> list
     for first, second in pairs:
         pair = bodies.number(first), bodies.number(second)
         if pair[0] == pair[1]:
-            what = _("{name} has no centre against itself")
+            what = _("{name} has no centre relative to itself")
             if first == FRAME:
-                what = _("the frame has no centre against itself")
+                what = _("the frame has no centre relative to itself")
             raise InputError("pair", what.format(name=first), _("name two bodies"))
         numbers.append(pair)
     return numbers
@@ -439,5 +439,5 @@ def _check_size(bodies: Named, pairs: int) -> None:
             _("{pairs} pairs at {samples} samples are more than fits into memory").format(
                 pairs=pairs, samples=samples
             ),
-            _('name the pairs that matter, as in pairs=[("AC", "frame")], or ask for fewer samples'),
+            _('name the pairs that matter, as in pairs=[("AC", "frame")], or choose fewer samples'),
         )

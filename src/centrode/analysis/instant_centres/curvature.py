@@ -60,7 +60,7 @@ def curvature(
     link, against : str
         Bodies: links, "frame", sliders ("slider C"); the paths are those that `against` sees.
     at : (n,) values of the drive [rad or m], times [s] where it is a law or there are several, or texts with a unit
-        Of a motion its samples if left out.
+        Of a motion its samples by default.
     points : name -> (x, y) [m], optional
         Further points of the link, in its own axes.
 
@@ -97,14 +97,14 @@ def curvature(
     mechanism, places = _source_mechanism(source, at)
     if mechanism.space == "sphere":
         raise NotComputedYet(
-            "space", _("curvature is not computed on the sphere"), _("ask for a planar mechanism")
+            "space", _("curvature is not computed on the sphere"), _("choose a planar mechanism")
         )
     for name in (link, against):
         _check_body(mechanism, name)
     if link == against:
-        what = _("{name} does not move against itself")
+        what = _("{name} does not move relative to itself")
         if link == FRAME:
-            what = _("the frame does not move against itself")
+            what = _("the frame does not move relative to itself")
         raise InputError("link", what.format(name=link))
     prepared = ready(mechanism)
     if places is None:

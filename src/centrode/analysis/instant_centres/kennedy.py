@@ -419,16 +419,16 @@ def construct_centres(
     if len(everything.names) > MOST_BODIES:
         raise InputError(
             "pair",
-            _("the construction takes up to {most} bodies, this mechanism has {count}").format(
+            _("the construction handles at most {most} bodies, this mechanism has {count}").format(
                 most=MOST_BODIES, count=len(everything.names)
             ),
-            _("centres from the velocity field are given for any pairs"),
+            _("use the centres from the velocity field, which are given for any pair"),
         )
     if not -len(everything.rate) <= sample < len(everything.rate):
         raise InputError("sample", _("there is no sample {sample}").format(sample=sample))
     if not np.isfinite(everything.rate[sample]):
         raise InputError(
-            "at", _("the mechanism has no position with velocities there"), _("ask for another one")
+            "at", _("the mechanism has no position with velocities there"), _("choose another sample")
         )
     residual = float(motion["residual"][sample])
     construction = _Constructing(spots_of(everything.sample(sample)), residual).run()

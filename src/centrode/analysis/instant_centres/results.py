@@ -214,7 +214,7 @@ def require_velocities(course: xr.Dataset) -> None:
             _("at {n} of {all} places there are no velocities ({status})").format(
                 n=len(absent), all=course.sizes["sample"], status=status_word(absent[0])
             ),
-            _("ask for places between the limits"),
+            _("choose positions between the limits"),
         )
 
 
@@ -222,11 +222,13 @@ def require_centres(curves: xr.Dataset) -> None:
     """Raise MotionError if a link has no instant centre against the other body at any sample of its `centrodes`."""
     if not (curves["centrode_piece"] >= 0).any():
         link, other = str(curves.attrs["link"]), str(curves.attrs["against"])
-        what = _("{link} has no centre against {other} in this range: it translates, or does not move")
+        what = _("{link} has no centre relative to {other} in this range: it translates, or does not move")
         if FRAME in (link, other):
             # the centre is that of the pair, whichever of the two is said to move
             link = other if link == FRAME else link
-            what = _("{link} has no centre against the frame in this range: it translates, or does not move")
+            what = _(
+                "{link} has no centre relative to the frame in this range: it translates, or does not move"
+            )
         raise MotionError(
             "",
             what.format(link=link, other=other),

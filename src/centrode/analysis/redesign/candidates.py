@@ -76,7 +76,9 @@ def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None)
     for path in bounds or {}:
         if path not in paths:
             raise InputError(
-                "bounds", _("{path} is not among what varies").format(path=path), _("name it in vary as well")
+                "bounds",
+                _("{path} is not one of the varied numbers").format(path=path),
+                _("name it in vary as well"),
             )
     if not 1 <= len(paths) <= MOST_PATHS:
         raise InputError(
@@ -154,13 +156,13 @@ def _given_bounds(one: Varying, bounds: tuple[Value, Value], display: Display) -
     if not low <= one.before <= high:
         raise InputError(
             one.path,
-            _("its bounds have to hold its present value, {value:.6g} {unit}").format(
+            _("its bounds must contain its present value, {value:.6g} {unit}").format(
                 value=one.before, unit=one.unit
             ),
             _("widen them"),
         )
     if one.path.endswith((".length", ".radius")) and low <= 0.0:
-        raise InputError(one.path, _("a length stays positive"), _("raise its lower bound"))
+        raise InputError(one.path, _("a length must be positive"), _("raise its lower bound"))
     return low, high
 
 
@@ -172,8 +174,8 @@ def _check_varies(prepared: Ready, one: Varying) -> None:
         if not places_anew(mechanism):
             raise InputError(
                 one.path,
-                _("an initial angle changes no dimension where nothing is placed by it"),
-                _("vary lengths or points, or let a point of the frame be placed"),
+                _("this initial angle determines no dimension: nothing is placed by it"),
+                _('vary lengths or points, or set a point of the frame to "placed"'),
             )
         if any(drive.link == link for drive in mechanism.drives):
             raise InputError(one.path, _("the drive gives this angle"), _("vary that of another link"))

@@ -410,7 +410,7 @@ def repair(
         Left out: half a turn to both sides, half to double of a length, half the greatest length to both sides of
         a coordinate.
     least_transmission_angle : float [rad] or text
-        What every dyad keeps all over the turn; 1 degree if left out.
+        What every dyad keeps all over the turn; 1 degree by default.
     progress : called with (candidates evaluated, candidates in all at most)
 
     Returns
@@ -423,7 +423,7 @@ def repair(
     Raises
     ------
     InputError
-        A path or bound is wrong, the drive is no angle or not the only one.
+        A path or bound is wrong, the drive is not an angle or not the only one.
     NotComputedYet
         Groups of higher class, gears and rolling wheels.
 
@@ -478,7 +478,7 @@ def _angle(given: Value | None, display: Display) -> float:
     if not 0.0 < value < pi / 2:
         raise InputError(
             "least_transmission_angle",
-            _("it lies between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
+            _("it must lie between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
             _('write "20 deg"'),
         )
     return value
@@ -489,7 +489,7 @@ def _check_repairable(prepared: Ready) -> None:
     if len(mechanism.drives) != 1:
         raise InputError(
             "[[drives]]",
-            _("a repair makes one drive turn; {n} are given").format(n=len(mechanism.drives)),
+            _("a repair is computed for one drive; {n} are given").format(n=len(mechanism.drives)),
             _("give one drive"),
         )
     if mechanism.drives[0].kind != "angle":
@@ -507,7 +507,7 @@ def _check_repairable(prepared: Ready) -> None:
     for present, what in lacking:
         if present:
             raise NotComputedYet(
-                "--repair", _("no repair is computed of {what}").format(what=what), _("change it by hand")
+                "--repair", _("no repair is computed for {what}").format(what=what), _("change it by hand")
             )
 
 

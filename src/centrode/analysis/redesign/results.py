@@ -114,7 +114,7 @@ def need_repair(
     given = {"--vary": vary, "--least-transmission-angle": least_transmission_angle}
     for option, value in given.items():
         if value is not None and not repair:
-            raise InputError(option, _("it belongs to a repair"), _("add --repair"))
+            raise InputError(option, _("this option is used with --repair only"), _("add --repair"))
 
 
 def _repair_or_refusal(mechanism: Mechanism) -> tuple[Repair | None, CentrodeError | None]:

@@ -196,10 +196,12 @@ class Circuits:
 class Uncounted(Enum):
     """Why the circuits of a mechanism are not counted."""
 
-    HIGHER_CLASS = mark("not counted: a group of higher class has assemblies that no sign tells")
+    HIGHER_CLASS = mark(
+        "not counted: the assembly modes of a group of higher class cannot be distinguished by signs"
+    )
     WHEELS = mark("not counted: wheels may mesh in any position")
     TOO_MANY = mark("not counted: more than {most} groups with two sides")
-    STANDING = mark("not counted: the mechanism moves too little to be followed")
+    STANDING = mark("not counted: the range of motion is too small")
 
     @property
     def word(self) -> str:

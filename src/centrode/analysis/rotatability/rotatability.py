@@ -165,7 +165,7 @@ def rotatability(mechanism: MechanismSource) -> Rotatability:
     -------
     Rotatability
         Angles in rad, lengths in m. Limits and change points are exact to rounding, extreme positions to half
-        the digits of the drive's value and all digits of their own. Limits are looked for within two turns (four
+        the digits of the drive's value and all digits of their own. Limits are sought within two turns (four
         times the greatest length) on both sides.
 
     Raises

@@ -102,11 +102,13 @@ def _check_led(cam: FollowerCam) -> None:
     bad = np.flatnonzero(~((np.cos(found.pressure_angle) > 0.0) & (turning > 0.0)))
     if not bad.size:
         return
-    what = _("the follower cannot be led through {angle:.6g} deg: its pressure angle reaches 90 deg there")
+    what = _(
+        "the cam cannot drive the follower through {angle:.6g} deg: its pressure angle reaches 90 deg there"
+    )
     if not turning[bad[0]] > 0.0:
         what = _("at {angle:.6g} deg the flat face would have to turn faster than the cam")
     told = what.format(angle=math.degrees(phi[bad[0]]))
-    raise InputError("[follower]", told, _("take a smaller lift, a longer segment or a greater base radius"))
+    raise InputError("[follower]", told, _("choose a smaller lift, a longer segment or a larger base radius"))
 
 
 def layout_of(cam: PlateCam) -> FollowerLayout:
@@ -327,14 +329,14 @@ class BaseCircleTrial:
         return float(max(rise, fall))
 
     def _none(self, best: Margin) -> MotionError:
-        what = _("no base radius keeps the bounds: {bound} is broken at {angle:.6g} deg at least")
+        what = _("no base radius satisfies the bounds: {bound} is always violated at {angle:.6g} deg")
         bounds = {
             "pressure angle": _("the pressure angle"),
             "curvature": _("the radius of curvature"),
             "reach": _("the follower's reach"),
         }
         told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
-        return MotionError("[bounds]", told, _("admit more, or change the follower"))
+        return MotionError("[bounds]", told, _("relax the bounds, or change the follower"))
 
 
 # The least cam that keeps a pressure angle and a radius of curvature, and the offset that makes it least.
@@ -369,7 +371,9 @@ def _check_corners(cam: FollowerCam, layout: FollowerLayout, kept: Admissible) -
     """Raise MotionError where the speed of the lift jumps so that every cam has a sharp corner."""
     for corner in cam.corners:
         if breaks(corner, layout, kept):
-            what = _("at {angle:.6g} deg the speed of the lift jumps: every radius leaves a sharp corner")
+            what = _(
+                "at {angle:.6g} deg the velocity of the lift jumps: every base radius leaves a sharp corner"
+            )
             told = what.format(angle=math.degrees(corner.at))
             raise MotionError("[[segments]]", told, _("join the segments there with equal slopes"))
 
@@ -441,16 +445,16 @@ def best_offset(layout: FollowerLayout, motion: ContactMotion, kept: Admissible)
 def follower_cam(cam: CamSource) -> FollowerCam:
     """The cam of a description with a follower.
 
-    Where `[cam] base_radius` is left out it is the least that `[bounds]` admits.
+    Where `[cam] base_radius` is omitted it is the least that `[bounds]` admits.
 
     Raises
     ------
     InputError
         A cam that is given by a curvature law; neither a base radius nor bounds that decide one; a follower that
         cannot be led; a profile that is undercut, unless `[study] show_undercut` is set: the least radius that is not
-        is told.
+        is given.
     MotionError
-        No base radius keeps the bounds.
+        No base radius satisfies the bounds.
 
     Examples
     --------
@@ -472,10 +476,10 @@ def _body(cam: PlateCam) -> FollowerCam:
     if base is None:
         if not has_bounds(cam):
             what = _("a profile needs the cam's base radius")
-            raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it is to keep"))
+            raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it must satisfy"))
         least = least_base_radius(layout, motion, admissible_of(cam))
         if least.by == "nothing":
-            what = _("no bound decides the base radius: a cam as small as one likes keeps them all")
+            what = _("no bound limits the base radius: every base radius satisfies them all")
             raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
         base = least.base_radius
     return replace(layout.cam(motion, base), cam=cam)
@@ -495,7 +499,7 @@ def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
     InputError
         A cam that is given by a curvature law; an oscillating follower has no offset.
     MotionError
-        No base radius keeps the bounds.
+        No base radius satisfies the bounds.
     """
     plate = with_follower(cam)
     find = best_offset if offset else least_base_radius
@@ -555,9 +559,9 @@ def _undercut(cam: PlateCam, body: FollowerCam) -> InputError:
     ways: list[str] = []
     try:
         least = least_base_radius(layout_of(cam), body.motion, Admissible()).base_radius
-        ways.append(_("take a base radius above {least:.6g} mm").format(least=1e3 * least))
+        ways.append(_("choose a base radius above {least:.6g} mm").format(least=1e3 * least))
     except MotionError:
-        ways.append(_("take a smaller lift or longer segments"))
+        ways.append(_("choose a smaller lift or longer segments"))
     most, _at = body.greatest_roller
     if 0.0 < most < body.touch.roller < math.inf:
         roller = _("a roller below {most:.6g} mm on the same path of its centre")

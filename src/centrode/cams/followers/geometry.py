@@ -120,7 +120,7 @@ def translating_follower(path_radius: float, offset: float = 0.0) -> Translating
     """
     if not abs(offset) < path_radius:
         what = _("with an offset of {offset:.6g} mm the follower's axis misses the base circle")
-        least = _("a greater base radius, or an offset below {most:.6g} mm")
+        least = _("choose a larger base radius, or an offset below {most:.6g} mm")
         told, repair = what.format(offset=1e3 * offset), least.format(most=1e3 * path_radius)
         raise InputError("[follower] offset", told, repair)
     return Translating(math.sqrt((path_radius - offset) * (path_radius + offset)), offset)
@@ -162,7 +162,7 @@ def oscillating_face(base_radius: float, distance: float, face_offset: float = 0
     if not -1.0 < sine < 1.0:
         what = _("a face {offset:.6g} mm off a pivot at {distance:.6g} mm does not reach the base circle")
         told = what.format(offset=1e3 * face_offset, distance=1e3 * distance)
-        raise InputError("[follower] pivot_distance", told, _("put the pivot farther away"))
+        raise InputError("[follower] pivot_distance", told, _("move the pivot farther away"))
     return Oscillating(math.asin(sine), distance, 0.0, face_offset)
 
 

@@ -50,9 +50,9 @@ def check_cutter(cam: FollowerCam, radius: float) -> None:
         return
     what = _("a cutter of {radius:.6g} mm cuts away the hollow at {at:.6g} deg")
     fits = (
-        _("take one of at most {most:.6g} mm")
+        _("choose one of at most {most:.6g} mm")
         if most > 0.0
-        else _("no cutter comes into a sharp inner corner")
+        else _("no cutter fits into a sharp inner corner")
     )
     raise InputError(
         "[tool] radius", what.format(radius=1e3 * radius, at=math.degrees(at)), fits.format(most=1e3 * most)
@@ -78,9 +78,11 @@ def chord_pieces(cam: FollowerCam, tolerance: float, cutter: float = 0.0) -> lis
     pieces = [_dealt(cam, start, stop, tolerance, cutter) for start, stop in pairwise(cam.edges)]
     count = sum(len(one) for one in pieces)
     if count > MOST_POINTS:
-        what = _("a chord tolerance of {tolerance:.3g} mm asks for {count} points, {most} are the most")
+        what = _(
+            "a chord tolerance of {tolerance:.3g} mm requires {count} points; at most {most} are allowed"
+        )
         told = what.format(tolerance=1e3 * tolerance, count=count, most=MOST_POINTS)
-        raise InputError("[study] chord_tolerance", told, _("make it greater"))
+        raise InputError("[study] chord_tolerance", told, _("increase it"))
     return pieces
 
 

@@ -71,7 +71,9 @@ class FollowerMotion:
             An order out of bounds.
         """
         if order not in range(MOST_ORDER + 1):
-            raise InputError("order", _("ask for derivatives of order 0 to {most}").format(most=MOST_ORDER))
+            raise InputError(
+                "order", _("give an order of derivatives from 0 to {most}").format(most=MOST_ORDER)
+            )
         places = np.asarray(phi, dtype=np.float64)
         jet = self.law.jet(JETS, Jet.variable(places, order))
         return np.stack([np.broadcast_to(jet.derivative(k), places.shape) for k in range(order + 1)])
@@ -403,9 +405,9 @@ def first_rise(cam: AnyCam) -> int:
         if segment.to is not None and segment.to != before:
             return number
         before = before if segment.to is None else segment.to
-    what = _("no segment ends at another lift than it begins at: there is no rise to compare laws for")
+    what = _("every segment ends at the lift at which it begins: there is no rise for which to compare laws")
     raise InputError(
-        "[[segments]]", what, _("leave --laws out, or use centrode.cams.followers.motion.compare_laws")
+        "[[segments]]", what, _("omit --laws, or use centrode.cams.followers.motion.compare_laws")
     )
 
 

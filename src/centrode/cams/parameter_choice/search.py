@@ -491,7 +491,7 @@ def family_of(cam: Cam) -> Family:
     """The designs of a description with `[choose]`; raises InputError where a parameter's range cannot be."""
     choose = cam.choose
     if choose is None:
-        what = _("nothing is to be chosen")
+        what = _("no parameter is given to choose")
         raise InputError("[choose]", what, _("write a table [choose] with parameters and bounds"))
     names = tuple(choose.parameters)
     ends = np.array([choose.parameters[name] for name in names], dtype=float)
@@ -575,7 +575,7 @@ def _check_ends(cam: Cam, ranges: Mapping[str, tuple[float, float]]) -> None:
             end = vary_cam(cam, values)
             law_of(end)
         except InputError as error:
-            what = _("an end of a range is no design: {what}").format(what=error.what)
+            what = _("no cam exists at an end of the range: {what}").format(what=error.what)
             raise InputError("[choose] parameters", what, error.repair) from None
         if abs(end.start.pressure_angle) > STEEPEST:
             what = _("a pressure angle at the start beyond {most:g} deg is not tried")
@@ -752,7 +752,7 @@ def choose_cam(
     Returns
     -------
     CamChoice
-        Also where no design keeps all bounds: then with the one whose worst miss is least.
+        Also where no design satisfies all bounds: then with the one whose worst miss is least.
 
     Raises
     ------

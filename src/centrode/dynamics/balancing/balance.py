@@ -125,9 +125,9 @@ def balance(
         Left out: those hinged to the frame; for "full" as few as are enough, and others where these are not.
     to : "full", "least" or "fraction"
         Shaking force zero; the least greatest effects; for a slider-crank, what turns with the crank's pin and a
-        `fraction` of what moves to and fro.
+        `fraction` of the reciprocating masses.
     radius : length, or link -> length
-        From the point to the counterweight's centre; half the way to the link's farthest point if left out.
+        From the point to the counterweight's centre; half the way to the link's farthest point by default.
     most : mass, or link -> mass
         Greatest mass of a counterweight.
     thickness, density : length, density
@@ -222,9 +222,9 @@ def balance(
 
 def _check(to: str, speed: str, moment: bool) -> None:
     if to not in KINDS:
-        what = _("{name} is no way to balance").format(name=f'"{to}"')
+        what = _("{name} is not a balancing method").format(name=f'"{to}"')
         raise InputError("to", what, _("use one of {known}").format(known=", ".join(KINDS)))
     check_speed(speed)
     if moment and to != "full":
-        what = _("discs balance the shaking moment only where the force is balanced fully")
+        what = _("discs balance the shaking moment only if the shaking force is balanced fully")
         raise InputError("moment", what, _('use to = "full"'))

@@ -384,7 +384,7 @@ def _places(mechanism: Mechanism, on: Sequence[str] | None, to: str) -> list[tup
         if to == "fraction":
             chosen = {name: base for name, base in chosen.items() if name == mechanism.drives[0].link}
         if not chosen:
-            what = _("no link is hinged to the frame, where counterweights are put if nothing else is said")
+            what = _("no link is hinged to the frame; by default counterweights are placed on such links")
             raise InputError("on", what, _("name links"))
         return list(chosen.items())
     names = [on] if isinstance(on, str) else list(on)
@@ -432,6 +432,6 @@ def _half_way(mechanism: Mechanism, link: str, base: str) -> float:
     places = mechanism.links[link].coordinates
     out = 0.5 * max(dist(places[base], place) for place in places.values())
     if not out > 0.0:
-        what = _("link {name} has one point, which tells no radius").format(name=value_text(link))
+        what = _("link {name} has one point, which does not define a radius").format(name=value_text(link))
         raise InputError("radius", what, _("give the radius of its counterweight"))
     return out

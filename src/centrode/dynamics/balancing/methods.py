@@ -299,7 +299,7 @@ def discs_for(turning: ShakingTurning, mechanism: Mechanism) -> tuple[Counterwei
     if left > SAME * size:
         raise MotionError(
             "",
-            _("no discs balance the shaking moment: {share:.2%} of it would be left").format(
+            _("discs cannot balance the shaking moment: {share:.2%} of it would remain").format(
                 share=left / float(np.max(np.abs(momentum)))
             ),
             _("put the centres of mass of the links on the lines between their joints"),
@@ -337,14 +337,15 @@ def _turns(rate: Array) -> bool:
 
 def _too_much(link: str, surplus: float) -> MotionError:
     what = _(
-        "the shaking moment cannot be balanced: the inertia of {link} is {surplus:.6g} kg m² too great, and it is"
-        " not hinged to the frame, where a disc could turn against it"
+        "the shaking moment cannot be balanced: the moment of inertia of {link} is {surplus:.6g} kg m² too "
+        "large, and the link is not hinged to the frame, so that no counter-rotating disc can be placed"
     )
     return MotionError(
         f"[links.{link}]",
         what.format(link=link, surplus=surplus),
         _(
-            "make it a physical pendulum: less inertia, or its centre of mass nearer to the middle of its joints"
+            "make it a physical pendulum: reduce its moment of inertia, or move its centre of mass towards the "
+            "middle of its joints"
         ),
     )
 
@@ -700,12 +701,14 @@ def least_effects(
     # an effect that is rounding from the start has no share to be weighed by
     small = [size <= ROUNDING * whole[name] for (name, _weight), size in zip(aim.parts, sizes, strict=True)]
     if any(small):
-        raise InputError("weights", _("what they count is zero without counterweights"))
+        raise InputError("weights", _("the weighted effects are zero without counterweights"))
     try:
         chosen = lightest(turning, spots, aim, sizes)
     except ArithmeticError:
         what = _("the search for counterweights fails: effects over the cycle differ too much in size")
-        raise MotionError("", what, _("look for places near a limit, or ask for the full balance")) from None
+        raise MotionError(
+            "", what, _("check whether a limit position is near, or choose the full balance")
+        ) from None
     bound = None
     # in steady motion the counterweights change the speed itself, so nothing is proved
     proved = chosen.bound is not None and turning.instants.panels is None
@@ -728,11 +731,11 @@ def by_fraction(
         what = _("expected a number from 0 to 1, got {value}").format(value=f"{share:g}")
         raise InputError("fraction", what, _("half or two thirds are usual"))
     if loop is None or loop.rocker is not None:
-        what = _("a fraction of what moves to and fro is balanced in slider-cranks only")
-        raise InputError("fraction", what, _("ask for the full balance, or for the least greatest force"))
+        what = _("a fraction of the reciprocating masses is balanced in slider-cranks only")
+        raise InputError("fraction", what, _("choose the full balance, or the least maximum force"))
     if [(spot.link, spot.base) for spot in spots] != [(loop.crank, loop.O)]:
-        what = _("this counterweight stands on the crank {crank}").format(crank=loop.crank)
-        raise InputError("on", what, _("leave the links out"))
+        what = _("this counterweight is on the crank {crank}").format(crank=loop.crank)
+        raise InputError("on", what, _("omit the links"))
     product = fraction_of_slider_crank(mechanism, turning.masses, loop, share)
     return Chosen(tuple(spots), np.array([product]), fraction=share)
 
@@ -746,7 +749,7 @@ def check_masses(spots: Sequence[CounterweightPlace], weighed: Sequence[Counterw
             raise MotionError(
                 "most",
                 what.format(link=weight.link, mass=weight.mass, most=most),
-                _("allow more, give it a greater radius, or ask for the least greatest force"),
+                _("allow a larger mass or radius, or choose the least maximum force"),
             )
 
 
@@ -766,13 +769,15 @@ def _cannot(
     heavy = [mass.link for mass in turning.masses if mass.weighs and mass.link not in hinged]
     links = ", ".join(spot.link for spot in spots) or _("none")
     if heavy:
-        what = _("its force cannot be balanced fully: hinges alone do not lead from the frame to {links}")
+        what = _(
+            "the shaking force cannot be balanced fully: no chain of hinges connects the frame and {links}"
+        )
         return MotionError(
-            "", what.format(links=", ".join(heavy)), _("ask for the least greatest force instead")
+            "", what.format(links=", ".join(heavy)), _("choose the least maximum force instead")
         )
     what = _(
-        "counterweights on {links} do not balance its force: the common centre of mass would still move"
-        " ({left:.2g} of the greatest length)"
+        "counterweights on {links} do not balance the shaking force: the common centre of mass would still move "
+        "({left:.2g} of the greatest length)"
     )
     return MotionError(
         "", what.format(links=links, left=left), _("name more links, or leave the choice to centrode")

@@ -205,7 +205,9 @@ def check_speed(speed: str) -> None:
 
 def on_sphere() -> NotComputedYet:
     """The refusal of a spherical mechanism."""
-    return NotComputedYet("space", _("forces on the sphere are not computed yet"), _("describe a plane one"))
+    return NotComputedYet(
+        "space", _("forces on the sphere are not computed yet"), _("describe a planar mechanism")
+    )
 
 
 def steady_shaft_motion(found: SteadySolution, values: Array) -> ShaftMotion:
@@ -253,7 +255,7 @@ def turns_of_cycle(
     path = instants.ready.kinematics.path
     drive = path.driven[0].drive
     if drive.kind != "angle":
-        what = _("there is no whole turn: the drive moves to and fro")
+        what = _("there is no full turn: the drive reciprocates")
         raise InputError(f"[[drives]] {drive.id}", what, _("drive the angle of a link that turns fully"))
     # most mechanisms repeat after a turn: few turns are looked at first
     for most in (FEW_TURNS, MOST_TURNS):
@@ -271,8 +273,10 @@ def turns_of_cycle(
         if same.any():
             # the first turn after which everything agrees
             return 1 + int(np.argmax(same))
-    what = _("the masses are not back in their places after {turns} turns of the drive").format(turns=most)
-    raise InputError("[[gears]]", what, _("change the ratios of the gears"))
+    what = _("after {turns} turns of the drive the masses are not in their initial positions").format(
+        turns=most
+    )
+    raise InputError("[[gears]]", what, _("change the gear ratios"))
 
 
 def _signature(
@@ -300,7 +304,7 @@ def does_not_turn(value: float) -> MotionError:
         _("the mechanism does not turn fully: it has no motion at {value:.6g} deg of its drive").format(
             value=np.degrees(value)
         ),
-        _("change the dimensions (centrode rotatability says what stops it)"),
+        _("change the dimensions (centrode rotatability gives the cause)"),
     )
 
 
@@ -537,7 +541,7 @@ def shaking(
     samples, start, stop, at
         As for `motion`; in steady motion as for `steady_motion`, over its cycle.
     about : name of a point of the frame, or (x, y) [m]
-        What moments are taken about; the frame's origin if left out.
+        Reference point of moments; the frame's origin by default.
     speed : "mean" or "steady"
         The machine's mean speed, or the drive's own where there is none; or the real one of `steady_motion`.
     orders : int
@@ -567,8 +571,8 @@ def shaking(
         raise on_sphere()
     check_speed(speed)
     if isinstance(orders, bool) or not 1 <= orders <= MOST_ORDERS:
-        what = _("{orders} harmonics were asked for").format(orders=orders)
-        raise InputError("orders", what, _("ask for 1 to {most}").format(most=MOST_ORDERS))
+        what = _("{orders} harmonics are given").format(orders=orders)
+        raise InputError("orders", what, _("give 1 to {most}").format(most=MOST_ORDERS))
     centre, masses = place_of(mechanism, about), heavy(mechanism)
     prepared, span = _sampled_range(mechanism, samples, start, stop, at, speed)
     solved = solve(prepared, span)
@@ -593,7 +597,7 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
     """Coordinates of a place of the frame, given by name or by themselves; InputError for any other."""
     if isinstance(about, str):
         if about not in mechanism.frame.points:
-            what = _("{name} is no point of the frame").format(name=value_text(about))
+            what = _("{name} is not a point of the frame").format(name=value_text(about))
             raise InputError("about", what, nearest(about, list(mechanism.frame.points)))
         x, y = mechanism.frame.coordinates[about]
         return x, y
@@ -618,7 +622,7 @@ def _sampled_range(
     if speed == "steady":
         if start is not None or stop is not None:
             what = _("steady motion is shown over its cycle")
-            raise InputError("speed", what, _("leave the range out, or name values by at"))
+            raise InputError("speed", what, _("omit the range, or give values with at"))
         solution = solution_of(mechanism)
         turned = turned_at(solution, samples, at)
         rate, second = solution.speed.at(turned), solution.speed.acceleration(turned)

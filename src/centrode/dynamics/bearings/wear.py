@@ -126,10 +126,10 @@ def bearings(
 
 def _check(sectors: int, arc: float) -> None:
     if isinstance(sectors, bool) or not 1 <= sectors <= MOST_SECTORS:
-        what = _("{count} sectors were asked for").format(count=sectors)
-        raise InputError("sectors", what, _("ask for 1 to {most}").format(most=MOST_SECTORS))
+        what = _("{count} sectors are given").format(count=sectors)
+        raise InputError("sectors", what, _("give 1 to {most}").format(most=MOST_SECTORS))
     if not 0.0 < arc <= 2.0 * np.pi:
-        what = _("an arc of {arc:g} rad is no part of a turn").format(arc=arc)
+        what = _("an arc of {arc:g} rad is not part of a turn").format(arc=arc)
         raise InputError("arc", what, _("give more than 0 and at most 2 pi"))
 
 

@@ -184,7 +184,7 @@ def scale_of(vectors: Sequence[PolygonVector], room: Size) -> float:
 def sheet_of(paper: str) -> Size:
     """Width and height [mm] of a sheet across; InputError for a name that is none."""
     if paper not in PAPERS:
-        what = _("{paper} is no size of paper here").format(paper=f'"{paper}"')
+        what = _("{paper} is not a supported paper size").format(paper=f'"{paper}"')
         known = _("one of: {names}").format(names=", ".join(PAPERS))
         raise InputError("paper", what, nearest(paper, PAPERS) or known)
     return PAPERS[paper]
@@ -404,7 +404,7 @@ def force_polygons(mechanism: MechanismSource, at: float | str, paper: str = "A4
     NotComputedYet
         The sphere; friction; constraints that repeat each other, so that reactions are not determined.
     MotionError
-        The mechanism does not close there, or stands at a limit, a change point or a dead point.
+        The mechanism does not close there, or stands at a limit, a change point or a dead position.
 
     Examples
     --------

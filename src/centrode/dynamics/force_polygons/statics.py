@@ -555,7 +555,7 @@ def dead_point() -> None:
     """Say that reactions are not determined there."""
     raise MotionError(
         "at",
-        _("the mechanism is singular there (a dead point): no finite forces keep the group in equilibrium"),
+        _("the mechanism is singular there (dead position): no finite forces keep the group in equilibrium"),
         _("choose another instant"),
     )
 
@@ -675,6 +675,6 @@ def _cell(
 def _refuse(names: Sequence[str]) -> None:
     raise NotComputedYet(
         ", ".join(names),
-        _("constraints repeat each other: equilibrium does not determine the reactions"),
-        _("take the redundant ones out of the description"),
+        _("constraints are redundant: equilibrium does not determine the reactions"),
+        _("remove the redundant ones from the description"),
     )

@@ -114,8 +114,8 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
             continue
         where = f"[[loads]] {load.label}"
         if mechanism.space == "sphere":
-            what = _("friction by a coefficient on the sphere is not computed yet")
-            raise NotComputedYet(where, what, _("give the size of the friction, or leave it out"))
+            what = _("Coulomb friction is available for planar mechanisms only")
+            raise NotComputedYet(where, what, _("give the value of the friction, or omit it"))
         for contact in _contacts(mechanism, load, where):
             if contact.label in by_label:
                 what = _("friction at {contact} is given twice").format(contact=contact.label)
@@ -156,7 +156,7 @@ def refuse_undetermined(
         parts = contact.pressed_by
         if any(part in undetermined and undetermined[part][row].any() for part in parts):
             what = _("friction at {contact} depends on a reaction that the constraints do not determine")
-            repair = _("leave out a constraint that repeats others, or the friction there")
+            repair = _("omit a redundant constraint, or the friction there")
             raise InputError(contact.where, what.format(contact=contact.label), repair)
 
 
@@ -164,7 +164,7 @@ def _sliding_friction(mechanism: Mechanism, load: SliderFriction, where: str) ->
     guide = mechanism.guide(load.guide)
     if guide.link is None and (load.length or load.height):
         what = _("guide {guide} has no slider of its own that could tilt").format(guide=guide.id)
-        raise InputError(where, what, _("take length and height out, or give the guide a link"))
+        raise InputError(where, what, _("remove length and height, or give the guide a link"))
     length, height = load.length or 0.0, load.height or 0.0
     return Sliding(guide.id, guide.link, guide.on, load.coefficient, length, height, where)
 
@@ -173,7 +173,7 @@ def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[H
     point = load.point
     bodies = _bodies(mechanism, point)
     if len(bodies) < 2:
-        what = _("nothing turns at the point {point}: it is no hinge").format(point=point)
+        what = _("{point} is not a hinge: no link turns about it").format(point=point)
         raise InputError(where, what, _("name a point in which links are hinged together"))
     for key, name in (("link", load.link), ("pin", load.pin)):
         if name is not None and name not in bodies:
@@ -188,7 +188,7 @@ def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[H
             if point in mechanism.frame.points
             else _("the pin {point} is fixed in the slider of its guide")
         )
-        raise InputError(where, text.format(point=point), _("take pin out"))
+        raise InputError(where, text.format(point=point), _("remove pin"))
     links = [name for name in bodies if name != pin]
     if load.link is not None:
         if load.link == pin:

@@ -161,8 +161,8 @@ def _with_friction(
 def _check_size(scheme: Scheme, samples: int) -> None:
     most = GREATEST_MATRICES // (scheme.size * len(scheme.unknowns))
     if samples > most:
-        what = _("reactions at {asked} positions were asked for").format(asked=samples)
-        raise InputError(_("samples"), what, _("ask for at most {most} at once").format(most=most))
+        what = _("reactions are requested at {asked} positions").format(asked=samples)
+        raise InputError(_("samples"), what, _("give at most {most} at once").format(most=most))
 
 
 # What a mechanism does to its frame: all of it, and the part of inertia that shakes it.
@@ -501,7 +501,7 @@ def reactions(
     speed : "mean" or "steady"
         The speed of `reduce`, or the real one of a machine in steady motion.
     friction
-        Whether friction by coefficients counts; where there is any, `friction_moment`, `friction_force`,
+        Whether Coulomb friction counts; where there is any, `friction_moment`, `friction_force`,
         `friction_power`, `efficiency` and more tell it (docs: friction).
 
     Returns
@@ -516,7 +516,7 @@ def reactions(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction by a coefficient on the sphere, and at the real speed.
+        Coulomb friction on the sphere, and at the real speed.
 
     Examples
     --------
@@ -534,7 +534,7 @@ def reactions(
     if speed == "steady":
         if start is not None or stop is not None:
             what = _("steady motion is given over a whole cycle")
-            raise InputError(_("range"), what, _("leave its ends out, or ask for places with at"))
+            raise InputError(_("range"), what, _("omit the ends of the range, or give the positions with at"))
         _refuse_unknown_speed(contacts)
         prepared, span, pace = steady_grid(mechanism, samples, at)
         return reactions_at(solve(prepared, span), burden, pace, whole=at is None)
@@ -546,8 +546,8 @@ def reactions(
 
 def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:
     if contacts:
-        what = _("the real speed of a machine with friction by coefficients is not computed yet")
-        raise NotComputedYet(contacts[0].where, what, _("ask for the mean speed, or leave friction out"))
+        what = _("the real speed of a machine with Coulomb friction is not computed yet")
+        raise NotComputedYet(contacts[0].where, what, _("use the mean speed, or omit friction"))
 
 
 def reactions_at(

@@ -422,7 +422,7 @@ class PanelTracks:
         )
         if not least > LEAST_INERTIA * greatest:
             what = _(
-                "nothing carries the motion where the drive is at {value:.6g}: the inertia is zero there"
+                "the reduced moment of inertia is zero where the drive is at {value:.6g}: the motion cannot continue"
             )
             raise InputError(
                 "[links]",
@@ -700,7 +700,7 @@ def too_far(t: float) -> MotionError:
     return MotionError(
         "[simulation]",
         _("it has made more than {most} turns at t = {time:.6g} s").format(most=MOST_TURNS, time=t),
-        _("give a shorter duration, or a drive that does not run away; of fixed steps take more"),
+        _("give a shorter duration, or a drive whose speed stays bounded; with fixed steps use more of them"),
     )
 
 

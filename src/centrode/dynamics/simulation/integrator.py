@@ -105,8 +105,8 @@ def trajectory_of_states(
     if ended in ("limit", "change point") and count == 0:
         raise MotionError(
             "[simulation]",
-            _("the first step leads beyond a limit or a change point"),
-            _("ask for more steps, or another start"),
+            _("the first step passes a limit or a change point"),
+            _("give more steps, or another start"),
         )
 
     def slopes(t: float, y: States) -> States:
@@ -447,7 +447,7 @@ class Watch:
                     _("no step is small enough at t = {time:.6g} s, drive at {value:.6g}").format(
                         time=solver.t, value=value
                     ),
-                    _('choose scheme = "stiff", or a greater tolerance'),
+                    _('choose scheme = "stiff", or a larger tolerance'),
                 )
             )
         if self.field.is_too_far(value, self.start):
@@ -456,7 +456,7 @@ class Watch:
             raise MotionError(
                 "[simulation]",
                 _("{count} steps were taken up to t = {time:.6g} s").format(count=self.most, time=solver.t),
-                _('ask for a shorter time, or choose scheme = "stiff" or a greater tolerance'),
+                _('give a shorter time, or choose scheme = "stiff" or a larger tolerance'),
             )
         if self.tell is not None and self.steps % 20 == 0:
             way = self.until.way
@@ -634,9 +634,10 @@ class Stepper:
         if self.idle > MOST_IDLE:
             raise MotionError(
                 "[simulation]",
-                _("it gets no farther than t = {time:.6g} s: drive or loads change too often there").format(
-                    time=t
-                ),
+                _(
+                    "the integration does not pass t = {time:.6g} s: the driving moment or the loads change too "
+                    "often there"
+                ).format(time=t),
                 _("correct their formulas"),
             )
 

@@ -110,7 +110,7 @@ def changed_settings(
         known.pop("turns", None)
     if not known and not given:
         raise InputError(
-            "[simulation]", _("it is missing"), _('say --driving "20 - 2*v" and --duration "10 s"')
+            "[simulation]", _("it is missing"), _('add --driving "20 - 2*v" and --duration "10 s"')
         )
     return Simulation.for_parameter(mechanism.motion_parameter, **known | given)
 
@@ -137,17 +137,17 @@ def check_ended(results: SimulationResults) -> None:
         raise KeyboardInterrupt
     if run.attrs["ended"] == "limit":
         what = _("it stops at a limit after {time:.6g} s").format(time=float(run["time"].to_numpy()[-1]))
-        raise MotionError("", what, _("ask for a shorter time, or change drive or dimensions"))
+        raise MotionError("", what, _("give a shorter time, or change the drive or the dimensions"))
     if run.attrs["ended"] == "change point":
         what = _(
-            "its path ends at the change point at {value:.9g} {unit}, after {time:.6g} s: "
-            "the assembly is kept, and from there on it would be another motion"
+            "the motion reaches the change point at {value:.9g} {unit} after {time:.6g} s: the assembly mode is "
+            "kept, and beyond it the motion would be a different one"
         ).format(
             value=float(run["occasion_value"].to_numpy()[-1]),
             unit=run["occasion_value"].attrs["units"],
             time=float(run["occasion_time"].to_numpy()[-1]),
         )
-        repair = _('choose continuation = "smooth" in [assembly], which runs on, or a shorter time')
+        repair = _('choose continuation = "smooth" in [assembly], which passes it, or a shorter time')
         raise MotionError("", what, repair)
 
 

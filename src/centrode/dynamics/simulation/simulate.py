@@ -104,7 +104,7 @@ class Setting:
         if settings.duration is None and settings.turns is None:
             raise InputError(
                 "[simulation]",
-                _("nothing says how long it runs"),
+                _("the duration is not given"),
                 _("give duration, such as 10 s, or turns of the drive"),
             )
         self._check_turns()
@@ -151,14 +151,16 @@ class Setting:
             min(abs(self.start - end) for end in (tracks.low, tracks.high)) <= 2.0 * NEAR_LIMIT * tracks.unit
         )
         what = (
-            _("it starts at a dead point, drive at {value:.9g}: there the drive moves nothing")
+            _(
+                "the motion starts in a dead position, with the drive at {value:.9g}: there the drive moves nothing"
+            )
             if near or not known
-            else _("it starts at {value:.9g}, where the mechanism does not get to")
+            else _("the motion starts at {value:.9g}, a position that the mechanism does not reach")
         )
         raise InputError(
             "[simulation] start",
             what.format(value=self.start),
-            _("start between the limits (centrode limits tells them)"),
+            _("start between the limits (see centrode limits)"),
         )
 
 
@@ -197,7 +199,7 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     rows = ReducedFunctions(reducer, sum(shaft.inertia * shaft.ratio**2 for shaft in shafts), kept)
     if not reducer.burden.masses and not rows.added:
         raise InputError(
-            "[links]", _("no link has a mass: nothing carries the motion"), _("give links a mass")
+            "[links]", _("no link has a mass: the equation of motion has no inertia"), _("give links a mass")
         )
     path = reducer.ready.kinematics.path
     driving = Driving.of(settings, path.forward)
@@ -363,7 +365,7 @@ def simulate(
     Raises
     ------
     InputError
-        No settings, several drives, nothing with mass, a start at a dead point.
+        No settings, several drives, nothing with mass, a start at a dead position.
     MotionError
         Nothing sets it in motion, or a formula has no value on the way.
 
@@ -379,7 +381,7 @@ def simulate(
     if executor not in get_args(Executor):
         raise InputError(
             "executor",
-            _("{name} is not a way to compute").format(name=f'"{executor}"'),
+            _("{name} is not a scheme of integration").format(name=f'"{executor}"'),
             _("use one of {known}").format(known=", ".join(get_args(Executor))),
         )
     setting = setting_of(mechanism, settings)
@@ -410,8 +412,8 @@ def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell 
     if not course.last > course.first:
         raise MotionError(
             "[simulation]",
-            _("nothing sets it in motion at {value:.6g}").format(value=setting.start),
-            _("give it a speed, a greater driving moment, or another start"),
+            _("no force sets the mechanism in motion at {value:.6g}").format(value=setting.start),
+            _("give it a speed, a larger driving moment, or another start"),
         )
     return course
 
@@ -441,7 +443,7 @@ def _times(setting: Setting, course: Trajectory, at: npt.ArrayLike | None) -> Ar
     if at is not None:
         times = np.asarray(TIME.read_all(at, "at"), dtype=np.float64)
         if times.ndim != 1 or not len(times) or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
-            raise InputError("at", _("it needs growing finite times, one or more, in one dimension"))
+            raise InputError("at", _("a one-dimensional array of finite, increasing times is required"))
         if times[0] < 0.0:
             raise InputError("at", _("times count from the start of the simulation, at 0 s"))
         return times[times <= course.last * (1.0 + 1e-12)].clip(max=course.last)

@@ -61,7 +61,7 @@ class ReturnMap:
             states = course.at(np.array([course.last]))[0]
             raise MotionError(
                 "[simulation]",
-                _("there is no steady regime: it comes to rest with the drive at {value:.6g}").format(
+                _("there is no steady regime: the machine stops with the drive at {value:.6g}").format(
                     value=float(states[VALUE, 0])
                 ),
                 _("give it more moment, inertia or speed at the start"),
@@ -85,7 +85,7 @@ def period_of(setting: Setting) -> float:
     if field.of_time:
         raise InputError(
             "[simulation]",
-            _("drive or loads depend on time: a speed that repeats is not looked for"),
+            _("the driving moment or the loads depend on time: a periodic regime is not sought"),
             _("use formulas of q, v and x"),
         )
     period = field.tracks.period
@@ -146,9 +146,9 @@ def unsettled_error(first: float, last: float) -> MotionError:
     """The failure of a speed that does not come back."""
     return MotionError(
         "[simulation]",
-        _("the speed does not settle: it goes from {first:.6g} to {last:.6g} rad/s, and on").format(
-            first=first, last=last
-        ),
+        _(
+            "the speed does not settle: it changes from {first:.6g} to {last:.6g} rad/s and keeps changing"
+        ).format(first=first, last=last),
         _("let drive or loads depend on the speed, or give another start"),
     )
 

@@ -330,13 +330,13 @@ def check_drive(prepared: Ready) -> None:
         raise InputError(
             "[[drives]]",
             _("steady motion needs one drive, the mechanism has {count}").format(count=len(drives)),
-            _("tie the drives by a gear, or leave out [machine]"),
+            _("tie the drives by a gear, or omit [machine]"),
         )
     if drives[0].kind != "angle":
         raise InputError(
             "[[drives]]",
             _("steady motion needs a drive that turns"),
-            _("drive the angle of a link, or leave out [machine]"),
+            _("drive the angle of a link, or omit [machine]"),
         )
 
 
@@ -387,7 +387,7 @@ def _turns(prepared: Ready, reduction: CycleReduction, speed: float) -> int:
         )
     raise InputError(
         "[machine]",
-        _("the mechanism is not back in its first position after {turns} turns of the drive").format(
+        _("the mechanism does not return to its initial position after {turns} turns of the drive").format(
             turns=most
         ),
         _("change the ratios of its gears"),
@@ -421,7 +421,7 @@ def _locks(prepared: Ready, turned: Array) -> MotionError:
         _("the mechanism does not turn fully: it has no motion at {value:.6g} deg of its drive").format(
             value=np.degrees(value)
         ),
-        _("change the dimensions (centrode rotatability says what stops it)"),
+        _("change the dimensions (centrode rotatability gives the cause)"),
     )
 
 

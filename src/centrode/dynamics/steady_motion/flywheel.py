@@ -115,7 +115,7 @@ class Flywheel(PrintsSummary):
     ----------
     mechanism : the machine
     mean : "middle" or "time"
-        What the mean speed is: half of greatest plus least, or turns over time.
+        What the mean speed is: half of greatest plus least, or the average over time.
     mean_speed, fluctuation : float [rad/s], [1]
     turns : int
         Of the drive in a cycle.
@@ -178,12 +178,12 @@ class Flywheel(PrintsSummary):
 
 
 def flywheel(mechanism: MechanismSource, mean: MeanSpeed = "middle") -> Flywheel:
-    """The flywheel that gives a machine the fluctuation its `[machine]` asks for.
+    """The flywheel that gives a machine the fluctuation its `[machine]` requires.
 
     Parameters
     ----------
     mean : "middle" or "time"
-        What `mean_speed` is: half of greatest plus least speed, or turns over time.
+        What `mean_speed` is: half of greatest plus least speed, or the average over time.
 
     Returns
     -------

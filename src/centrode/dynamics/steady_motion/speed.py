@@ -94,7 +94,7 @@ def balance_of(cycle: Cycle, shape: MomentShape | None, speed: Array) -> EnergyB
             _("over the cycle the loads do work of {work:.6g} J: they drive the machine").format(
                 work=-needed
             ),
-            _("turn their signs round, or add the resistance that takes this work up"),
+            _("reverse their signs, or add the resistance that takes up this work"),
         )
     values = np.ones(len(panels.nodes)) if shape is None else shape.at(cycle.value(panels.nodes), speed)
     given = float(np.sum(panels.weights * values))
@@ -102,7 +102,7 @@ def balance_of(cycle: Cycle, shape: MomentShape | None, speed: Array) -> EnergyB
         raise InputError(
             "[machine] driving",
             _("the driving moment does no work over the cycle"),
-            _("give one that drives: its mean has to be positive"),
+            _("give a driving moment with a positive mean"),
         )
     # the drive does the work of the loads over the cycle, so that the speed comes back
     driving = panels.series(values * (needed / given))
@@ -239,7 +239,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
     if not carried.least > 0.0:
         raise InputError(
             "[machine]",
-            _("nothing carries the motion: the inertia is {inertia:.6g} kg m^2").format(
+            _("the reduced moment of inertia is {inertia:.6g} kg m^2: it must be positive").format(
                 inertia=carried.least
             ),
             _("give masses, [[machine.shafts]] with inertia, or fluctuation"),
@@ -257,7 +257,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
         raise InputError(
             "[machine]",
             _(
-                "an inertia of {inertia:.6g} kg m^2 is too little: the machine would stand still within the cycle"
+                "a moment of inertia of {inertia:.6g} kg m^2 is too small: the machine would stop within the cycle"
             ).format(inertia=inertia),
             _("give [[machine.shafts]] with more inertia, or fluctuation to find a flywheel"),
         )

@@ -241,7 +241,7 @@ def _settle(
         return settled
     raise MotionError(
         "[machine]",
-        _("loads that depend on the speed and the speed itself do not settle after {count} rounds").format(
+        _("speed-dependent loads and the speed do not converge in {count} iterations").format(
             count=MOST_ITERATIONS
         ),
         _("give more inertia, or a smaller fluctuation"),
@@ -309,7 +309,7 @@ def steady_motion(
     at : (n,) values of the drive [rad]
         Exactly these places instead; whole cycles are taken out of them.
     mean : "middle" or "time"
-        What the mean speed is: half of greatest plus least, or turns over time.
+        What the mean speed is: half of greatest plus least, or the average over time.
     method : "exact" or "first-order"
         The speed by the energy equation, or by the coursework's first-order formula.
 
@@ -346,8 +346,8 @@ def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLi
         if isinstance(count, bool) or not 1 <= count <= reading.SAMPLES:
             raise InputError(
                 _("samples"),
-                _("{samples} samples were asked for").format(samples=count),
-                _("ask for 1 to {most}").format(most=reading.SAMPLES),
+                _("{samples} samples are given").format(samples=count),
+                _("give 1 to {most}").format(most=reading.SAMPLES),
             )
         return np.linspace(0.0, cycle.period, count)
     instant = found.prepared.parameter.instant
@@ -363,7 +363,7 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
     if method not in METHODS:
         raise InputError(
             "method",
-            _("{name} is not a way to compute the speed").format(name=f'"{method}"'),
+            _("{name} is not a method of computing the speed").format(name=f'"{method}"'),
             _("use one of {known}").format(known=", ".join(METHODS)),
         )
     cycle = found.cycle

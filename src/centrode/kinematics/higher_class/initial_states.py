@@ -116,7 +116,7 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     if values[-1] <= SINGULAR * values[0]:
         raise InputError(
             name_of(group),
-            _("it stands at a limit or a change point in the initial position"),
+            _("its initial position is a limit or a change point"),
             _("start the drive elsewhere"),
         )
     closed = closed.map_numbers(_as_float)
@@ -241,7 +241,7 @@ def _missing_angle_error(mechanism: Mechanism, group: Newton, left: list[str]) -
     without = [link for link in left if mechanism.initial_angle(link) is None]
     return InputError(
         name_of(group),
-        _("it is of higher class: its initial angles say which of its positions is meant"),
+        _("it is a group of higher class: its initial angles select one of its positions"),
         _("give the initial angle of {links}").format(links=", ".join(without or left)),
     )
 
@@ -250,7 +250,7 @@ def _does_not_close(system: GroupSystem, start: Array) -> InputError:
     gap = system.gap(start)[0] * system.numbers.scale
     return InputError(
         name_of(system.group),
-        _("no position that closes lies near the initial angles: they leave a gap of {gap}").format(
+        _("no closed position is near the initial angles: a gap of {gap} remains").format(
             gap=f"{float(gap):.3g} {system.numbers.space.unit}"
         ),
         _("correct the initial angles, a length, or the start of the drive"),

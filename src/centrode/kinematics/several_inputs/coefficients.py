@@ -207,8 +207,8 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
     if solved.status.size > most_samples(solved):
         raise InputError(
             _("samples"),
-            _("{asked} positions were asked for").format(asked=solved.status.size),
-            _("ask for at most {most} at once, samples times mechanisms").format(most=most_samples(solved)),
+            _("{asked} positions are given").format(asked=solved.status.size),
+            _("give at most {most} at once, samples times mechanisms").format(most=most_samples(solved)),
         )
     coefficients = partials(solved)
     variables = {"status": judgements_of(coefficients.solved, ())["status"]}

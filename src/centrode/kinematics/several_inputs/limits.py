@@ -52,8 +52,8 @@ def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
     if way > tau * MAX_TURNS:
         raise InputError(
             where,
-            _("it reaches too far: {turns:.3g} turns").format(turns=way / tau),
-            _("ask for at most {most:g}").format(most=MAX_TURNS),
+            _("it is too long: {turns:.3g} turns").format(turns=way / tau),
+            _("give at most {most:g}").format(most=MAX_TURNS),
         )
     return reading
 
@@ -68,7 +68,7 @@ def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value]
             raise InputError(
                 "hold",
                 _("drive {name} is the one that moves").format(name=name),
-                _("hold the others"),
+                _("fix the others"),
             )
         values[name] = value_of(ready, drive, value, f"hold {name}")
         if drive.kind == "distance" and values[name] <= 0.0:
@@ -155,8 +155,8 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     if branches.reach(0)[1] < 1.0:
         raise InputError(
             "hold",
-            _("on the straight way there from the initial position the mechanism locks"),
-            _("hold values nearer to the initial ones, or let the description begin elsewhere"),
+            _("on the straight path from the initial position to these values the mechanism locks"),
+            _("choose values closer to the initial ones, or change the initial position in the description"),
         )
     # positions at the end of the way, with the turns counted on it
     arriving = _Arriving(continuation, np.ones((1, 1)))
@@ -243,11 +243,11 @@ def limits(
     Parameters
     ----------
     drive : str
-        Which drive moves; may be left out where there is one.
+        Which drive moves; may be omitted where there is one.
     held : drive -> value [rad or m, or a text with a unit]
         Values of the others; those not named keep their initial ones.
     about : float or text
-        The value from which it moves; its initial one if left out.
+        The value from which it moves; its initial one by default.
 
     Returns
     -------
@@ -295,7 +295,7 @@ def chosen_drive(mechanism: Mechanism, drive: str | None) -> str:
     raise InputError(
         "drive",
         _("the mechanism has {n} drives").format(n=len(names)),
-        _("say which one moves: {names}").format(names=", ".join(names)),
+        _("name the drive that moves: {names}").format(names=", ".join(names)),
     )
 
 

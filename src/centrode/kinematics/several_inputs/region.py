@@ -249,8 +249,8 @@ def _check_asked(pair: tuple[str, str], ranges: Ranges | None, samples: int) -> 
     if isinstance(samples, bool) or not 2 <= samples <= MOST_NODES:
         raise InputError(
             _("samples"),
-            _("{samples} samples were asked for").format(samples=samples),
-            _("ask for {least} to {most}").format(least=2, most=MOST_NODES),
+            _("{samples} samples are given").format(samples=samples),
+            _("give {least} to {most}").format(least=2, most=MOST_NODES),
         )
     for given in ranges or {}:
         if given not in pair:
@@ -263,19 +263,19 @@ def _check_range(drive: Drive, initial: float, low: float, high: float, unit: fl
     if drive.kind == "distance" and low <= 0.0:
         raise InputError(where, _("a cylinder has a length above zero"), _("give the distance of its points"))
     if low == high:
-        raise InputError(where, _("it is empty"), _("ask for a range about the initial value"))
+        raise InputError(where, _("it is empty"), _("choose a range around the initial value"))
     if not low <= initial <= high:
         raise InputError(
             where,
-            _("it has to hold the initial value, {value:.6g}").format(value=initial),
-            _("ask for a range about it"),
+            _("it must contain the initial value, {value:.6g}").format(value=initial),
+            _("choose a range that contains it"),
         )
     turns = (high - low) / (tau * unit)
     if turns > MOST_TURNS * (1.0 + SAME):
         raise InputError(
             where,
-            _("it reaches too far: {turns:.3g} turns").format(turns=turns),
-            _("ask for at most {most:g}").format(most=MOST_TURNS),
+            _("it is too long: {turns:.3g} turns").format(turns=turns),
+            _("give at most {most:g}").format(most=MOST_TURNS),
         )
 
 
@@ -284,9 +284,7 @@ def _between_limits(prepared: Ready, name: str, values: Mapping[str, float]) -> 
     held = {drive: value for drive, value in values.items() if drive != name}
     low, high = limits_about(prepared, name, held, values[name]).interval
     if not np.isfinite(high - low):
-        raise InputError(
-            f"range {name}", _("its range is unlimited"), _("say from where to where, first and last value")
-        )
+        raise InputError(f"range {name}", _("its range is unlimited"), _("give the first and the last value"))
     beyond = BESIDE * (high - low)
     cylinder = named_drive(prepared.mechanism, name, "ranges").kind == "distance"
     # a cylinder's range begins above zero
@@ -319,7 +317,7 @@ def reachable_region(
     Parameters
     ----------
     drives : two names
-        May be left out where there are two.
+        May be omitted where there are two.
     ranges : drive -> (first, last) [rad or m, or texts with units]
         They hold the initial values. Left out: one turn about the initial value of an angle; the limits of a
         displacement with the other drives at their initial values, and a little beyond. A range of one turn goes
@@ -434,7 +432,7 @@ def _refuse_what_is_not_computed(prepared: Ready) -> None:
         where, what = "[[gears]]", _("the reachable region with gears or rolling wheels is not computed yet")
     else:
         return
-    raise NotComputedYet(where, what, _("ask for the limits of one drive at a time"))
+    raise NotComputedYet(where, what, _("compute the limits of one drive at a time"))
 
 
 def _two_drives(mechanism: Mechanism, drives: Sequence[str] | None) -> tuple[str, str]:
@@ -443,7 +441,7 @@ def _two_drives(mechanism: Mechanism, drives: Sequence[str] | None) -> tuple[str
         raise InputError(
             "[[drives]]",
             _("a region needs two drives, the mechanism has one"),
-            _("ask for the limits of its drive"),
+            _("compute the limits of its drive"),
         )
     chosen = names if drives is None else [named_drive(mechanism, name, "drives").id for name in drives]
     if len(chosen) != 2 or chosen[0] == chosen[1]:

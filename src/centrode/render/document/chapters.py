@@ -147,7 +147,7 @@ def _drawn(
         scale = factor * page.scale
     else:  # a drawing of a mechanism has axes of its own, in which its scale can be read
         unit, scale = spelling.numbers.shown("m")[1], scale_of(figure)
-    caption = _("{title}; a millimetre stands for {scale} {unit}").format(
+    caption = _("{title}; 1 mm of the drawing is {scale} {unit}").format(
         title=title, scale=spelling.numbers.plain(scale), unit=unit
     )
     right, top = POSITIONS if isinstance(page, PositionsPage) else INSTANT
@@ -189,7 +189,7 @@ def _cells_of_own_units(column: Column, spelling: DocumentSpelling) -> list[str]
 
 def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.TableBlock:
     rows = tuple((spelling.text(fact.label), spelling.text(fact.value)) for fact in facts)
-    return blocks.TableBlock((_("what"), _("value")), rows, caption, (False, False))
+    return blocks.TableBlock((_("quantity"), _("value")), rows, caption, (False, False))
 
 
 def _check(check: Check, spelling: DocumentSpelling) -> blocks.CheckBlock:

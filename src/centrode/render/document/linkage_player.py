@@ -235,7 +235,7 @@ def samples_in_one_piece(scene: LinkageScene | Globe, motion: xarray.Dataset) ->
     status = motion["status"].to_numpy()
     good = complete(scene) & ((status == Status.OK) | (status == Status.SINGULAR))
     if not good.any():
-        raise InputError("", _("no sample has every point in place"), _("ask for another range"))
+        raise InputError("", _("no sample has every point in place"), _("choose another range"))
     start = initial_sample(scene, motion)
     if not good[start]:
         start = int(np.flatnonzero(good)[0])

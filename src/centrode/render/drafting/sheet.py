@@ -64,7 +64,7 @@ def mechanism_drawing(
     """
     if mechanism.space == "sphere":
         what = _("drawings at full size are made of planar mechanisms")
-        raise NotComputedYet("space", what, _("take the pictures of centrode run"))
+        raise NotComputedYet("space", what, _("use the pictures of centrode run"))
     scene = scene_of(mechanism, motion)
     board: Any = Board(METRE / scene.factor)
     board.letters = on_paper(scene.extent, scene.inches, board.scale)

@@ -46,9 +46,9 @@ class Drawings:
         try:
             root = Xml.fromstring(svg)
         except Xml.ParseError as wrong:
-            raise InputError("", _("a figure is no SVG: {why}").format(why=wrong)) from wrong
+            raise InputError("", _("a figure is not SVG: {why}").format(why=wrong)) from wrong
         if root.tag != f"{NAMESPACE}svg":
-            raise InputError("", _("a figure is no SVG: {why}").format(why=root.tag))
+            raise InputError("", _("a figure is not SVG: {why}").format(why=root.tag))
         self.count += 1
         view = root.get("viewBox") or f"0 0 {_size(root.get('width'))} {_size(root.get('height'))}"
         used = _references(root)

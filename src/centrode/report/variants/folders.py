@@ -177,7 +177,7 @@ def write_variants(
         Draw the figures of each.
     progress : called with (variants done, variants in all)
     more : writes further files of each variant into its folder
-    spelling : workbooks, decimal commas; plain CSV alone if left out
+    spelling : workbooks, decimal commas; plain CSV alone by default
 
     Returns
     -------
@@ -227,8 +227,8 @@ def _write_summary(variants: Variants, folder: Path, spelling: TableSpelling) ->
 
 def _check_jobs(jobs: object) -> None:
     if isinstance(jobs, bool) or not isinstance(jobs, int) or not 1 <= jobs <= MOST_JOBS:
-        what = _("{jobs} processes were asked for").format(jobs=jobs)
-        raise InputError("jobs", what, _("ask for 1 to {most}").format(most=MOST_JOBS))
+        what = _("{jobs} processes are given").format(jobs=jobs)
+        raise InputError("jobs", what, _("give 1 to {most}").format(most=MOST_JOBS))
 
 
 def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[VariantRow]:
@@ -255,9 +255,9 @@ def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
             for future in as_completed(futures):
                 yield future.result()
         except BrokenProcessPool as broken:
-            what = _("a process was ended from outside")
+            what = _("a process was killed")
             raise InputError(
-                "", what, _("what is finished stays; the same command goes on from there")
+                "", what, _("finished results are kept; the same command resumes from there")
             ) from broken
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
