@@ -225,7 +225,7 @@ pytest_collect_file = Sybil(
         CodeBlockParser("diff", write_wrong_file),
         read_table_rows,
     ],
-    patterns=["README.md", "docs/*.md", "docs/**/*.md"],
+    patterns=["README.md", "docs/*.md", "docs/**/*.md", "docs/*/how-to/*.md"],
     setup=enter_folder,
     teardown=leave_folder,
 ).pytest()

@@ -33,7 +33,10 @@ BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 WIDTH = 140
 FIRST_PAGES = (
     ROOT / "README.md",
-    *(ROOT / "docs" / page for page in ("tutorial.md", "ru/start.md", "uk/start.md")),
+    *(
+        ROOT / "docs" / page
+        for page in ("tutorial.md", "ru/start.md", "ru/tutorial.md", "uk/start.md", "uk/tutorial.md")
+    ),
 )
 """What a newcomer reads first, in each language."""
 DESCRIPTION, RESULTS = (
