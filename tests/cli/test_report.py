@@ -106,7 +106,7 @@ def test_wrong_files(centrode: Centrode, folder: Path, content: str | None, mess
 def test_an_interrupted_report_leaves_nothing(
     centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(report: object) -> bytes:
+    def interrupted(report: object, name: str) -> dict[str, bytes]:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(files, "FORMATS", {"pdf": interrupted})

@@ -8,9 +8,10 @@ from typing import TypeAlias
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
-from centrode.model.cam_files import AnyCam
+from centrode.model.cam_files import AnyCam, cam_text
+from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
-from centrode.render.document.blocks import ChapterBlocks, Report
+from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
@@ -66,7 +67,17 @@ def report(
         chapters = tuple(_chapters(wanted, study, said))
         title = _(description.title) or name or _("Mechanism")
         subtitle = _("Computed by centrode {version}").format(version=__version__)
-        return Report(title, subtitle, chosen_language(), chapters)
+        return Report(title, subtitle, chosen_language(), chapters, _description_text(study))
+
+
+def _description_text(study: ReportStudy) -> DescriptionText:
+    """The description as a file, with the instants of the report."""
+    description, instants = study.description, study.wishes.instants
+    if not isinstance(description, Mechanism):
+        return DescriptionText(cam_text(description), "cam", instants)
+    uniform = description.motion_parameter.is_uniform and len(description.drives) == 1
+    start = description.drives[0].start if uniform else 0.0
+    return DescriptionText(mechanism_text(description), "mechanism", instants or (start or 0.0,))
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:

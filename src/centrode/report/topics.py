@@ -64,4 +64,4 @@ def left_out(name: str, title: str, reason: CentrodeError) -> ChapterBlocks:
     """A chapter that nobody has chosen and that cannot be computed: it says why."""
     where = f"{reason.where}: " if reason.where else ""
     text = _("This is left out. {reason}").format(reason=shown(f"{where}{reason.what}"))
-    return ChapterBlocks(name, title, (SectionBlocks("", (ParagraphBlock(text),)),))
+    return ChapterBlocks(name, title, (SectionBlocks("", (ParagraphBlock(text),)),), computed=False)

@@ -16,26 +16,20 @@ from centrode.render.document.blocks import (
     Moving,
     ParagraphBlock,
     Picture,
-    Report,
+    ProseBlock,
+    Span,
     SystemBlock,
     TableBlock,
 )
 from centrode.report.html.drawings import Drawings
-from centrode.report.html.mathematics import Formulas, fragments_of
+from centrode.report.html.mathematics import Formulas
 from centrode.report.html.stage import stage_of
-from centrode.report.mathematics import check_formula
-from centrode.report.texts import parts_of
+from centrode.report.mathematics import check_formula, fragments_of
+from centrode.report.texts import parts_of, texts_of
 
 BREAK = "<wbr>"
 LONG = 60
 """Characters of a left side from which on it is not aligned but runs on with its line."""
-
-
-def blocks_of(report: Report) -> Iterator[Block]:
-    """All blocks of a report in their order."""
-    for chapter in report.chapters:
-        for section in chapter.sections:
-            yield from section.blocks
 
 
 def formulas_in(block: Block) -> Iterator[str]:
@@ -49,21 +43,8 @@ def formulas_in(block: Block) -> Iterator[str]:
         for row in (*block.matrix, block.unknowns, block.right):
             yield from map(check_formula, row)
     else:
-        for text in _texts(block):
+        for text in texts_of(block):
             yield from (check_formula(part.text) for part in parts_of(text) if part.mathematics)
-
-
-def _texts(block: Block) -> Iterator[str]:
-    if isinstance(block, ParagraphBlock | CheckBlock):
-        yield block.text
-    elif isinstance(block, ItemsBlock):
-        yield from block.texts
-    elif isinstance(block, TableBlock):
-        yield from (block.caption, *block.head)
-        for row in block.rows:
-            yield from row
-    elif isinstance(block, Picture | Moving):
-        yield block.caption
 
 
 @dataclass
@@ -86,6 +67,8 @@ class Elements:
         """A block."""
         if isinstance(block, ParagraphBlock):
             return f"<p>{self.text(block.text)}</p>"
+        if isinstance(block, ProseBlock):
+            return _prose(block)
         if isinstance(block, ItemsBlock):
             kind = "ol" if block.numbered else "ul"
             return f"<{kind}>{''.join(f'<li>{self.text(one)}</li>' for one in block.texts)}</{kind}>"
@@ -171,6 +154,22 @@ class Elements:
         self.figures += 1
         number = html.escape(_("Figure {number}").format(number=self.figures))
         return f"<figcaption><b>{number}.</b> {self.text(text)}</figcaption>"
+
+
+def _prose(block: ProseBlock) -> str:
+    """What a user wrote about a chapter."""
+    paragraphs = ["".join(map(_span, one)) for one in block.paragraphs]
+    if block.kind == "paragraph":
+        return "".join(f"<p>{one}</p>" for one in paragraphs)
+    kind = "ol" if block.kind == "numbers" else "ul"
+    return f"<{kind}>{''.join(f'<li>{one}</li>' for one in paragraphs)}</{kind}>"
+
+
+def _span(span: Span) -> str:
+    text = html.escape(span.text)
+    for tag, wanted in (("code", span.code), ("em", span.emphasized), ("strong", span.strong)):
+        text = f"<{tag}>{text}</{tag}>" if wanted else text
+    return text
 
 
 def _cells(row: Iterable[str], kinds: list[str]) -> Iterator[tuple[str, str]]:
