@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
-from typing import TypeAlias
+from dataclasses import replace
+from typing import Literal, TypeAlias
+
+import lazy_loader
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.cam_files import AnyCam, cam_text
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
-from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report
+from centrode.model.settings import ChapterText
+from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
 from centrode.report.chapters import CHAPTERS, Kind
+from centrode.report.files import lacking
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
+
+_prose = functools.partial(lazy_loader.load, "centrode.report.prose", suppress_warning=True)
 
 Said: TypeAlias = Callable[[str, int, int], None]
 """Is told the title of the chapter that begins, how many are done, and how many there are."""
@@ -86,7 +94,26 @@ def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None)
             said(_(kind.title), done, len(wanted))
         chapter = _chapter(key, kind, study)
         if chapter is not None:
-            yield chapter
+            yield _with_text(chapter, study.description.report.text.get(key))
+
+
+def _with_text(chapter: ChapterBlocks, text: ChapterText | None) -> ChapterBlocks:
+    """A chapter between what its author writes before and after it."""
+    if text is None:
+        return chapter
+    before, after = (
+        _prose_sections(text.before, "before"),
+        _prose_sections(text.after, "after"),
+    )
+    return replace(chapter, sections=(*before, *chapter.sections, *after))
+
+
+def _prose_sections(markdown: str, place: Literal["before", "after"]) -> tuple[SectionBlocks, ...]:
+    """Sections of a text; InputError where the library that reads it is missing."""
+    try:
+        return tuple(_prose().prose_sections(markdown, place)) if markdown else ()
+    except ModuleNotFoundError as missing:
+        raise lacking((missing.name or "").partition(".")[0]) from missing
 
 
 def _chapter(key: str, kind: Kind, study: ReportStudy) -> ChapterBlocks | None:

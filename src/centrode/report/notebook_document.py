@@ -16,7 +16,9 @@ from centrode.render.document.blocks import (
     Report,
     SectionBlocks,
     Span,
+    TableBlock,
 )
+from centrode.report.texts import parts_of
 
 Cell: TypeAlias = dict[str, Any]
 
@@ -130,10 +132,19 @@ def _prose(section: SectionBlocks) -> str:
             paragraphs = ["".join(map(_span, one)) for one in block.paragraphs]
             mark = {"paragraph": "", "bullets": "- ", "numbers": "1. "}[block.kind]
             parts.append("\n".join(f"{mark}{one}" for one in paragraphs))
+        elif isinstance(block, TableBlock):
+            rows = [block.head, ["---"] * len(block.head), *block.rows]
+            parts.append("\n".join(f"| {' | '.join(map(_cell, row))} |" for row in rows))
     return "\n\n".join(parts)
 
 
+def _cell(text: str) -> str:
+    return text if text == "---" else _shown("".join(part.text for part in parts_of(text)))
+
+
 def _span(span: Span) -> str:
+    if span.code and "`" not in span.text:
+        return f"`{span.text}`"
     text, mark = _shown(span.text), "**" * span.strong + "*" * span.emphasized
     start, end = len(text) - len(text.lstrip()), len(text.rstrip())
     return f"{text[:start]}{mark}{text[start:end]}{mark[::-1]}{text[end:]}" if text.strip() else text

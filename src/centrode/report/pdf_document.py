@@ -59,6 +59,7 @@ class Source:
 
     def __init__(self, report: Report) -> None:
         self.files: dict[str, bytes] = {}
+        self.formulas = 0
         self.text = "\n".join(self._document(report)) + "\n"
 
     def _document(self, report: Report) -> Iterator[str]:
@@ -109,13 +110,17 @@ class Source:
 
     @_shown.register
     def _formula(self, block: FormulaBlock) -> str:
-        return f"#relations({_relations(block.lines)})"
+        return self._numbered(f"relations({_relations(block.lines)})")
 
     @_shown.register
     def _system(self, block: SystemBlock) -> str:
         matrix = _array([_array([_math(entry) for entry in row]) for row in block.matrix])
         unknowns, right = (_array([_math(one) for one in column]) for column in (block.unknowns, block.right))
-        return f"#system({matrix}, {unknowns}, {right}, {_relations(relations_of(block))})"
+        return self._numbered(f"system({matrix}, {unknowns}, {right}, {_relations(relations_of(block))})")
+
+    def _numbered(self, formula: str) -> str:
+        self.formulas += 1
+        return f"#numbered({self.formulas}, {formula})"
 
     @_shown.register
     def _table(self, block: TableBlock) -> str:

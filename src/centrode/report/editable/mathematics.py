@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from centrode.locale import decimal_mark
 from centrode.render.document.blocks import FormulaBlock, SystemBlock
 from centrode.render.latex import linear_system
 from centrode.report.editable.pandoc import run_pandoc
@@ -20,15 +19,18 @@ WIDE_SYSTEM = 95
 INDENT = 4
 """Signs by which a line that goes on is set in."""
 
-_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
-_DECIMAL_STRING = re.compile(r"(\d+),(\d+)(°?)")
-_TEXT = re.compile(r"\\text\{(?:[^{}\\]|\\.|\{[^{}]*\})*\}")
+_STRING = re.compile(r'"((?:[^"\\]|\\.)*)"')
+_ESCAPE = re.compile(r"\\u\{([0-9a-fA-F]+)\}|\\(.)")
+_DECIMAL = re.compile(r"(\d+),(\d+)(°?)")
+_PLACE = re.compile(r"\\(mathit|mathrm)\{\\text\{(zq[a-z]+)\}\}|\\text\{ ?(zq[a-z]+) ?\}")
 _MENDED = (
-    (re.compile(r"\\(mathit|mathrm)\{\\text\{([A-Za-z]+)\}\}"), r"\\\1{\2}"),
     (re.compile(r"\{\\overset\{\\rightarrow\}\{(\w|\\\w+)\}\}"), r"\\vec{\1}"),
     (re.compile(r"\{\^\\circ\}"), r"^{\\circ}"),
-    (re.compile(r"\\text\{ "), r"\\text{"),  # a thin space stands before a unit already
 )
+_SPECIAL = {
+    "\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
+    **{letter: f"\\{letter}" for letter in "#$%&_{}"},
+}  # fmt: skip
 _COMMAND = re.compile(r"\\(?:left|right|mathit|mathrm|text|vec|frac|begin|end|quad|,|\s)|[{}_^&]")
 _NAMED = re.compile(r"\\[A-Za-z]+")
 _FRACTION = re.compile(r"\\frac\{([^{}]*(?:\{[^{}]*\}[^{}]*)*)\}\{([^{}]*(?:\{[^{}]*\}[^{}]*)*)\}")
@@ -120,28 +122,35 @@ def latex_formulas(spelled: Iterable[str]) -> LatexFormulas:
     wanted = list(dict.fromkeys(spelled))
     if not wanted:
         return LatexFormulas({})
-    source = "\n\n".join(f"${_readable(check_formula(one)).strip()}$" for one in wanted)
+    strings: list[str] = []
+    source = "\n\n".join(f"${_without_strings(check_formula(one), strings).strip()}$" for one in wanted)
     tree = json.loads(run_pandoc(source.encode(), "--from=typst", "--to=json"))
     blocks = [block["c"] for block in tree["blocks"]]
     if len(blocks) != len(wanted):
         raise ValueError(f"{len(wanted)} formulas became {len(blocks)}")
-    return LatexFormulas({one: _latex(block) for one, block in zip(wanted, blocks, strict=True)})
+    return LatexFormulas({one: _latex(block, strings) for one, block in zip(wanted, blocks, strict=True)})
 
 
-def _readable(formula: str) -> str:
-    """Decimals with a comma stand in strings, about which pandoc leaves room: it reads them with a point."""
-    return _STRING.sub(_number, formula)
+def _without_strings(formula: str, strings: list[str]) -> str:
+    """A formula with a word in place of each string, which pandoc would read as mathematics; the strings are kept."""
+
+    def place(found: re.Match[str]) -> str:
+        strings.append(_ESCAPE.sub(lambda one: chr(int(one[1], 16)) if one[1] else one[2], found[1]))
+        return f'"{_word(len(strings) - 1)}"'
+
+    return _STRING.sub(place, formula)
 
 
-def _number(found: re.Match[str]) -> str:
-    decimal = _DECIMAL_STRING.fullmatch(found[0][1:-1])
-    if decimal is None:
-        return found[0]
-    return f"{decimal[1]}.{decimal[2]}{' degree' if decimal[3] else ''}"
+def _word(number: int) -> str:
+    return "zq" + "".join(chr(ord("a") + int(digit)) for digit in str(number))
 
 
-def _latex(inlines: Sequence[Mapping[str, object]]) -> str:
-    """The mathematics of a paragraph that holds nothing else."""
+def _number(word: str) -> int:
+    return int("".join(str(ord(letter) - ord("a")) for letter in word.removeprefix("zq")))
+
+
+def _latex(inlines: Sequence[Mapping[str, object]], strings: Sequence[str]) -> str:
+    """The mathematics of a paragraph that holds nothing else, its strings put in again."""
     (one,) = inlines
     kind, latex = one["t"], one["c"]
     if kind != "Math" or not isinstance(latex, list):
@@ -149,17 +158,16 @@ def _latex(inlines: Sequence[Mapping[str, object]]) -> str:
     text = str(latex[1])
     for pattern, replacement in _MENDED:
         text = pattern.sub(replacement, text)
-    return text if decimal_mark() == "." else _with_commas(text)
+    return _PLACE.sub(lambda found: _string(strings[_number(found[2] or found[3])], found[1] or ""), text)
 
 
-def _with_commas(latex: str) -> str:
-    """Numbers with a comma that is no punctuation; what is text stays as it is."""
-    parts, position = [], 0
-    for found in _TEXT.finditer(latex):
-        parts += [_commas(latex[position : found.start()]), found[0]]
-        position = found.end()
-    return "".join([*parts, _commas(latex[position:])])
-
-
-def _commas(latex: str) -> str:
-    return re.sub(r"(?<=\d)\.(?=\d)", "{,}", latex)
+def _string(text: str, kind: str) -> str:
+    """A string of a formula: a number whose comma is no punctuation, letters of a kind, or text as it is."""
+    decimal = _DECIMAL.fullmatch(text)
+    if decimal is not None:
+        degree = r"^{\circ}" if decimal[3] else ""
+        return f"{decimal[1]}{{,}}{decimal[2]}{degree}"
+    if kind and text.isascii() and text.isalpha():
+        return f"\\{kind}{{{text}}}"
+    safe = "".join(_SPECIAL.get(letter, letter) for letter in text).replace("--", "-{-}")
+    return f"\\{kind}{{\\text{{{safe}}}}}" if kind else f"\\text{{{safe}}}"

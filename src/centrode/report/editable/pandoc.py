@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -15,7 +14,8 @@ EPOCH = {"SOURCE_DATE_EPOCH": "315532800"}  # 1980, the first year that files of
 
 
 def run_pandoc(content: bytes, *options: str, folder: str | Path | None = None) -> bytes:
-    """What pandoc makes of a text; ValueError, which is a fault of whoever made the text, where it refuses it.
+    """What pandoc makes of a text; ValueError, which is a fault of whoever made the text, where it refuses it
+    or does not understand a formula.
 
     Parameters
     ----------
@@ -23,16 +23,11 @@ def run_pandoc(content: bytes, *options: str, folder: str | Path | None = None) 
     options : of its command line
     folder : in which the files lie that the text names; it has none if left out
     """
-    command = [_program(), *options, *(["--sandbox"] if folder is None else [])]
+    command = [_program(), "--fail-if-warnings", *options, *(["--sandbox"] if folder is None else [])]
     done = subprocess.run(command, input=content, capture_output=True, cwd=folder, env=os.environ | EPOCH)
     if done.returncode:
         raise ValueError(done.stderr.decode(errors="replace").strip())
     return done.stdout
-
-
-def pandoc_version() -> Sequence[int]:
-    """Its version, by parts."""
-    return tuple(int(part) for part in pypandoc.get_pandoc_version().split(".")[:2])
 
 
 @cache

@@ -94,14 +94,11 @@ def _changed(document: bytes, changes: Mapping[str, Callable[[str], str]], added
 
 
 def _styles(text: str) -> str:
-    for identity, style in STYLES.items():
-        found = re.compile(rf'<w:style [^>]*w:styleId="{identity}"[^>]*>.*?</w:style>', re.DOTALL)
-        text = (
-            found.sub(lambda _found, style=style: style, text, count=1)
-            if found.search(text)
-            else (text.replace("</w:styles>", f"{style}</w:styles>"))
-        )
-    return re.sub(r"<w:rFonts w:asciiTheme=[^>]*/>", FONTS, text, count=1)
+    """Pandoc's styles without those that reports have of their own, which stand behind them."""
+    for identity in STYLES:
+        text = re.sub(rf'<w:style [^>]*w:styleId="{identity}"[^>]*>.*?</w:style>', "", text, flags=re.DOTALL)
+    text = re.sub(r"<w:rFonts w:asciiTheme=[^>]*/>", FONTS, text, count=1)
+    return text.replace("</w:styles>", f"{''.join(STYLES.values())}</w:styles>")
 
 
 def _numbering(text: str) -> str:

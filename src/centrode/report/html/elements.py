@@ -49,12 +49,13 @@ def formulas_in(block: Block) -> Iterator[str]:
 
 @dataclass
 class Elements:
-    """Makes the elements of a page, with the numbers of figures and tables."""
+    """Makes the elements of a page, with the numbers of figures, tables and formulas."""
 
     formulas: Formulas
     drawings: Drawings = field(default_factory=Drawings)
     figures: int = 0
     tables: int = 0
+    displayed: int = 0
 
     def text(self, marked: str) -> str:
         """A text with its mathematics."""
@@ -76,7 +77,7 @@ class Elements:
             return self.formula(block)
         if isinstance(block, SystemBlock):
             system = self.formulas.system(block.matrix, block.unknowns, block.right)
-            return f'<div class="formulas"><div class="one system">{system}</div></div>'
+            return self.numbered(f'<div class="one system">{system}</div>')
         if isinstance(block, TableBlock):
             return self.table(block)
         if isinstance(block, CheckBlock):
@@ -100,7 +101,13 @@ class Elements:
             else:
                 drawn.append(f"<p>{BREAK.join(self.formulas.pieces(line[0]))}{BREAK}{right}</p>")
         kind = "aligned" if aligned else "running"
-        return f'<div class="formulas"><div class="{kind}">{"".join(drawn)}</div></div>'
+        return self.numbered(f'<div class="{kind}">{"".join(drawn)}</div>')
+
+    def numbered(self, formula: str) -> str:
+        """A formula on lines of its own, with its number, which can be referred to."""
+        self.displayed += 1
+        number = f'<span class="number" id="formula-{self.displayed}">({self.displayed})</span>'
+        return f'<div class="formulas">{formula}{number}</div>'
 
     def table(self, block: TableBlock) -> str:
         """Rows under heads, with a number if it has a caption."""
