@@ -34,7 +34,8 @@ MECHANISM: Mapping[str, str] = {
     ),
     "tables": (
         "motion = ct.motion(mechanism)\n"
-        'motion[["angle", "angular_velocity", "angular_acceleration"]].to_dataframe().unstack("link")'
+        'display(motion["position"].to_series().unstack(["point", "axis"]))\n'
+        'motion["velocity"].to_series().unstack(["point", "axis"])'
     ),
     "plots": "for figure in ct.figures(ct.motion(mechanism)).values():\n    display(figure)",
     "positions": "ct.plan_of_positions(mechanism)",
