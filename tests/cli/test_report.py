@@ -122,3 +122,17 @@ def test_what_stands_in_the_way_is_told_before_anything_is_computed(centrode: Ce
     assert done.code == 2
     assert done.err.startswith("Error: taken is not a folder")
     assert (folder / "taken").read_text() == "x"
+
+
+def test_the_ending_of_out_names_one_document(centrode: Centrode, folder: Path) -> None:
+    chosen = ("report", "crank-rocker", "--chapters", "structure")
+    done = centrode(*chosen, "--out", "notes/note.docx")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.endswith("1 file in notes: note.docx\n")
+    assert (folder / "notes" / "note.docx").read_bytes()[:2] == b"PK"
+    done = centrode(*chosen, "--out", "notes/note.tex", "--format", "tex")
+    assert (done.code, done.out.splitlines()[-1]) == (0, "1 file in notes: note.tex")
+    done = centrode(*chosen, "--out", "other.ipynb", "--format", "pdf")
+    assert done.code == 2
+    assert done.err.startswith("Error: --format: the ending of other.ipynb names another kind of document")
+    assert not (folder / "other.ipynb").exists()

@@ -46,11 +46,15 @@ MECHANISM: Mapping[str, str] = {
     "axes": "ct.instant_centres(ct.motion(mechanism, at=instants))",
     "masses-and-loads": "{name: link.mass for name, link in mechanism.links.items()}",
     "reduction": "ct.reduce(mechanism)",
-    "flywheel": "ct.flywheel(mechanism)",
+    "flywheel": "print(ct.summary(ct.flywheel(mechanism)))",
     "real-motion": "ct.steady_motion(mechanism)",
     "simulation": "ct.simulate(mechanism)",
     "reactions": "ct.reactions(mechanism)",
-    "force-polygons": "for at in instants:\n    display(ct.force_polygons(mechanism, at=at))",
+    "force-polygons": (
+        "for at in instants:\n"
+        "    for figure in ct.figures(ct.force_polygons(mechanism, at=at)).values():\n"
+        "        display(figure)"
+    ),
     "balance": "ct.shaking(mechanism)",
 }
 """What computes each chapter of a linkage, by its name."""
@@ -61,7 +65,7 @@ CAM: Mapping[str, str] = {
     "path": "ct.cam(cam)",
     "profile": "ct.cam_profile(cam)",
     "cam-forces": "ct.cam_forces(cam)",
-    "walking": "ct.walking_wheel(cam)",
+    "walking": "print(ct.summary(ct.walking_wheel(cam)))",
     "contact": "ct.cam_contact(cam)",
     "choice": "ct.choose_cam(cam, front=False)",
 }
