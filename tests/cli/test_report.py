@@ -69,7 +69,7 @@ def test_hostile_names_are_shown(centrode: Centrode, folder: Path, four_bar: str
         (("--digits", "many"), "Invalid value for '--digits'"),
         (("--at", "1 kg"), "crank-rocker, --at: "),
         (("--at", "x"), "crank-rocker, --at: "),
-        (("--format", "docx"), 'format: "docx" is no format of a report'),
+        (("--format", "odt"), 'format: "odt" is no format of a report'),
         (("--format", ","), "format: no format is named"),
         (("--out", "press.toml"), "press.toml"),
     ],

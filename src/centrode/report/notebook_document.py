@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, TypeAlias
 
 from centrode.locale import _, speaking
@@ -22,60 +22,12 @@ from centrode.report.texts import parts_of
 
 Cell: TypeAlias = dict[str, Any]
 
-MECHANISM: Mapping[str, str] = {
-    "data": "mechanism",
-    "motion": "motion = ct.motion(mechanism)\nmotion",
-    "words": "ct.principle_of_operation(mechanism)",
-    "structure": "ct.check(mechanism)",
-    "equations": "equations = ct.equations(mechanism)\nequations",
-    "derivation": (
-        "at_instants = ct.motion(mechanism, at=instants)\n"
-        'at_instants[["angle", "angular_velocity", "angular_acceleration"]].to_dataframe()'
-    ),
-    "tables": (
-        "motion = ct.motion(mechanism)\n"
-        'display(motion["position"].to_series().unstack(["point", "axis"]))\n'
-        'motion["velocity"].to_series().unstack(["point", "axis"])'
-    ),
-    "plots": "for figure in ct.figures(ct.motion(mechanism)).values():\n    display(figure)",
-    "positions": "ct.plan_of_positions(mechanism)",
-    "graphic": "ct.graphic_analysis(mechanism, instants=instants, incomplete=True)",
-    "centres": "ct.instant_centres(ct.motion(mechanism, at=instants))",
-    "integration": 'ct.integrate(mechanism, method="adaptive")',
-    "rotatability": "ct.rotatability(mechanism)",
-    "axes": "ct.instant_centres(ct.motion(mechanism, at=instants))",
-    "masses-and-loads": "{name: link.mass for name, link in mechanism.links.items()}",
-    "reduction": "ct.reduce(mechanism)",
-    "flywheel": "print(ct.summary(ct.flywheel(mechanism)))",
-    "real-motion": "ct.steady_motion(mechanism)",
-    "simulation": "ct.simulate(mechanism)",
-    "reactions": "ct.reactions(mechanism)",
-    "force-polygons": (
-        "for at in instants:\n"
-        "    for figure in ct.figures(ct.force_polygons(mechanism, at=at)).values():\n"
-        "        display(figure)"
-    ),
-    "balance": "ct.shaking(mechanism)",
-}
-"""What computes each chapter of a linkage, by its name."""
-CAM: Mapping[str, str] = {
-    "data": "cam",
-    "lift": "ct.cam(cam)",
-    "base-radius": "ct.choose_base_radius(cam)",
-    "path": "ct.cam(cam)",
-    "profile": "ct.cam_profile(cam)",
-    "cam-forces": "ct.cam_forces(cam)",
-    "walking": "print(ct.summary(ct.walking_wheel(cam)))",
-    "contact": "ct.cam_contact(cam)",
-    "choice": "ct.choose_cam(cam, front=False)",
-}
-"""What computes each chapter of a cam."""
 PAGE = """from IPython.display import IFrame
 
 chosen = ct.ReportOptions(chapters=({name!r},))
 (page,) = ct.write_report(ct.report({subject}, chosen, language={language!r}), "chapters", ("html",), name={name!r})
 IFrame(page, "100%", 600)"""
-"""What shows a chapter that no function alone computes."""
+"""What shows a chapter that no public function alone computes."""
 BEGIN = "%matplotlib inline\nimport centrode as ct\n\nct.choose_language({language!r});"
 READ = "{subject} = ct.parse_{subject}(description)"
 MARKS = re.compile(r"([\\`*_{}\[\]()#+\-.!|~$^])")
@@ -116,17 +68,11 @@ def _chapter(chapter: ChapterBlocks, language: str, description: DescriptionText
     before = [_prose(section) for section in chapter.sections if section.written == "before"]
     yield _words("\n\n".join([f"## {_shown(chapter.title)}", *reason, *before]))
     if description is not None and chapter.computed and not chapter.missing:
-        yield _code(_computation(chapter.name, language, description))
+        page = PAGE.format(name=chapter.name, subject=description.subject, language=language)
+        yield _code(chapter.code or page)
     after = [_prose(section) for section in chapter.sections if section.written == "after"]
     if after:
         yield _words("\n\n".join(after))
-
-
-def _computation(name: str, language: str, description: DescriptionText) -> str:
-    """What computes a chapter."""
-    known = MECHANISM if description.subject == "mechanism" else CAM
-    page = PAGE.format(name=name, subject=description.subject, language=language)
-    return known.get(name, page)
 
 
 def _prose(section: SectionBlocks) -> str:

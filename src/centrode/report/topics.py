@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from centrode.errors import CentrodeError, InputError, MotionError, NotComputedYet
@@ -34,7 +35,7 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
         return left_out(chapter.name, _(chapter.title), reason)
     if chapter.name not in sheet.chapters:
         return None
-    return document_chapter(chapter.name, sheet, study.numbers)
+    return replace(document_chapter(chapter.name, sheet, study.numbers), code=chapter.code)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:

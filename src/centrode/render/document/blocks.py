@@ -222,8 +222,12 @@ class SectionBlocks:
 class ChapterBlocks:
     """A chapter.
 
-    Where it could not be made, `missing` says why and what would help; where it says why nothing was computed, it is
-    not `computed`.
+    Attributes
+    ----------
+    name, title, sections : of the chapter
+    missing : why it could not be made, and what would help
+    computed : False where it only says why nothing was computed
+    code : what computes it in a notebook
     """
 
     name: str
@@ -231,6 +235,7 @@ class ChapterBlocks:
     sections: tuple[SectionBlocks, ...] = ()
     missing: str = ""
     computed: bool = True
+    code: str = ""
 
 
 @dataclass(frozen=True)
