@@ -69,7 +69,7 @@ def test_hostile_names_are_shown(centrode: Centrode, folder: Path, four_bar: str
         (("--digits", "many"), "Invalid value for '--digits'"),
         (("--at", "1 kg"), "crank-rocker, --at: "),
         (("--at", "x"), "crank-rocker, --at: "),
-        (("--format", "docx"), 'format: "docx" is not a format of a report'),
+        (("--format", "odt"), 'format: "odt" is not a format of a report'),
         (("--format", ","), "format: no format is named"),
         (("--out", "press.toml"), "press.toml"),
     ],
@@ -106,7 +106,7 @@ def test_wrong_files(centrode: Centrode, folder: Path, content: str | None, mess
 def test_an_interrupted_report_leaves_nothing(
     centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(report: object) -> bytes:
+    def interrupted(report: object, name: str) -> dict[str, bytes]:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(files, "FORMATS", {"pdf": interrupted})
@@ -122,3 +122,17 @@ def test_what_stands_in_the_way_is_told_before_anything_is_computed(centrode: Ce
     assert done.code == 2
     assert done.err.startswith("Error: taken is not a folder")
     assert (folder / "taken").read_text() == "x"
+
+
+def test_the_ending_of_out_names_one_document(centrode: Centrode, folder: Path) -> None:
+    chosen = ("report", "crank-rocker", "--chapters", "structure")
+    done = centrode(*chosen, "--out", "notes/note.docx")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.endswith("1 file in notes: note.docx\n")
+    assert (folder / "notes" / "note.docx").read_bytes()[:2] == b"PK"
+    done = centrode(*chosen, "--out", "notes/note.tex", "--format", "tex")
+    assert (done.code, done.out.splitlines()[-1]) == (0, "1 file in notes: note.tex")
+    done = centrode(*chosen, "--out", "other.ipynb", "--format", "pdf")
+    assert done.code == 2
+    assert done.err.startswith("Error: --format: the ending of other.ipynb names another kind of document")
+    assert not (folder / "other.ipynb").exists()

@@ -12,7 +12,8 @@ import pytest
 import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
 from centrode.render.document.typst import TypstSpelling
-from centrode.report.html.mathematics import formulas_of, fragments_of
+from centrode.report.html.mathematics import formulas_of
+from centrode.report.mathematics import fragments_of
 from equation_pages import Relation, entries
 
 EXAMPLES = ["slider-between-cranks", "slider-between-cranks-locked", "six-bar-press", "third-class-triad"]

@@ -118,7 +118,7 @@ def test_files_depend_on_formats_and_language() -> None:
     assert VariantReport(("html", "pdf"), "en").key == VariantReport(("pdf", "html"), "en").key
 
 
-@pytest.mark.parametrize("formats", [(), ("docx",)])
+@pytest.mark.parametrize("formats", [(), ("odt",)])
 def test_wrong_formats_are_refused_before_anything_is_computed(
     formats: tuple[str, ...], tmp_path: Path
 ) -> None:

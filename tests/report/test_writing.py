@@ -28,7 +28,7 @@ def test_documents_are_written_and_replaced(tmp_path: Path) -> None:
 
 
 def test_one_document_that_fails_leaves_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(report: Report) -> bytes:
+    def interrupted(report: Report, name: str) -> dict[str, bytes]:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(files, "FORMATS", {"pdf": files.FORMATS["pdf"], "html": interrupted})
@@ -58,7 +58,7 @@ def test_without_typst_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.parametrize(
     ("formats", "message"),
     [
-        (("docx",), 'format: "docx" is not a format of a report; known are: html, pdf'),
+        (("odt",), 'format: "odt" is not a format of a report; known are: html, pdf, docx, tex, ipynb'),
         ((), "no format is named"),
     ],
 )
@@ -75,7 +75,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
 
 
 def test_a_library_that_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(report: Report) -> bytes:
+    def missing(report: Report, name: str) -> dict[str, bytes]:
         raise ModuleNotFoundError("No module named 'typst'", name="typst")
 
     monkeypatch.setattr(files, "FORMATS", {"pdf": missing})

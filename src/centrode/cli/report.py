@@ -13,9 +13,8 @@ import centrode as ct
 from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.arguments import results_option
 from centrode.cli.progress import Progress
-from centrode.errors import MotionError
+from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
 
 if TYPE_CHECKING:
@@ -34,14 +33,19 @@ _options, _writing = (
     metavar=mark("FILE_OR_EXAMPLE"),
     help=mark("A TOML file, or the name of a built-in mechanism or cam."),
 )
-@results_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark(
+        "Folder for the documents, or one document (note.docx); named after the mechanism if left out."
+    ),
+)
 @click.option(
     "--format",
     "formats",
-    default="html,pdf",
-    show_default=True,
     metavar=mark("KINDS"),
-    help=mark("Kinds of documents, separated by commas: html, pdf."),
+    help=mark("Kinds of documents, separated by commas: html, pdf, docx, tex, ipynb; html,pdf if left out."),
 )
 @click.option(
     "--chapters",
@@ -64,7 +68,7 @@ _options, _writing = (
 def report(
     description: str,
     out: Path | None,
-    formats: str,
+    formats: str | None,
     chapters: str | None,
     instants: tuple[str, ...],
     points: str | None,
@@ -72,8 +76,7 @@ def report(
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
     described = library.load_either(description)
-    folder = output.folder_of(out, description, "report")
-    kinds = _names_in(formats)
+    folder, name, kinds = _place(out, description, formats)
     _writing().check_formats(kinds)
     with about(description):
         options = ct.ReportOptions(
@@ -86,12 +89,25 @@ def report(
         with about(description):
             made = ct.report(described, options, name=Path(description).stem, said=progress.say)
         ct.write_report(
-            made, draft, kinds, said=lambda file: progress.say(_("writing {file}").format(file=file))
+            made, draft, kinds, name, lambda file: progress.say(_("writing {file}").format(file=file))
         )
         names = sorted(path.name for path in draft.iterdir())
     click.echo(_summary(made))
     click.echo("\n" + output.files_in(folder, names))
     _told(made, description)
+
+
+def _place(out: Path | None, description: str, formats: str | None) -> tuple[Path, str, tuple[str, ...]]:
+    """The folder of the documents, their name and their kinds; `--out note.docx` names all three."""
+    kinds = None if formats is None else _names_in(formats)
+    ending = "" if out is None or out.is_dir() else out.suffix.removeprefix(".")
+    if out is None or ending not in _writing().FORMATS:
+        chosen = _writing().DEFAULT_FORMATS if kinds is None else kinds
+        return output.folder_of(out, description, "report"), "report", chosen
+    if kinds is not None and kinds != (ending,):
+        what = _("the ending of {file} names another kind of document").format(file=out.name)
+        raise InputError("--format", what, _("leave one of them out"))
+    return out.parent, out.stem, (ending,)
 
 
 def _names_in(text: str) -> tuple[str, ...]:

@@ -56,10 +56,12 @@ from centrode.model.settings import (
     LEAST_DIGITS,
     MOST_CHAPTERS,
     MOST_DIGITS,
+    PROSE_LENGTH,
     REACHABLE,
     SHAFTS,
     Assembly,
     CamReportWishes,
+    ChapterText,
     Display,
     FlywheelShape,
     Machine,
@@ -136,6 +138,9 @@ def _object(part: type[DescriptionPart], properties: Mapping[type[DescriptionPar
 
 
 CHAPTERS = list_of(NAME, 0, MOST_CHAPTERS)
+CHAPTER_TEXT: dict[str, Schema] = {
+    key: {"type": "string", "maxLength": PROSE_LENGTH} for key in ("before", "after")
+}
 REPORT_DIGITS: Schema = {"type": "integer", "minimum": LEAST_DIGITS, "maximum": MOST_DIGITS}
 _NAMES = list_of(NAME, 2, 2)
 _COORDINATES = list_of(quantity_schema("length"), 2, 3)
@@ -296,11 +301,13 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "to": AMOUNT,
         "range": {"enum": [REACHABLE]},
     },
+    ChapterText: CHAPTER_TEXT,
     ReportWishes: {
         "chapters": CHAPTERS,
         "instants": list_of(AMOUNT, 0, reading.INSTANTS),
         "points": list_of(NAME, 0, reading.POINTS),
         "digits": REPORT_DIGITS,
+        "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     Description: {
         "title": TEXT,
@@ -383,10 +390,12 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "chord_tolerance": above_zero("length"),
         "show_undercut": {"type": "boolean"},
     },
+    ChapterText: CHAPTER_TEXT,
     CamReportWishes: {
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
+        "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     PlateCam: {
         "title": TEXT,
@@ -469,10 +478,12 @@ CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "terms": {"type": "integer", "minimum": 2, "maximum": MOST_TERMS},
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
     },
+    ChapterText: CHAPTER_TEXT,
     CamReportWishes: {
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
+        "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     Cam: {
         "title": TEXT,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
@@ -245,6 +246,8 @@ class Machine(DescriptionPart):
 LEAST_DIGITS, MOST_DIGITS, DIGITS = 2, 12, 5
 """Significant digits of a report's numbers: at least, at most, and where nothing is said."""
 MOST_CHAPTERS = 100
+PROSE_LENGTH = 20_000
+"""Characters of what may be written before or after a chapter."""
 
 
 def read_digits(value: object) -> int:
@@ -257,6 +260,35 @@ def read_digits(value: object) -> int:
     return value
 
 
+def read_prose(value: object) -> str:
+    """A text of several lines."""
+    if not isinstance(value, str):
+        raise Problem(_("expected a text, got {value}").format(value=value_text(value)))
+    if len(value) > PROSE_LENGTH:
+        what = _("a text has at most {most} characters, got {count}")
+        raise Problem(what.format(most=PROSE_LENGTH, count=len(value)), _("shorten it"))
+    if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in "\n\r\t" for letter in value):
+        raise Problem(_("{key} has control characters").format(key=KEY), _("remove them"))
+    return value
+
+
+class ChapterText(DescriptionPart):
+    """What the author writes about a chapter of the report, in Markdown.
+
+    Attributes
+    ----------
+    before, after : what is computed; tags and formulas in them are shown as they are written
+    """
+
+    before: Annotated[str, PlainValidator(read_prose)] = ""
+    after: Annotated[str, PlainValidator(read_prose)] = ""
+
+
+ChapterTexts = Annotated[
+    Mapping[str, ChapterText], table(read_name, MOST_CHAPTERS), AfterValidator(FrozenMap[str, ChapterText])
+]
+
+
 class CamReportWishes(DescriptionPart):
     """What the report of a cam is to hold; what is left out is chosen by the report.
 
@@ -267,11 +299,14 @@ class CamReportWishes(DescriptionPart):
         Angles of the carrier, or of a cam that turns, that tables show.
     digits : int
         Significant digits of numbers.
+    text : names of chapters -> ChapterText
+        Own text before and after chapters.
     """
 
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
     instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
+    text: ChapterTexts = FrozenMap({})
 
 
 class ReportWishes(DescriptionPart):
@@ -286,9 +321,12 @@ class ReportWishes(DescriptionPart):
         Whose velocities and paths are told.
     digits : int
         Significant digits of numbers.
+    text : names of chapters -> ChapterText
+        Own text before and after chapters.
     """
 
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
     instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
     points: Annotated[tuple[Name, ...], bounded_list(reading.POINTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
+    text: ChapterTexts = FrozenMap({})

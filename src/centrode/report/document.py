@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
-from typing import TypeAlias
+from dataclasses import replace
+from typing import Literal, TypeAlias
+
+import lazy_loader
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
+from centrode.model.cam_files import cam_text
 from centrode.model.examples.catalogue import DescriptionSource, description_of
-from centrode.render.document.blocks import ChapterBlocks, Report
+from centrode.model.files import mechanism_text
+from centrode.model.mechanism import Mechanism
+from centrode.model.settings import ChapterText
+from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
 from centrode.report.chapters import CHAPTERS, Kind
+from centrode.report.files import lacking
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
+
+_prose = functools.partial(lazy_loader.load, "centrode.report.prose", suppress_warning=True)
 
 Said: TypeAlias = Callable[[str, int, int], None]
 """Is told the title of the chapter that begins, how many are done, and how many there are."""
@@ -66,7 +77,17 @@ def report(
         chapters = tuple(_chapters(wanted, study, said))
         title = _(description.title) or name or _("Mechanism")
         subtitle = _("Computed by centrode {version}").format(version=__version__)
-        return Report(title, subtitle, chosen_language(), chapters)
+        return Report(title, subtitle, chosen_language(), chapters, _description_text(study))
+
+
+def _description_text(study: ReportStudy) -> DescriptionText:
+    """The description as a file, with the instants of the report."""
+    description, instants = study.description, study.wishes.instants
+    if not isinstance(description, Mechanism):
+        return DescriptionText(cam_text(description), "cam", instants)
+    uniform = description.motion_parameter.is_uniform and len(description.drives) == 1
+    start = description.drives[0].start if uniform else 0.0
+    return DescriptionText(mechanism_text(description), "mechanism", instants or (start or 0.0,))
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:
@@ -75,7 +96,26 @@ def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None)
             said(_(kind.title), done, len(wanted))
         chapter = _chapter(key, kind, study)
         if chapter is not None:
-            yield chapter
+            yield _with_text(chapter, study.description.report.text.get(key))
+
+
+def _with_text(chapter: ChapterBlocks, text: ChapterText | None) -> ChapterBlocks:
+    """A chapter between what its author writes before and after it."""
+    if text is None:
+        return chapter
+    before, after = (
+        _prose_sections(text.before, "before"),
+        _prose_sections(text.after, "after"),
+    )
+    return replace(chapter, sections=(*before, *chapter.sections, *after))
+
+
+def _prose_sections(markdown: str, place: Literal["before", "after"]) -> tuple[SectionBlocks, ...]:
+    """Sections of a text; InputError where the library that reads it is missing."""
+    try:
+        return tuple(_prose().prose_sections(markdown, place)) if markdown else ()
+    except ModuleNotFoundError as missing:
+        raise lacking((missing.name or "").partition(".")[0]) from missing
 
 
 def _chapter(key: str, kind: Kind, study: ReportStudy) -> ChapterBlocks | None:

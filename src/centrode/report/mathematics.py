@@ -1,14 +1,18 @@
-"""Mathematics of reports as it is given to typst: nothing in it may be code, and long formulas can be taken apart."""
+"""Mathematics of reports in typst's notation: nothing in it may be code, and long formulas can be taken apart."""
 
 from __future__ import annotations
 
 import re
 from itertools import pairwise
 
+from centrode.render.document.blocks import SystemBlock
+
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 _CODE = re.compile(r'[#$@`"\\&]|//|/\*')
 _ESCAPED = re.compile(r"\\[/()|,;]")
 _NAME = re.compile(r"[\w.]$")
+LONG = 90
+"""Letters of typst in a piece beyond which it is cut further."""
 _WAVES = ("sin", "cos", "tan", "arcsin", "arccos", "arctan", "exp", "ln")
 
 
@@ -33,6 +37,33 @@ def pieces_of(formula: str, depth: int = 0) -> list[str]:
         apart[place] = f"\\{apart[place]}"
     ends = [0, *places, len(formula)]
     return ["".join(apart[first:last]).strip() for first, last in pairwise(ends)]
+
+
+def fragments_of(spelled: str) -> list[str]:
+    """The pieces that a formula is laid out in; long ones are cut inside of their bracket as well."""
+    found = []
+    for piece in pieces_of(check_formula(spelled)):
+        found += pieces_of(piece, depth=1) if len(piece) > LONG else [piece]
+    return found
+
+
+def relations_of(system: SystemBlock) -> list[tuple[str, ...]]:
+    """The equations of a system that no page is wide enough for."""
+    lines: list[tuple[str, ...]] = []
+    for row, right in zip(system.matrix, system.right, strict=True):
+        terms = [
+            _term(entry, unknown) for entry, unknown in zip(row, system.unknowns, strict=True) if entry != "0"
+        ]
+        text = " + ".join(terms).replace("+ -", "- ") or "0"
+        lines.append((text, right))
+    return lines
+
+
+def _term(entry: str, unknown: str) -> str:
+    if entry in ("1", "-1"):
+        return f"{entry[:-1]}{unknown}"
+    several = len(pieces_of(entry)) > 1
+    return f"({entry}) {unknown}" if several else f"{entry} {unknown}"
 
 
 def _signs(formula: str, depth: int) -> tuple[list[int], list[int]]:

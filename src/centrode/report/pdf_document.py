@@ -21,13 +21,15 @@ from centrode.render.document.blocks import (
     Moving,
     ParagraphBlock,
     Picture,
+    ProseBlock,
     Report,
     SectionBlocks,
+    Span,
     SystemBlock,
     TableBlock,
 )
 from centrode.render.document.typst import quote
-from centrode.report.mathematics import check_formula, pieces_of
+from centrode.report.mathematics import check_formula, pieces_of, relations_of
 from centrode.report.texts import parts_of
 
 # A report as the source of a typst document; everything a user wrote stands in it as a string.
@@ -57,6 +59,7 @@ class Source:
 
     def __init__(self, report: Report) -> None:
         self.files: dict[str, bytes] = {}
+        self.formulas = 0
         self.text = "\n".join(self._document(report)) + "\n"
 
     def _document(self, report: Report) -> Iterator[str]:
@@ -94,19 +97,30 @@ class Source:
         return f"#par({content(block.text)})"
 
     @_shown.register
+    def _prose(self, block: ProseBlock) -> str:
+        paragraphs = [f"[{''.join(map(_span, one))}]" for one in block.paragraphs]
+        if block.kind == "paragraph":
+            return "\n".join(f"#par({one})" for one in paragraphs)
+        return f"#{'enum' if block.kind == 'numbers' else 'list'}({', '.join(paragraphs)})"
+
+    @_shown.register
     def _items(self, block: ItemsBlock) -> str:
         kind = "enum" if block.numbered else "list"
         return f"#{kind}({', '.join(map(content, block.texts))})"
 
     @_shown.register
     def _formula(self, block: FormulaBlock) -> str:
-        return f"#relations({_relations(block.lines)})"
+        return self._numbered(f"relations({_relations(block.lines)})")
 
     @_shown.register
     def _system(self, block: SystemBlock) -> str:
         matrix = _array([_array([_math(entry) for entry in row]) for row in block.matrix])
         unknowns, right = (_array([_math(one) for one in column]) for column in (block.unknowns, block.right))
-        return f"#system({matrix}, {unknowns}, {right}, {_relations(_one_by_one(block))})"
+        return self._numbered(f"system({matrix}, {unknowns}, {right}, {_relations(relations_of(block))})")
+
+    def _numbered(self, formula: str) -> str:
+        self.formulas += 1
+        return f"#numbered({self.formulas}, {formula})"
 
     @_shown.register
     def _table(self, block: TableBlock) -> str:
@@ -121,7 +135,7 @@ class Source:
     def _picture(self, block: Picture) -> str:
         name = f"pictures/{len(self.files) + 1}.svg"
         self.files[name] = block.svg
-        return f"#picture({quote(name)}, {_width(block):.3f}in, {_caption(block.caption)})"
+        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)})"
 
     @_shown.register
     def _moving(self, block: Moving) -> str:
@@ -153,6 +167,13 @@ def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
     parts = [_math(part.text) if part.mathematics else f"#{quote(part.text)};" for part in parts_of(marked)]
     return f"[{''.join(parts)}]"
+
+
+def _span(span: Span) -> str:
+    """A stretch of a user's text as content."""
+    shown = f"raw({quote(span.text)})" if span.code else f"text({quote(span.text)})"
+    shown = f"emph({shown})" if span.emphasized else shown
+    return f"#{f'strong({shown})' if span.strong else shown};"
 
 
 def _math(formula: str) -> str:
@@ -187,25 +208,6 @@ def _pieces(formula: str) -> str:
     return _array(found)
 
 
-def _one_by_one(system: SystemBlock) -> list[tuple[str, ...]]:
-    """The equations of a system that no page is wide enough for."""
-    lines: list[tuple[str, ...]] = []
-    for row, right in zip(system.matrix, system.right, strict=True):
-        terms = [
-            _term(entry, unknown) for entry, unknown in zip(row, system.unknowns, strict=True) if entry != "0"
-        ]
-        text = " + ".join(terms).replace("+ -", "- ") or "0"
-        lines.append((text, right))
-    return lines
-
-
-def _term(entry: str, unknown: str) -> str:
-    if entry in ("1", "-1"):
-        return f"{entry[:-1]}{unknown}"
-    several = len(pieces_of(entry)) > 1
-    return f"({entry}) {unknown}" if several else f"{entry} {unknown}"
-
-
 def _column(head: str, cells: Sequence[str], number: bool) -> str:
     """What the width of a column is measured by: its head, the words that may not be cut, its longest cells."""
     longest = sorted(set(cells), key=lambda cell: (-len(cell), cell))[:WIDEST] or [""]
@@ -233,7 +235,7 @@ def _words(text: str) -> list[str]:
     return found
 
 
-def _width(picture: Picture) -> float:
+def picture_width(picture: Picture) -> float:
     """Width [in] of a picture, reduced where a page has not the room for it; of one to scale, where paper has not."""
     if picture.to_scale:
         return min(picture.width, PAPER_WIDTH)

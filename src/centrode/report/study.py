@@ -83,6 +83,7 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     if found.chapters is not None and not found.chapters:
         raise InputError(where, _("no chapter is named"), nearest("", list(known)))
     _check(found.chapters, known, where, _("there is no chapter {name}"))
+    _check(asked.text, known, "[report.text]", _("there is no chapter {name}"))
     names = description.points if isinstance(description, Mechanism) else ()
     _check(found.points, names, "points", _("unknown point {name}"))
     moving = description.moving_points if isinstance(description, Mechanism) else ()

@@ -1,9 +1,21 @@
-"""Text with mathematics between dollar signs, taken apart."""
+"""The texts of a report, with mathematics between dollar signs, taken apart."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+
+from centrode.render.document.blocks import (
+    Block,
+    CheckBlock,
+    ItemsBlock,
+    Moving,
+    ParagraphBlock,
+    Picture,
+    Report,
+    TableBlock,
+)
 
 PART = re.compile(r"\$((?:[^$\\]|\\.)*)\$|((?:[^$\\]|\\.)+|.)", re.DOTALL)
 """Mathematics, which keeps its backslashes, or text; a dollar sign or backslash that has no partner is text."""
@@ -29,3 +41,24 @@ def parts_of(marked: str) -> list[TextPart]:
         else:
             found.append(TextPart(ESCAPED.sub(r"\1", plain)))
     return [part for part in found if part.text]
+
+
+def blocks_of(report: Report) -> Iterator[Block]:
+    """All blocks of a report in their order."""
+    for chapter in report.chapters:
+        for section in chapter.sections:
+            yield from section.blocks
+
+
+def texts_of(block: Block) -> Iterator[str]:
+    """The texts of a block in which parts between dollar signs are mathematics."""
+    if isinstance(block, ParagraphBlock | CheckBlock):
+        yield block.text
+    elif isinstance(block, ItemsBlock):
+        yield from block.texts
+    elif isinstance(block, TableBlock):
+        yield from (block.caption, *block.head)
+        for row in block.rows:
+            yield from row
+    elif isinstance(block, Picture | Moving):
+        yield block.caption

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from centrode.errors import CentrodeError, InputError, MotionError, NotComputedYet
@@ -34,7 +35,7 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
         return left_out(chapter.name, _(chapter.title), reason)
     if chapter.name not in sheet.chapters:
         return None
-    return document_chapter(chapter.name, sheet, study.numbers)
+    return replace(document_chapter(chapter.name, sheet, study.numbers), code=chapter.code)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
@@ -64,4 +65,4 @@ def left_out(name: str, title: str, reason: CentrodeError) -> ChapterBlocks:
     """A chapter that nobody has chosen and that cannot be computed: it says why."""
     where = f"{reason.where}: " if reason.where else ""
     text = _("Omitted: {reason}").format(reason=shown(f"{where}{reason.what}"))
-    return ChapterBlocks(name, title, (SectionBlocks("", (ParagraphBlock(text),)),))
+    return ChapterBlocks(name, title, (SectionBlocks("", (ParagraphBlock(text),)),), computed=False)

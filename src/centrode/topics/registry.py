@@ -60,7 +60,13 @@ INTEGRATE = Topic(
         samples=False,
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("integration", mark("Integration of the equations")),),
+        chapters=(
+            ChapterOfTopic(
+                "integration",
+                mark("Integration of the equations"),
+                code='ct.integrate(mechanism, method="adaptive")',
+            ),
+        ),
         arguments={"method": "adaptive"},
         instants=False,
     ),
@@ -157,7 +163,9 @@ REDUCTION = Topic(
         help=mark("Reduce masses and loads to the drive, with the share of each."),
         options=(RangeOptions(),),
     ),
-    document=InDocuments(chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),)),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive"), code="ct.reduce(mechanism)"),)
+    ),
 )
 
 FLYWHEEL = Topic(
@@ -187,8 +195,8 @@ FLYWHEEL = Topic(
     ),
     document=InDocuments(
         chapters=(
-            ChapterOfTopic("flywheel", mark("Flywheel")),
-            ChapterOfTopic("real-motion", mark("Real motion")),
+            ChapterOfTopic("flywheel", mark("Flywheel"), code="print(ct.summary(ct.flywheel(mechanism)))"),
+            ChapterOfTopic("real-motion", mark("Real motion"), code="ct.steady_motion(mechanism)"),
         ),
         may_be_left_out=True,
     ),
@@ -222,7 +230,8 @@ SIMULATION = Topic(
         ending=Lazily("centrode.dynamics.simulation.results", "check_ended"),
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("simulation", mark("Motion under loads")),), instants=False
+        chapters=(ChapterOfTopic("simulation", mark("Motion under loads"), code="ct.simulate(mechanism)"),),
+        instants=False,
     ),
 )
 
@@ -249,7 +258,9 @@ REACTIONS = Topic(
         complete="complete",
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("reactions", mark("Reactions in the joints")),),
+        chapters=(
+            ChapterOfTopic("reactions", mark("Reactions in the joints"), code="ct.reactions(mechanism)"),
+        ),
         add_instants=Lazily("centrode.dynamics.bearings.results", "with_instants"),
         may_be_left_out=True,
         may_be_incomplete=True,
@@ -320,7 +331,10 @@ SHAKING = Topic(
     view=Lazily("centrode.views.balance", "shaking_sheet"),
     concerns=Lazily("centrode.dynamics.balancing.results", "may_shake"),
     document=InDocuments(
-        chapters=(ChapterOfTopic("balance", mark("Shaking forces and balance")),), instants=False
+        chapters=(
+            ChapterOfTopic("balance", mark("Shaking forces and balance"), code="ct.shaking(mechanism)"),
+        ),
+        instants=False,
     ),
 )
 
@@ -364,11 +378,13 @@ CENTRES = Topic(
                 "centres",
                 mark("Instant centres of velocity"),
                 concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
+                code="ct.instant_centres(ct.motion(mechanism, at=instants))",
             ),
             ChapterOfTopic(
                 "axes",
                 mark("Instantaneous axes"),
                 concerns=Lazily("centrode.analysis.instant_centres.results", "is_on_sphere"),
+                code="ct.instant_centres(ct.motion(mechanism, at=instants))",
             ),
         ),
         may_be_left_out=True,
@@ -415,8 +431,8 @@ FOLLOWER_MOTION = Topic(
     concerns=Lazily("centrode.model.cam_files", "has_follower"),
     document=InDocuments(
         chapters=(
-            ChapterOfTopic("data", mark("Data")),
-            ChapterOfTopic("lift", mark("Motion of the follower")),
+            ChapterOfTopic("data", mark("Data"), code="cam"),
+            ChapterOfTopic("lift", mark("Motion of the follower"), code="ct.cam(cam)"),
         )
     ),
     subject="cam",
@@ -468,7 +484,7 @@ ROTATABILITY = Topic(
         samples=False,
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("rotatability", mark("Rotatability")),),
+        chapters=(ChapterOfTopic("rotatability", mark("Rotatability"), code="ct.rotatability(mechanism)"),),
         arguments={"complete": True},
         instants=False,
     ),
@@ -509,7 +525,17 @@ FORCE_POLYGONS = Topic(
         dark=True,
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("force-polygons", mark("Force polygons")),),
+        chapters=(
+            ChapterOfTopic(
+                "force-polygons",
+                mark("Force polygons"),
+                code=(
+                    "for at in instants:\n"
+                    "    for figure in ct.figures(ct.force_polygons(mechanism, at=at)).values():\n"
+                    "        display(figure)"
+                ),
+            ),
+        ),
         # drawings on a sheet of this size fit between the margins of a page
         arguments={"paper": "A5", "complete": False},
     ),
@@ -536,7 +562,11 @@ PLAN = Topic(
         dark=True,
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("positions", mark("Plan of positions")),), instants=False, points=True
+        chapters=(
+            ChapterOfTopic("positions", mark("Plan of positions"), code="ct.plan_of_positions(mechanism)"),
+        ),
+        instants=False,
+        points=True,
     ),
 )
 
@@ -585,7 +615,14 @@ DIAGRAMS = Topic(
         dark=True,
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("graphic", mark("Graph-analytic check")),), arguments={"incomplete": True}
+        chapters=(
+            ChapterOfTopic(
+                "graphic",
+                mark("Graph-analytic check"),
+                code="ct.graphic_analysis(mechanism, instants=instants, incomplete=True)",
+            ),
+        ),
+        arguments={"incomplete": True},
     ),
 )
 
@@ -605,9 +642,21 @@ RUN = Topic(
     ),
     document=InDocuments(
         chapters=(
-            ChapterOfTopic("motion", mark("Motion")),
-            ChapterOfTopic("tables", mark("Tables of the motion")),
-            ChapterOfTopic("plots", mark("Plots of the motion")),
+            ChapterOfTopic("motion", mark("Motion"), code="motion = ct.motion(mechanism)\nmotion"),
+            ChapterOfTopic(
+                "tables",
+                mark("Tables of the motion"),
+                code=(
+                    "motion = ct.motion(mechanism)\n"
+                    'display(motion["position"].to_series().unstack(["point", "axis"]))\n'
+                    'motion["velocity"].to_series().unstack(["point", "axis"])'
+                ),
+            ),
+            ChapterOfTopic(
+                "plots",
+                mark("Plots of the motion"),
+                code="for figure in ct.figures(ct.motion(mechanism)).values():\n    display(figure)",
+            ),
         ),
         add_instants=Lazily("centrode.dynamics.motion_results", "with_instants"),
         wished=True,
@@ -626,7 +675,10 @@ CHECK = Topic(
         prints_only=True,
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("data", mark("Data")), ChapterOfTopic("structure", mark("Structure"))),
+        chapters=(
+            ChapterOfTopic("data", mark("Data"), code="mechanism"),
+            ChapterOfTopic("structure", mark("Structure"), code="ct.check(mechanism)"),
+        ),
         instants=False,
     ),
 )
@@ -672,8 +724,19 @@ EQUATIONS = Topic(
     ),
     document=InDocuments(
         chapters=(
-            ChapterOfTopic("equations", mark("Constraint equations")),
-            ChapterOfTopic("derivation", mark("Velocities and accelerations")),
+            ChapterOfTopic(
+                "equations",
+                mark("Constraint equations"),
+                code="equations = ct.equations(mechanism)\nequations",
+            ),
+            ChapterOfTopic(
+                "derivation",
+                mark("Velocities and accelerations"),
+                code=(
+                    "at_instants = ct.motion(mechanism, at=instants)\n"
+                    'at_instants[["angle", "angular_velocity", "angular_acceleration"]].to_dataframe()'
+                ),
+            ),
         ),
         points=True,
         may_be_left_out=True,
@@ -692,7 +755,12 @@ DESCRIBE = Topic(
         file_help=WRITTEN_PAGE,
         samples=False,
     ),
-    document=InDocuments(chapters=(ChapterOfTopic("words", mark("How it works")),), instants=False),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic("words", mark("How it works"), code="ct.principle_of_operation(mechanism)"),
+        ),
+        instants=False,
+    ),
 )
 
 GIVEN_MASSES = Topic(
@@ -702,7 +770,14 @@ GIVEN_MASSES = Topic(
     view=Lazily("centrode.views.masses_and_loads", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     document=InDocuments(
-        chapters=(ChapterOfTopic("masses-and-loads", mark("Masses and loads")),), instants=False
+        chapters=(
+            ChapterOfTopic(
+                "masses-and-loads",
+                mark("Masses and loads"),
+                code="{name: link.mass for name, link in mechanism.links.items()}",
+            ),
+        ),
+        instants=False,
     ),
 )
 
@@ -712,7 +787,13 @@ BASE_RADIUS = Topic(
     result=Lazily("centrode.cams.followers.base_radius_results", "BaseRadiusResults"),
     view=Lazily("centrode.views.base_radius", "sheet"),
     concerns=Lazily("centrode.cams.followers.base_circle", "has_size"),
-    document=InDocuments(chapters=(ChapterOfTopic("base-radius", mark("Choice of the base radius")),)),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic(
+                "base-radius", mark("Choice of the base radius"), code="ct.choose_base_radius(cam)"
+            ),
+        )
+    ),
     subject="cam",
 )
 
@@ -734,7 +815,7 @@ FOLLOWER_PROFILE = Topic(
     document=InDocuments(
         chapters=(
             ChapterOfTopic("motion", mark("Motion")),
-            ChapterOfTopic("profile", mark("Profile of the cam")),
+            ChapterOfTopic("profile", mark("Profile of the cam"), code="ct.cam_profile(cam)"),
         )
     ),
     subject="cam",
@@ -749,8 +830,8 @@ ROLLER_PATH = Topic(
     concerns=HAS_CURVATURE_LAW,
     document=InDocuments(
         chapters=(
-            ChapterOfTopic("data", mark("Data")),
-            ChapterOfTopic("path", mark("Path of the roller's centre")),
+            ChapterOfTopic("data", mark("Data"), code="cam"),
+            ChapterOfTopic("path", mark("Path of the roller's centre"), code="ct.cam(cam)"),
         ),
         instants=False,
     ),
@@ -790,7 +871,11 @@ FOLLOWER_FORCES = Topic(
     view=Lazily("centrode.views.follower_forces", "sheet"),
     concerns=Lazily("centrode.cams.followers.force_results", "has_forces"),
     document=InDocuments(
-        chapters=(ChapterOfTopic("cam-forces", mark("Forces on the cam and the follower")),)
+        chapters=(
+            ChapterOfTopic(
+                "cam-forces", mark("Forces on the cam and the follower"), code="ct.cam_forces(cam)"
+            ),
+        )
     ),
     subject="cam",
 )
@@ -809,7 +894,10 @@ CAM_PROFILE = Topic(
         animation=Lazily("centrode.animation.cams", "animate_body_of"),
         animation_file="cam.gif",
     ),
-    document=InDocuments(chapters=(ChapterOfTopic("profile", mark("Profile of the cam")),), instants=False),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("profile", mark("Profile of the cam"), code="ct.cam_profile(cam)"),),
+        instants=False,
+    ),
     subject="cam",
 )
 
@@ -829,7 +917,10 @@ WALKING_WHEEL = Topic(
         animation_file="walking-wheel.gif",
     ),
     document=InDocuments(
-        chapters=(ChapterOfTopic("motion", mark("Motion")), ChapterOfTopic("walking", mark("Walking wheel")))
+        chapters=(
+            ChapterOfTopic("motion", mark("Motion")),
+            ChapterOfTopic("walking", mark("Walking wheel"), code="print(ct.summary(ct.walking_wheel(cam)))"),
+        )
     ),
     subject="cam",
 )
@@ -842,7 +933,8 @@ CAM_CONTACT = Topic(
     view=Lazily("centrode.views.cam_contact", "sheet"),
     concerns=Lazily("centrode.cams.results", "has_contact"),
     document=InDocuments(
-        chapters=(ChapterOfTopic("contact", mark("Contact of roller and cam")),), instants=False
+        chapters=(ChapterOfTopic("contact", mark("Contact of roller and cam"), code="ct.cam_contact(cam)"),),
+        instants=False,
     ),
     subject="cam",
 )
@@ -856,7 +948,9 @@ CAM_CHOICE = Topic(
     # the front of best designs takes longer than all the rest
     command=Command(help="", samples=False, complete="front"),
     document=InDocuments(
-        chapters=(ChapterOfTopic("choice", mark("Chosen parameters")),),
+        chapters=(
+            ChapterOfTopic("choice", mark("Chosen parameters"), code="ct.choose_cam(cam, front=False)"),
+        ),
         arguments={"front": False},
         chosen_arguments={"front": True},
         instants=False,

@@ -163,11 +163,14 @@ class ChapterOfTopic:
     name : of the chapter
     title : marked for the catalogues
     concerns : whether a mechanism has what the chapter is about; as of the topic if None
+    code : what computes and shows it in a notebook, by public functions, from `mechanism` (or `cam`) at `instants`;
+        if empty, the notebook shows the chapter as a page
     """
 
     name: str
     title: str
     concerns: Lazily | None = None
+    code: str = ""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -31,6 +31,30 @@ class ItemsBlock:
 
     texts: tuple[str, ...]
     numbered: bool = False
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of a user's own text, shown as it is."""
+
+    text: str
+    strong: bool = False
+    emphasized: bool = False
+    code: bool = False
+
+
+@dataclass(frozen=True)
+class ProseBlock:
+    """What a user wrote about a chapter: a paragraph, or items below each other.
+
+    Attributes
+    ----------
+    paragraphs : each its stretches; nothing in them is mathematics
+    kind : one paragraph, items with marks, items with numbers
+    """
+
+    paragraphs: tuple[tuple[Span, ...], ...]
+    kind: Literal["paragraph", "bullets", "numbers"] = "paragraph"
 
 
 @dataclass(frozen=True)
@@ -170,26 +194,64 @@ class Moving:
 
 
 Block: TypeAlias = (
-    ParagraphBlock | ItemsBlock | FormulaBlock | SystemBlock | TableBlock | Picture | CheckBlock | Moving
+    ParagraphBlock
+    | ProseBlock
+    | ItemsBlock
+    | FormulaBlock
+    | SystemBlock
+    | TableBlock
+    | Picture
+    | CheckBlock
+    | Moving
 )
 
 
 @dataclass(frozen=True)
 class SectionBlocks:
-    """A heading below a chapter's, and what stands under it."""
+    """A heading below a chapter's, and what stands under it.
+
+    `written` says where a user's own text has its place, before or after what is computed; else it is empty.
+    """
 
     title: str
     blocks: tuple[Block, ...]
+    written: Literal["", "before", "after"] = ""
 
 
 @dataclass(frozen=True)
 class ChapterBlocks:
-    """A chapter; where it could not be made, `missing` says why and what would help."""
+    """A chapter.
+
+    Attributes
+    ----------
+    name, title, sections : of the chapter
+    missing : why it could not be made, and what would help
+    computed : False where it only says why nothing was computed
+    code : what computes it in a notebook
+    """
 
     name: str
     title: str
     sections: tuple[SectionBlocks, ...] = ()
     missing: str = ""
+    computed: bool = True
+    code: str = ""
+
+
+@dataclass(frozen=True)
+class DescriptionText:
+    """What a report is about, as a file: a notebook computes everything anew from it.
+
+    Attributes
+    ----------
+    text : of the description (TOML)
+    subject : "mechanism" or "cam"
+    instants : values of the drive that are shown [rad or m; s with several drives]
+    """
+
+    text: str
+    subject: Literal["mechanism", "cam"]
+    instants: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -201,9 +263,11 @@ class Report:
     title, subtitle : shown on the first page; the subtitle says what was computed, by which version
     language : "en", "ru" or "uk": hyphenation, and the word for contents
     chapters : in the order of the document
+    description : what the report is about; None of a sheet about many
     """
 
     title: str
     subtitle: str
     language: str
     chapters: tuple[ChapterBlocks, ...] = field(default=())
+    description: DescriptionText | None = None

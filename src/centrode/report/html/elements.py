@@ -16,26 +16,20 @@ from centrode.render.document.blocks import (
     Moving,
     ParagraphBlock,
     Picture,
-    Report,
+    ProseBlock,
+    Span,
     SystemBlock,
     TableBlock,
 )
 from centrode.report.html.drawings import Drawings
-from centrode.report.html.mathematics import Formulas, fragments_of
+from centrode.report.html.mathematics import Formulas
 from centrode.report.html.stage import stage_of
-from centrode.report.mathematics import check_formula
-from centrode.report.texts import parts_of
+from centrode.report.mathematics import check_formula, fragments_of
+from centrode.report.texts import parts_of, texts_of
 
 BREAK = "<wbr>"
 LONG = 60
 """Characters of a left side from which on it is not aligned but runs on with its line."""
-
-
-def blocks_of(report: Report) -> Iterator[Block]:
-    """All blocks of a report in their order."""
-    for chapter in report.chapters:
-        for section in chapter.sections:
-            yield from section.blocks
 
 
 def formulas_in(block: Block) -> Iterator[str]:
@@ -49,31 +43,19 @@ def formulas_in(block: Block) -> Iterator[str]:
         for row in (*block.matrix, block.unknowns, block.right):
             yield from map(check_formula, row)
     else:
-        for text in _texts(block):
+        for text in texts_of(block):
             yield from (check_formula(part.text) for part in parts_of(text) if part.mathematics)
-
-
-def _texts(block: Block) -> Iterator[str]:
-    if isinstance(block, ParagraphBlock | CheckBlock):
-        yield block.text
-    elif isinstance(block, ItemsBlock):
-        yield from block.texts
-    elif isinstance(block, TableBlock):
-        yield from (block.caption, *block.head)
-        for row in block.rows:
-            yield from row
-    elif isinstance(block, Picture | Moving):
-        yield block.caption
 
 
 @dataclass
 class Elements:
-    """Makes the elements of a page, with the numbers of figures and tables."""
+    """Makes the elements of a page, with the numbers of figures, tables and formulas."""
 
     formulas: Formulas
     drawings: Drawings = field(default_factory=Drawings)
     figures: int = 0
     tables: int = 0
+    displayed: int = 0
 
     def text(self, marked: str) -> str:
         """A text with its mathematics."""
@@ -86,6 +68,8 @@ class Elements:
         """A block."""
         if isinstance(block, ParagraphBlock):
             return f"<p>{self.text(block.text)}</p>"
+        if isinstance(block, ProseBlock):
+            return _prose(block)
         if isinstance(block, ItemsBlock):
             kind = "ol" if block.numbered else "ul"
             return f"<{kind}>{''.join(f'<li>{self.text(one)}</li>' for one in block.texts)}</{kind}>"
@@ -93,7 +77,7 @@ class Elements:
             return self.formula(block)
         if isinstance(block, SystemBlock):
             system = self.formulas.system(block.matrix, block.unknowns, block.right)
-            return f'<div class="formulas"><div class="one system">{system}</div></div>'
+            return self.numbered(f'<div class="one system">{system}</div>')
         if isinstance(block, TableBlock):
             return self.table(block)
         if isinstance(block, CheckBlock):
@@ -117,7 +101,13 @@ class Elements:
             else:
                 drawn.append(f"<p>{BREAK.join(self.formulas.pieces(line[0]))}{BREAK}{right}</p>")
         kind = "aligned" if aligned else "running"
-        return f'<div class="formulas"><div class="{kind}">{"".join(drawn)}</div></div>'
+        return self.numbered(f'<div class="{kind}">{"".join(drawn)}</div>')
+
+    def numbered(self, formula: str) -> str:
+        """A formula on lines of its own, with its number, which can be referred to."""
+        self.displayed += 1
+        number = f'<span class="number" id="formula-{self.displayed}">({self.displayed})</span>'
+        return f'<div class="formulas">{formula}{number}</div>'
 
     def table(self, block: TableBlock) -> str:
         """Rows under heads, with a number if it has a caption."""
@@ -171,6 +161,22 @@ class Elements:
         self.figures += 1
         number = html.escape(_("Figure {number}").format(number=self.figures))
         return f"<figcaption><b>{number}.</b> {self.text(text)}</figcaption>"
+
+
+def _prose(block: ProseBlock) -> str:
+    """What a user wrote about a chapter."""
+    paragraphs = ["".join(map(_span, one)) for one in block.paragraphs]
+    if block.kind == "paragraph":
+        return "".join(f"<p>{one}</p>" for one in paragraphs)
+    kind = "ol" if block.kind == "numbers" else "ul"
+    return f"<{kind}>{''.join(f'<li>{one}</li>' for one in paragraphs)}</{kind}>"
+
+
+def _span(span: Span) -> str:
+    text = html.escape(span.text)
+    for tag, wanted in (("code", span.code), ("em", span.emphasized), ("strong", span.strong)):
+        text = f"<{tag}>{text}</{tag}>" if wanted else text
+    return text
 
 
 def _cells(row: Iterable[str], kinds: list[str]) -> Iterator[tuple[str, str]]:

@@ -11,7 +11,7 @@ from xml.etree import ElementTree as Xml
 
 import typst
 
-from centrode.report.mathematics import check_formula, pieces_of
+from centrode.report.mathematics import fragments_of
 
 FORMULA = re.compile(r"<math\b.*?</math>", re.DOTALL)
 STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
@@ -21,8 +21,6 @@ ABOVE = {"\u0307": "\u02d9", "\u0308": "\u00a8", ARROW: "\u2192"}
 SIGNS = {"+", "\u2212", "-", "±", "∓"}
 PRIMES = {"\u2032", "\u2033", "\u2034"}
 """Browsers take for a superscript the letter that is raised by itself, and raise it twice."""
-LONG = 90
-"""Letters of typst in a piece beyond which it is cut further."""
 
 
 @dataclass(frozen=True)
@@ -65,14 +63,6 @@ class Formulas:
                 Xml.SubElement(line, "mtd").extend(copy.deepcopy(list(self.found[entry])))
         whole.append(_operator(")", "postfix"))
         return whole
-
-
-def fragments_of(spelled: str) -> list[str]:
-    """The pieces that a formula is laid out in; long ones are cut inside of their bracket as well."""
-    found = []
-    for piece in pieces_of(check_formula(spelled)):
-        found += pieces_of(piece, depth=1) if len(piece) > LONG else [piece]
-    return found
 
 
 def formulas_of(spelled: Iterable[str]) -> Formulas:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import ChapterBlocks, Report, SectionBlocks
-from centrode.report.html.elements import Elements, blocks_of, formulas_in
+from centrode.report.html.elements import Elements, formulas_in
 from centrode.report.html.mathematics import formulas_of
+from centrode.report.texts import blocks_of
 
 HERE = Path(__file__).parent
 FONT = "math-font.woff2"

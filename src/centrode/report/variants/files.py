@@ -16,7 +16,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
 from centrode.report.document import report
-from centrode.report.files import FORMATS, check_formats, document, write_report
+from centrode.report.files import DEFAULT_FORMATS, check_formats, document, write_report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answers import answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, write_variants
@@ -49,8 +49,7 @@ class VariantReport:
                 title=_(mechanism.title) or _("Mechanism"), name=results.row.variant
             )
             made = report(mechanism, ReportOptions(), language=self.language)
-            named = Report(title, made.subtitle, made.language, made.chapters)
-            write_report(named, folder, self.formats)
+            write_report(replace(made, title=title), folder, self.formats)
             study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
             text = answers_of(study).json_text()
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")
@@ -62,7 +61,7 @@ def write_variant_reports(
     folder: str | Path,
     jobs: int = 1,
     figures: bool = False,
-    formats: Sequence[str] = tuple(FORMATS),
+    formats: Sequence[str] = DEFAULT_FORMATS,
     language: str | None = None,
     progress: Progress | None = None,
     spelling: TableSpelling | None = None,
@@ -73,7 +72,7 @@ def write_variant_reports(
     ----------
     topology, table, folder, jobs, figures, progress, spelling : as of `write_variants`
         Those finished before with the same numbers, formats and language are not made again.
-    formats : "html", "pdf"
+    formats : "html", "pdf", "docx", "tex", "ipynb"
     language : "en", "ru" or "uk", optional
         Of the reports; the language spoken at the moment if left out.
 
