@@ -190,12 +190,12 @@ def test_unknown_display_units_are_refused(length: str, angle: str) -> None:
 
 
 def test_labels_of_axes() -> None:
-    assert QUANTITIES["angular_acceleration"].label(angle="deg") == "angular acceleration ε, deg/s²"
+    assert QUANTITIES["angular_acceleration"].label(angle="deg") == "angular acceleration ε, °/s²"
     assert QUANTITIES["residual"].label() == "closure residual over the greatest length"
     assert typeset_unit("mm/deg^2") == "mm/deg²"
     locale.choose_language("ru")
     try:
-        assert QUANTITIES["velocity_coefficient"].label("mm", "deg") == "аналог скорости r′, mm/deg"
+        assert QUANTITIES["velocity_coefficient"].label("mm", "deg") == "аналог скорости r′, мм/°"
         assert quantities.status_word(Status.OPEN) == "не замыкается"
     finally:
         locale.choose_language("en")

@@ -113,7 +113,7 @@ def test_numbers_of_pictures_are_spelled_once() -> None:
         assert with_decimal_mark("1.5, B2.1, $r_{1.5}$, 2.0.1") == "1,5, B2.1, $r_{1.5}$, 2.0.1"
 
 
-@pytest.mark.parametrize(("language", "said"), [("en", "φ = 28.6 deg"), ("ru", "φ = 28,6 deg")])
+@pytest.mark.parametrize(("language", "said"), [("en", "φ = 28.6°"), ("ru", "φ = 28,6°")])
 def test_captions_of_animations(language: str, said: str) -> None:
     with speaking(language):
         assert turned_caption(0.5, ct.example("six-bar-press").display) == said

@@ -174,7 +174,7 @@ def test_names_come_out_character_by_character(hostile: str, language: str, tmp_
     document = DocumentSpelling(Numbers(display)).text(text)
     assert f"({hostile})" in document.replace(r"\$", "$")
     mark = "." if language == "en" else ","
-    assert document.startswith(f"1{mark}5 kg")
+    assert document.startswith(f"1{mark}5 {'kg' if language == 'en' else 'кг'}")
     table = Table(
         (Column("name", (Name(hostile), Title(hostile))), Column("mass", np.array([2.5, np.nan]), "kg"))
     )
@@ -190,16 +190,17 @@ def test_names_come_out_character_by_character(hostile: str, language: str, tmp_
 
 @pytest.mark.parametrize("language", ["en", "ru", "uk"])
 def test_places_units_and_parts_are_spelled(language: str) -> None:
-    """A place has the unit of the display, a unit on its own stays SI, counts are written out."""
+    """A place has the unit of the display, a unit on its own stays SI, both by their names in the language."""
     choose_language(language)
     display = ct.example("crank-rocker").display.model_copy(update={"length": "mm"})
     plain, document = PlainSpelling(display), DocumentSpelling(Numbers(display))
     mark = "." if language == "en" else ","
     place = Place((0.0125, -0.5), "m")
-    assert plain.text(place) == "(12.5, -500) mm"
+    unit, inertia = ("mm", "kg·m²") if language == "en" else ("мм", "кг·м²")
+    assert plain.text(place) == f"(12.5, -500) {unit}"
     between = "," if language == "en" else ";"
-    assert document.text(place) == f"(12{mark}5{between} \u2212500) mm"
-    assert (plain.text(Unit("kg m^2")), document.text(Unit("kg m^2"))) == ("kg m^2", "kg·m²")
+    assert document.text(place) == f"(12{mark}5{between} \u2212500) {unit}"
+    assert plain.text(Unit("kg m^2")) == document.text(Unit("kg m^2")) == inertia
     part = Part(Name("No 1.23456"))
     assert (plain.text(part), document.text(part)) == ("  No 1.23456", "– No 1.23456")
     many = Counted("{n} turn of the drive", "{n} turns of the drive", 1_234_567)
@@ -244,7 +245,7 @@ def test_a_result_is_written_as_the_command_writes_it(tmp_path: Path) -> None:
     ct.write(results, tmp_path / "out")
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"machine.csv", "machine.nc", "machine-instants.csv", "summary.json", "works.svg"} <= names
-    assert "1456.73 kg m²" in ct.summary(results)
+    assert "1456.73 kg·m²" in ct.summary(results)
     assert ct.tables(results)["machine"].columns[0].name == "time"
 
 
