@@ -197,7 +197,7 @@ def test_instants_are_drawn_where_asked(make):
     ]
     assert len(figure.axes) == 2
     for axes, degrees in zip(figure.axes, (99, -30), strict=True):
-        assert f"{degrees} deg".replace("-", "−") in axes.get_title()
+        assert f"{degrees}°".replace("-", "−") in axes.get_title()
         sample = int(np.argmin(np.abs(dataset["drive_value"].values[:, 0] - np.radians(degrees))))
         (crank,) = [line for line in axes.get_lines() if line.get_label() == "OA"]
         tip = np.stack(crank.get_data(), axis=1)[1]

@@ -27,7 +27,7 @@ def crank_rocker(crank: str) -> ct.Mechanism:
     ("name", "edited", "language"),
     [
         ("No 1.23456", "No 1.2346", "en"),
-        ("run 30 deg", "run 30 deg", "en"),
+        ("run 30 deg", "run 30°", "en"),
         ("1e-3 x", "10⁻³ x", "en"),
         ("2.50 kg", "2,50 kg", "ru"),
         ("2.50 kg", "2,50 kg", "uk"),

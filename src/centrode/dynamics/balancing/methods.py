@@ -337,7 +337,7 @@ def _turns(rate: Array) -> bool:
 
 def _too_much(link: str, surplus: float) -> MotionError:
     what = _(
-        "the shaking moment cannot be balanced: the inertia of {link} is {surplus:.6g} kg m² too great, and it is"
+        "the shaking moment cannot be balanced: the inertia of {link} is {surplus:.6g} kg·m² too great, and it is"
         " not hinged to the frame, where a disc could turn against it"
     )
     return MotionError(

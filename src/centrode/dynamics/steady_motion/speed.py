@@ -239,7 +239,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
     if not carried.least > 0.0:
         raise InputError(
             "[machine]",
-            _("nothing carries the motion: the inertia is {inertia:.6g} kg m^2").format(
+            _("nothing carries the motion: the inertia is {inertia:.6g} kg·m²").format(
                 inertia=carried.least
             ),
             _("give masses, [[machine.shafts]] with inertia, or fluctuation"),
@@ -257,7 +257,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
         raise InputError(
             "[machine]",
             _(
-                "an inertia of {inertia:.6g} kg m^2 is too little: the machine would stand still within the cycle"
+                "an inertia of {inertia:.6g} kg·m² is too little: the machine would stand still within the cycle"
             ).format(inertia=inertia),
             _("give [[machine.shafts]] with more inertia, or fluctuation to find a flywheel"),
         )
