@@ -23,6 +23,7 @@ from centrode.dynamics.steady_motion.machine import machine_results
 from centrode.locale import _, choose_language
 from centrode.model.examples import example_text
 from centrode.model.settings import Display
+from centrode.quantities import UNIT_SYMBOLS
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -32,13 +33,16 @@ from centrode.render.files import write_table
 from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.table_spelling import TableSpelling
-from centrode.render.terminal import table_text
-from centrode.sheets.plots import Abscissa
-from centrode.sheets.sheet import Column, Sheet, Table
+from centrode.render.terminal import sheet_text, table_text
+from centrode.sheets.linkages import MotionPlayer
+from centrode.sheets.outlines import CamPlayer, WheelPlayer
+from centrode.sheets.plots import Abscissa, AxisLabel
+from centrode.sheets.sheet import Column, Illustration, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
 from centrode.topics.order import in_order
 from centrode.topics.registry import CENTRES, DIAGRAMS, TOPICS
 from centrode.topics.topic import Command, Lazily, Topic, ValueOption
+from report.texts import texts_of
 from samples import few
 
 SOURCE = Path(ct.__file__).parent
@@ -137,6 +141,67 @@ def test_no_sentence_holds_a_number_or_a_unit() -> None:
             assert not UNITS & set(re.split(r"[\s,;()]+", words)), (where, message)
     choose_language("en")
     assert len(seen) > 100
+
+
+LATIN_UNIT = "|".join(
+    unit for unit, (_english, russian, _ukrainian) in UNIT_SYMBOLS.items() if unit != russian
+)
+UNIT_BEHIND = re.compile(
+    rf"""(?:[\d°][ \u202f]|,[ ]|[\[(·/]|thin[ ]")(?:{LATIN_UNIT}|deg)[²³⁴]?(?=[\s·/,;.)"\]]|$)"""
+)
+"""A unit in Latin letters behind a number, in the head of a column or in brackets, in text or in mathematics."""
+PICTURED = (Illustration, MotionPlayer, CamPlayer, WheelPlayer)
+
+
+def texts_for_readers(sheet: Sheet, display: Display) -> Iterator[str]:
+    """What terminals, documents and the axes of figures show of a sheet; formulas by their numbers with units alone."""
+    yield from sheet_text(sheet, display).splitlines()
+    for name, chapter in sheet.chapters.items():
+        sections = tuple(
+            dataclasses.replace(
+                section, blocks=tuple(one for one in section.blocks if not isinstance(one, PICTURED))
+            )
+            for section in chapter.sections
+        )
+        words = dataclasses.replace(sheet, chapters={name: dataclasses.replace(chapter, sections=sections)})
+        for section in document_chapter(name, words, Numbers(display)).sections:
+            for block in section.blocks:
+                of_formula = isinstance(block, blocks.FormulaBlock | blocks.SystemBlock)
+                for text in texts_of(block):
+                    yield from re.findall(r'thin "[^"]*"', text) if of_formula else text.split("$")[::2]
+    for leaf in leaves(sheet.pictures):
+        if isinstance(leaf, AxisLabel):
+            yield FigureSpelling(display).label(leaf)[1]
+
+
+def test_no_unit_is_spelled_in_latin_letters() -> None:
+    """Every sheet of every topic, in the units of a drawing and in SI; in English units stand in those places."""
+    found = 0
+    for where, sheet in sheets(few(SAYING_MOST, (*SAYING_MOST, *ct.example_names("cam")))):
+        for display in (Display(length="mm", angle="deg"), Display()):
+            for language in ("ru", "uk"):
+                choose_language(language)
+                for text in texts_for_readers(sheet, display):
+                    assert not UNIT_BEHIND.search(text), (where, text)
+            choose_language("en")
+        found += sum(bool(UNIT_BEHIND.search(text)) for text in texts_for_readers(sheet, display))
+    assert found > 1000
+
+
+def test_tables_of_data_are_the_same_in_every_language(tmp_path: Path) -> None:
+    """Bytes of CSV: SI names in the heads and in the cells of what has a unit of its own."""
+    units = 0
+    for where, sheet in sheets(("six-bar-press", "valve-cam")):
+        for table in sheet.tables.values():
+            written = []
+            for language in ("en", "ru", "uk"):
+                choose_language(language)
+                write_table(table, tmp_path / "t.csv", Display(length="mm", angle="deg"))
+                written.append((tmp_path / "t.csv").read_bytes())
+            choose_language("en")
+            assert len(set(written)) == 1, (where, table.columns[0].name)
+            units += b" [mm" in written[0] or b"kg m^2" in written[0]
+    assert units > 5
 
 
 def test_every_literal_of_a_sentence_is_in_the_catalogues() -> None:
