@@ -239,9 +239,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
     if not carried.least > 0.0:
         raise InputError(
             "[machine]",
-            _("nothing carries the motion: the inertia is {inertia:.6g} kg·m²").format(
-                inertia=carried.least
-            ),
+            _("nothing carries the motion: the inertia is {inertia:.6g} kg·m²").format(inertia=carried.least),
             _("give masses, [[machine.shafts]] with inertia, or fluctuation"),
         )
     # with no speed the links take no energy: how much the work alone swings

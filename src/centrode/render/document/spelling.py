@@ -10,7 +10,7 @@ from centrode.locale import coordinate_separator
 from centrode.quantities import DEGREES, spelled_unit, with_unit
 from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number
-from centrode.render.document.typst import TypstSpelling, quote, shown, word
+from centrode.render.document.typst import TypstSpelling, in_degrees, quote, shown, word
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
 from centrode.render.symbolic import spell_symbolic
@@ -121,7 +121,7 @@ class DocumentSpelling(Spelling):
                 size, label = self._size(leaf)
                 if leaf.unit_hidden or not label:
                     return size
-                return f"{size} {quote(label)}" if label == DEGREES else f"{size} thin {quote(label)}"
+                return in_degrees(size) if label == DEGREES else f"{size} thin {quote(label)}"
             case Factor(number):
                 size, _label = self._size(number)
                 return f"({size})" if number.value < 0 or "dot" in size else size
