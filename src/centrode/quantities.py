@@ -152,7 +152,8 @@ def with_unit(digits: str, label: str, gap: str = " ") -> str:
 
 
 def _composed(unit: str, names: Mapping[str, str]) -> str:
-    powers = {base: power for base, power in powers_of(unit).items() if power}
+    # descriptions type factors with a star, "N*m"
+    powers = {base: power for base, power in powers_of(unit.replace("*", " ")).items() if power}
 
     def product(bases: Iterable[str]) -> str:
         return "·".join(

@@ -8,7 +8,7 @@ import pytest
 
 from centrode import locale, quantities
 from centrode.errors import InputError, Status
-from centrode.model.units import read_quantity
+from centrode.model.units import KINDS, read_quantity
 from centrode.quantities import (
     ANGLES,
     LENGTHS,
@@ -212,10 +212,11 @@ def test_labels_of_axes() -> None:
 
 
 def units_of_quantities() -> set[str]:
-    """Symbols without powers of all units that results can have, and that descriptions can show them in."""
+    """Symbols without powers of all units that results can have, and that descriptions can give or show."""
     every = {quantity.unit for quantity in QUANTITIES.values()}
     every |= {quantity.for_drive(drive).unit for quantity in QUANTITIES.values() for drive in ("rad", "m")}
     every |= {quantity.on_sphere().unit for quantity in QUANTITIES.values()}
+    every |= {kind.unit.replace("*", " ") for kind in KINDS.values()}
     return {base for unit in every for base in quantities.powers_of(unit)} | {*LENGTHS, *ANGLES}
 
 
@@ -241,6 +242,8 @@ def test_every_unit_has_its_symbol_in_every_language() -> None:
         ("N m", "N·m", "Н·м", "Н·м"),
         ("kg m^2", "kg·m²", "кг·м²", "кг·м²"),
         ("kg m^2/rad", "kg·m²/rad", "кг·м²/рад", "кг·м²/рад"),
+        ("N*m*s/rad", "N·m·s/rad", "Н·м·с/рад", "Н·м·с/рад"),
+        ("kg/m^3", "kg/m³", "кг/м³", "кг/м³"),
         ("1/m/rad", "1/(m·rad)", "1/(м·рад)", "1/(м·рад)"),
         ("rpm", "rpm", "об/мин", "об/хв"),
         ("MPa", "MPa", "МПа", "МПа"),

@@ -78,7 +78,8 @@ def test_units_of_the_display() -> None:
     assert small.measured(math.pi, "rad/s^2") == "180\u202f°/s²"
     assert small.measured(2.0, "m/rad^2") == "2000\u202fmm/rad²"  # analogs stay by radian
     assert small.measured(-2.0, "N m") == f"{MINUS}2\u202fN·m"
-    assert small.head("$v$", "m/s") == "$v$,\u00a0mm/s"
+    assert small.head("$v$", "m/s") == "$v$, mm/s"
+    assert small.head("$φ$", "rad") == "$φ$,\u00a0°"
     assert small.head("n", "1") == "n"
     assert small.math(-0.5, "m") == "-500"
 

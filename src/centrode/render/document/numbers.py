@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from centrode.locale import decimal_mark
 from centrode.model.settings import DIGITS, Display
-from centrode.quantities import display_unit, spelled_unit, with_unit
+from centrode.quantities import DEGREES, display_unit, spelled_unit, with_unit
 from centrode.render.document.typst import decimal
 
 MINUS, NOTHING, ENDLESS, NARROW, NO_BREAK = "\u2212", "\u2014", "\u221e", "\u202f", "\u00a0"
@@ -63,9 +63,12 @@ class Numbers:
         return factor, spelled_unit(label)
 
     def head(self, name: str, unit: str) -> str:
-        """Head of a column: a name (or mathematics between dollar signs) with the unit behind it, never on its own."""
+        """Head of a column: a name (or mathematics between dollar signs) with the unit behind it.
+
+        The sign of degrees is too small for a line of its own.
+        """
         label = self.shown(unit)[1]
-        return f"{name},{NO_BREAK}{label}" if label else name
+        return f"{name},{NO_BREAK if label == DEGREES else ' '}{label}" if label else name
 
     def column(self, values: Iterable[float], unit: str = "1", least: float = 0.0) -> tuple[str, ...]:
         """Numbers in SI below each other, all with the same decimals; what is below `least` [SI] is zero."""
