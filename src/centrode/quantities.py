@@ -1,18 +1,19 @@
 """The vocabulary of results: what each variable is called, its symbol, its unit, and how units are shown.
 
 Every table, plot and report reads it. Inside the package all numbers are SI and radians; a unit is a short
-text like "m", "rad/s", "m/rad^2", and "1" where there is none.
+text like "m", "rad/s", "m/rad^2", and "1" where there is none. Files of data keep these texts in every
+language; what people read has them from `spelled_unit`.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from centrode.errors import InputError, Status
-from centrode.locale import _, mark
+from centrode.locale import LANGUAGES, _, chosen_language, mark
 
 # How units are shown: lengths and angles as the description asks, powers as books write them.
 
@@ -62,10 +63,8 @@ def display_unit(unit: str, length: str = "m", angle: str = "rad") -> tuple[floa
 
 
 def typeset_unit(unit: str) -> str:
-    """The unit as plots and reports write it: "mm/s²" for "mm/s^2"."""
-    return re.sub(
-        r"\^(\d+)", lambda found: found.group(1).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")), unit
-    )
+    """The unit with raised powers, its names as they are typed: "kg m²" for "kg m^2"."""
+    return re.sub(r"\^(\d+)", lambda found: found.group(1).translate(RAISED), unit)
 
 
 def _unknown_unit(where: str, what: str, unit: str, table: Mapping[str, float]) -> InputError:
@@ -90,6 +89,83 @@ def unit_text(powers: Mapping[str, int]) -> str:
     above = [written(base, power) for base, power in powers.items() if power > 0]
     below = ["/" + written(base, -power) for base, power in powers.items() if power < 0]
     return (" ".join(above) or "1") + "".join(below)
+
+
+# How units are spelled for readers of each language, the one place that says so.
+
+UNIT_SYMBOLS: Mapping[str, tuple[str, str, str]] = {
+    "m": ("m", "м", "м"),
+    "mm": ("mm", "мм", "мм"),
+    "cm": ("cm", "см", "см"),
+    "dm": ("dm", "дм", "дм"),
+    "km": ("km", "км", "км"),
+    "um": ("µm", "мкм", "мкм"),
+    "in": ("in", "дюйм", "дюйм"),
+    "ft": ("ft", "фут", "фут"),
+    "rad": ("rad", "рад", "рад"),
+    "deg": ("°", "°", "°"),
+    "turn": ("turn", "об", "об"),
+    "s": ("s", "с", "с"),
+    "rpm": ("rpm", "об/мин", "об/хв"),
+    "kg": ("kg", "кг", "кг"),
+    "N": ("N", "Н", "Н"),
+    "J": ("J", "Дж", "Дж"),
+    "W": ("W", "Вт", "Вт"),
+    "Pa": ("Pa", "Па", "Па"),
+    "MPa": ("MPa", "МПа", "МПа"),
+    "GPa": ("GPa", "ГПа", "ГПа"),
+    "°": ("°", "°", "°"),
+    "%": ("%", "%", "%"),
+}
+"""A unit without powers -> its symbol in the languages, in the order of LANGUAGES."""
+DEGREES = "°"
+RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def spelled_unit(unit: str) -> str:
+    """A unit as readers of the chosen language print it, in documents, figures, tables and sentences.
+
+    Parameters
+    ----------
+    unit : str
+        Made of the keys of UNIT_SYMBOLS; another symbol stays as it is.
+
+    Returns
+    -------
+    str
+        "N·m" for "N m", "кг·м²/рад" for "kg m^2/rad", "1/(m·rad)" for "1/m/rad", nothing for a plain number.
+    """
+    place = LANGUAGES.index(chosen_language())
+    return _composed(unit, {symbol: names[place] for symbol, names in UNIT_SYMBOLS.items()})
+
+
+def terminal_unit(unit: str) -> str:
+    """`spelled_unit`, but in English degrees by their typed name: what is printed as "30 deg" can be typed again."""
+    if chosen_language() != "en":
+        return spelled_unit(unit)
+    return _composed(unit, {symbol: names[0] for symbol, names in UNIT_SYMBOLS.items()} | {"deg": "deg"})
+
+
+def with_unit(digits: str, label: str, gap: str = " ") -> str:
+    """A number with its spelled unit behind a gap; the sign of degrees alone stands close: "5 мм", "30°", "30 °/с"."""
+    return f"{digits}{'' if label == DEGREES else gap}{label}" if label else digits
+
+
+def _composed(unit: str, names: Mapping[str, str]) -> str:
+    # descriptions type factors with a star, "N*m"
+    powers = {base: power for base, power in powers_of(unit.replace("*", " ")).items() if power}
+
+    def product(bases: Iterable[str]) -> str:
+        return "·".join(
+            names.get(base, base) + (str(abs(power)).translate(RAISED) if abs(power) > 1 else "")
+            for base, power in ((base, powers[base]) for base in bases)
+        )
+
+    above = product(base for base, power in powers.items() if power > 0)
+    below = [base for base, power in powers.items() if power < 0]
+    if not below:
+        return above
+    return f"{above or '1'}/({product(below)})" if len(below) > 1 else f"{above or '1'}/{product(below)}"
 
 
 # One variable of a result, with its symbol and unit, and the words for statuses.
@@ -163,7 +239,7 @@ class Quantity:
         """Title, symbol and the unit it is shown in, for the axis of a plot: "angular velocity ω, deg/s"."""
         shown = display_unit(self.unit, length, angle)[1]
         name = f"{self.title} {self.symbol}".rstrip()
-        return name if shown == "1" else f"{name}, {typeset_unit(shown)}"
+        return name if shown == "1" else f"{name}, {spelled_unit(shown)}"
 
 
 def status_word(status: int) -> str:

@@ -161,13 +161,13 @@ def test_its_caption_tells_angle_and_lift() -> None:
     body = ct.follower_cam(cam)
     texts = follower_captions(body, np.radians([0.0, 60.0, 120.0]), cam.display)
     assert texts == [
-        "φ = 0.0 deg,  s = 0.00 mm",
-        "φ = 60.0 deg,  s = 7.00 mm",
-        "φ = 120.0 deg,  s = 14.00 mm",
+        "φ = 0.0°,  s = 0.00 mm",
+        "φ = 60.0°,  s = 7.00 mm",
+        "φ = 120.0°,  s = 14.00 mm",
     ]
     arm = cam_of("arm")
     assert follower_captions(ct.follower_cam(arm), np.radians([120.0]), arm.display) == [
-        "φ = 120.0 deg,  s = 8.0 deg"
+        "φ = 120.0°,  s = 8.0°"
     ]
 
 

@@ -48,7 +48,7 @@ def test_scales_that_are_given(centrode: Centrode) -> None:
     done = centrode("diagrams", "crank-rocker", "--at", "1 rad", "--no-figures", *scales)
     assert done.code == 0, done
     assert "μ_l = 0.05 m per mm" in done.out
-    assert "μ_a = 0.02 m/s^2 per mm" in done.out
+    assert "μ_a = 0.02 m/s² per mm" in done.out
 
 
 def test_several_instants(centrode: Centrode, folder: Path) -> None:

@@ -29,7 +29,7 @@ def test_drawings_are_written(centrode: Centrode, tmp_path: Path) -> None:
     assert centrode(*words, "--out", svg).code == 0
     groups = [group.attrib["id"] for group in ET.parse(svg).getroot()]
     assert {"frame", "links", "hinges", "drive", "names", "paths", "centrodes", "title"} == set(groups)
-    assert "OA 120 deg" in svg.read_text(encoding="utf-8")
+    assert "OA 120°" in svg.read_text(encoding="utf-8")
     assert centrode(*words, "--out", dxf).code == 0
     assert not ezdxf.readfile(dxf).audit().errors
     again = centrode(*words, "--out", dxf)

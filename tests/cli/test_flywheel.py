@@ -49,11 +49,11 @@ def test_a_flywheel_is_printed(centrode: Centrode, compressor: Path) -> None:
     assert said["cycle"] == f"1 turn of the drive, {found.time_of_cycle:.6g} s"
     assert said["mean speed"] == "20 rad/s (mean of the greatest and the least)"
     assert said["work of the loads"].startswith("-800 J per cycle, within ")
-    assert said["mean driving moment"] == f"{400 / math.pi:.6g} N m"
+    assert said["mean driving moment"] == f"{400 / math.pi:.6g} N·m"
     assert said["inertia needed"].startswith(
-        f"{found.inertia:.6g} kg m² exactly ({found.inertia_in_time:.6g}"
+        f"{found.inertia:.6g} kg·m² exactly ({found.inertia_in_time:.6g}"
     )
-    assert f"{found.inertia_first_order:.6g} kg m² by the first-order formula (+" in done.out
+    assert f"{found.inertia_first_order:.6g} kg·m² by the first-order formula (+" in done.out
     assert said["speed of the drive"] == "19.5 to 20.5 rad/s, fluctuation 0.05"
     assert "actual" in done.out
     assert [path.name for path in compressor.iterdir()] == ["compressor.toml"]
@@ -82,7 +82,7 @@ def test_the_mean_in_time(centrode: Centrode, compressor: Path) -> None:
     found = ct.flywheel(ct.read_mechanism("compressor.toml"), "time")
     assert said["mean speed"] == "20 rad/s (average over time)"
     assert said["cycle"] == f"1 turn of the drive, {math.tau / 20:.6g} s"
-    assert said["inertia needed"] == f"{found.inertia:.6g} kg m² exactly"
+    assert said["inertia needed"] == f"{found.inertia:.6g} kg·m² exactly"
 
 
 @pytest.mark.drawn
@@ -114,7 +114,7 @@ def test_files_of_a_flywheel(centrode: Centrode, compressor: Path) -> None:
 def test_a_run_computes_the_machine(centrode: Centrode, folder: Path) -> None:
     done = centrode("run", "six-bar-press", "--out", "r", "--no-figures")
     assert (done.code, done.err) == (0, "")
-    assert done.rows["flywheel"] == "1456.73 kg m²"
+    assert done.rows["flywheel"] == "1456.73 kg·m²"
     assert "loads and machine" not in done.out
     names = sorted(path.name for path in (folder / "r").iterdir())
     assert names == [
@@ -138,7 +138,7 @@ def test_a_run_without_a_fluctuation(centrode: Centrode, compressor: Path) -> No
     (compressor / "compressor.toml").write_text(shafts)
     done = centrode("run", "compressor.toml", "--out", "r", "--samples", "5", "--no-figures")
     assert (done.code, done.err) == (0, "")
-    assert done.rows["inertia present"] == "30 kg m²"
+    assert done.rows["inertia present"] == "30 kg·m²"
     assert "inertia needed" not in done.rows
     mechanism = ct.read_mechanism("compressor.toml")
     drawn = ct.figures(machine_results(mechanism, 5))
@@ -211,7 +211,7 @@ WRONG = {
     "loads of turns": ("[-2000, 0]", '["-2000 - q", 0]', "the loads do not repeat with the motion"),
     "too little inertia": (
         "fluctuation = 0.05", "[[machine.shafts]]\ninertia = 0.01",
-        "a moment of inertia of 0.01 kg m^2 is too small: the machine would stop within the cycle",
+        "a moment of inertia of 0.01 kg·m² is too small: the machine would stop within the cycle",
     ),
 }  # fmt: skip
 
@@ -264,7 +264,7 @@ def test_only_masses_or_only_loads(centrode: Centrode, folder: Path) -> None:
     (folder / "m.toml").write_text(GIVEN[:loads] + GIVEN[machine:])
     said = centrode("flywheel", "m.toml").rows
     assert said["work of the loads"].startswith("0 J a cycle")
-    assert said["mean driving moment"] == "0 N m"
+    assert said["mean driving moment"] == "0 N·m"
     (folder / "m.toml").write_text(without(GIVEN, *MASSES))
     done = centrode("flywheel", "m.toml")
     assert done.code == 0

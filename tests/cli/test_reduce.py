@@ -98,7 +98,7 @@ def test_the_mean_of_a_drive_that_turns_back_is_over_time(centrode: Centrode, fo
     (folder / "swing.toml").write_text(text)
     done = centrode("reduce", "swing.toml", "--samples", 50)
     assert done.code == 0, done
-    row = next(line for line in done.out.splitlines() if "torque OA" in line and "N m" in line)
+    row = next(line for line in done.out.splitlines() if "torque OA" in line and "N·m" in line)
     assert row.split()[-3:] == ["4", "4", "4"]
 
 

@@ -1,13 +1,23 @@
 from __future__ import annotations
 
 import math
+import re
 from fractions import Fraction
 
 import pytest
 
 from centrode import locale, quantities
 from centrode.errors import InputError, Status
-from centrode.quantities import QUANTITIES, display_unit, typeset_unit
+from centrode.model.units import KINDS, read_quantity
+from centrode.quantities import (
+    ANGLES,
+    LENGTHS,
+    QUANTITIES,
+    UNIT_SYMBOLS,
+    display_unit,
+    typeset_unit,
+    with_unit,
+)
 
 
 def test_every_variable_of_a_motion_is_named() -> None:
@@ -190,15 +200,88 @@ def test_unknown_display_units_are_refused(length: str, angle: str) -> None:
 
 
 def test_labels_of_axes() -> None:
-    assert QUANTITIES["angular_acceleration"].label(angle="deg") == "angular acceleration ε, deg/s²"
+    assert QUANTITIES["angular_acceleration"].label(angle="deg") == "angular acceleration ε, °/s²"
     assert QUANTITIES["residual"].label() == "closure residual over the greatest length"
     assert typeset_unit("mm/deg^2") == "mm/deg²"
     locale.choose_language("ru")
     try:
-        assert QUANTITIES["velocity_coefficient"].label("mm", "deg") == "аналог скорости r′, mm/deg"
+        assert QUANTITIES["velocity_coefficient"].label("mm", "deg") == "аналог скорости r′, мм/°"
         assert quantities.status_word(Status.OPEN) == "не замыкается"
     finally:
         locale.choose_language("en")
+
+
+def units_of_quantities() -> set[str]:
+    """Symbols without powers of all units that results can have, and that descriptions can give or show."""
+    every = {quantity.unit for quantity in QUANTITIES.values()}
+    every |= {quantity.for_drive(drive).unit for quantity in QUANTITIES.values() for drive in ("rad", "m")}
+    every |= {quantity.on_sphere().unit for quantity in QUANTITIES.values()}
+    every |= {kind.unit.replace("*", " ") for kind in KINDS.values()}
+    return {base for unit in every for base in quantities.powers_of(unit)} | {*LENGTHS, *ANGLES}
+
+
+def test_every_unit_has_its_symbol_in_every_language() -> None:
+    """Cyrillic letters in Russian and Ukrainian, none in English; signs are the same in all three."""
+    assert units_of_quantities() <= UNIT_SYMBOLS.keys()
+    for unit, symbols in UNIT_SYMBOLS.items():
+        assert len(symbols) == len(locale.LANGUAGES), unit
+        english, *others = symbols
+        assert not re.search("[а-яіїєґ]", english, re.IGNORECASE), unit
+        if re.search("[A-Za-z]", english):
+            assert all(re.fullmatch("[А-Яа-яіїєґ/]+", one) for one in others), unit
+        else:
+            assert set(symbols) == {english}, unit
+
+
+@pytest.mark.parametrize(
+    ("unit", "english", "russian", "ukrainian"),
+    [
+        ("m", "m", "м", "м"),
+        ("m/s^2", "m/s²", "м/с²", "м/с²"),
+        ("rad/s^2", "rad/s²", "рад/с²", "рад/с²"),
+        ("N m", "N·m", "Н·м", "Н·м"),
+        ("kg m^2", "kg·m²", "кг·м²", "кг·м²"),
+        ("kg m^2/rad", "kg·m²/rad", "кг·м²/рад", "кг·м²/рад"),
+        ("N*m*s/rad", "N·m·s/rad", "Н·м·с/рад", "Н·м·с/рад"),
+        ("kg/m^3", "kg/m³", "кг/м³", "кг/м³"),
+        ("1/m/rad", "1/(m·rad)", "1/(м·рад)", "1/(м·рад)"),
+        ("rpm", "rpm", "об/мин", "об/хв"),
+        ("MPa", "MPa", "МПа", "МПа"),
+        ("J", "J", "Дж", "Дж"),
+        ("W", "W", "Вт", "Вт"),
+        ("deg", "°", "°", "°"),
+        ("deg/s", "°/s", "°/с", "°/с"),
+        ("um", "µm", "мкм", "мкм"),
+        ("1", "", "", ""),
+        ("", "", "", ""),
+        ("furlong", "furlong", "furlong", "furlong"),
+    ],
+)
+def test_units_are_spelled_in_the_language(unit: str, english: str, russian: str, ukrainian: str) -> None:
+    """The SI brochure's middle dot and raised powers, GOST 8.417 and DSTU 3651 for the Cyrillic symbols."""
+    for language, spelled in zip(locale.LANGUAGES, (english, russian, ukrainian), strict=True):
+        with locale.speaking(language):
+            assert quantities.spelled_unit(unit) == spelled
+            assert quantities.terminal_unit(unit) == (
+                spelled.replace("°", "deg") if language == "en" else spelled
+            )
+
+
+def test_the_sign_of_degrees_stands_close() -> None:
+    assert with_unit("30", "°") == "30°"
+    assert with_unit("30", "°/с") == "30 °/с"
+    assert with_unit("5", "mm", "\u202f") == "5\u202fmm"
+    assert with_unit("5", "") == "5"
+
+
+@pytest.mark.parametrize("language", locale.LANGUAGES)
+def test_what_a_terminal_prints_in_english_can_be_typed_again(language: str) -> None:
+    """Degrees by name in English, by the sign elsewhere: both are read."""
+    with locale.speaking(language):
+        for unit in ("deg", "rad"):
+            text = with_unit("30", quantities.terminal_unit(unit))
+            if language == "en" or unit == "deg":
+                assert read_quantity(text, "angle", "--at") == read_quantity(f"30 {unit}", "angle", "--at")
 
 
 def test_every_status_has_its_word() -> None:

@@ -63,7 +63,7 @@ def test_contact(cam: ct.Cam) -> None:
     assert lower.get_xlim() == pytest.approx((-45, 45))
     texts = [text.get_text() for text in upper.get_legend().get_texts()]
     stress, at = 1e-6 * data.attrs["greatest_stress"], math.degrees(data.attrs["greatest_stress_at"])
-    assert f"{stress:.5g} MPa at {at:.5g} deg" in texts
+    assert f"{stress:.5g} MPa at {at:.5g}°" in texts
     assert "admissible stress" in texts
 
 

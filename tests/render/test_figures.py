@@ -62,8 +62,8 @@ def test_curves_hold_the_values_in_display_units(gallery):
 
 def test_axes_name_quantity_and_unit(gallery):
     figures = gallery("press")[-1]
-    assert figures["angles"].axes[0].get_xlabel() == r"angle $\varphi$ of link OA, deg"
-    assert figures["angles"].axes[0].get_ylabel() == r"$\varphi$, deg"
+    assert figures["angles"].axes[0].get_xlabel() == r"angle $\varphi$ of link OA, °"
+    assert figures["angles"].axes[0].get_ylabel() == r"$\varphi$, °"
     assert [axes.get_ylabel() for axes in figures["velocities"].axes] == [
         "${v}_{x}$, mm/s",
         "${v}_{y}$, mm/s",
@@ -129,7 +129,7 @@ def test_events_of_a_law_stand_at_the_times_it_passes_them(gallery):
     step = np.pi / 180
     np.testing.assert_allclose(upright, expected, atol=step**2)
     assert "change point" in legend_texts(figures["angles"])
-    assert figures["kinematic-coefficients"].axes[-1].get_xlabel() == r"angle $\varphi$ of link OA, deg"
+    assert figures["kinematic-coefficients"].axes[-1].get_xlabel() == r"angle $\varphi$ of link OA, °"
 
 
 def test_names_of_any_alphabet_are_gallery(gallery, tmp_path):
@@ -197,7 +197,7 @@ def test_instants_are_drawn_where_asked(make):
     ]
     assert len(figure.axes) == 2
     for axes, degrees in zip(figure.axes, (99, -30), strict=True):
-        assert f"{degrees} deg".replace("-", "−") in axes.get_title()
+        assert f"{degrees}°".replace("-", "−") in axes.get_title()
         sample = int(np.argmin(np.abs(dataset["drive_value"].values[:, 0] - np.radians(degrees))))
         (crank,) = [line for line in axes.get_lines() if line.get_label() == "OA"]
         tip = np.stack(crank.get_data(), axis=1)[1]

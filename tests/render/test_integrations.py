@@ -89,7 +89,7 @@ def test_no_errors_are_not_drawn() -> None:
 def test_angles_are_in_the_units_asked_for() -> None:
     mechanism, figures = drawn("excavator-arm", 10)
     label = figures["integration-errors"].axes[1].get_ylabel()
-    assert label.endswith(", deg")
+    assert label.endswith(", °")
     integration = ct.integrate(mechanism, steps=10)
     expected = np.degrees(np.abs(integration.angle_difference.sel(link="bucket").to_numpy()))
     found = [np.asarray(line.get_ydata()) for line in figures["integration-errors"].axes[1].lines]

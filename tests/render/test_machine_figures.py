@@ -46,7 +46,7 @@ def test_every_curve_is_the_datasets(press: tuple[Any, dict[str, Figure]]) -> No
             line = lines[QUANTITIES[variable].title]
             np.testing.assert_allclose(line.get_ydata(), factor * data[variable], rtol=1e-15)
             np.testing.assert_allclose(line.get_xdata(), np.degrees(data["turned"]), rtol=1e-15)
-    assert figures["drive-speed"].axes[1].get_xlabel() == r"angle turned in the cycle $\varphi$, deg"
+    assert figures["drive-speed"].axes[1].get_xlabel() == r"angle turned in the cycle $\varphi$, °"
 
 
 def test_wittenbauers_tangents(press: tuple[Any, dict[str, Figure]]) -> None:
@@ -71,7 +71,7 @@ def test_wittenbauers_tangents(press: tuple[Any, dict[str, Figure]]) -> None:
         )
     low, high = segment.get_ydata()
     assert (low, high) == tuple(data.attrs["tangent_intercepts"])
-    assert f"it is J = {data.attrs['inertia']:.6g} kg m²" in texts(figures["wittenbauer"])[-1]
+    assert f"it is J = {data.attrs['inertia']:.6g} kg·m²" in texts(figures["wittenbauer"])[-1]
 
 
 def test_names_and_what_is_left_out() -> None:

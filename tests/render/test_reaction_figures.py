@@ -37,7 +37,7 @@ def test_the_press() -> None:
     drawn = {line.get_label(): line.get_ydata() for line in figures["joint-forces"].axes[0].lines}
     force = data.joint_force.sel(side="A/OA").to_numpy()
     assert np.array_equal(drawn["A"], np.hypot(force[:, 0], force[:, 1]))
-    assert figures["balancing"].axes[0].get_ylabel() == "$M_b$, N m"
+    assert figures["balancing"].axes[0].get_ylabel() == "$M_b$, N·m"
     # the guide bears no moment: no panel for it
     assert [axes.get_ylabel() for axes in figures["other-reactions"].axes] == ["$R_n$, N"]
 
@@ -63,7 +63,7 @@ def test_drives_of_two_kinds_have_a_panel_each() -> None:
         study={"to": 1.0},
     )
     figures = curves_of(crane, 5)
-    assert [axes.get_ylabel() for axes in figures["balancing"].axes] == ["$F_b$, N", "$M_b$, N m"]
+    assert [axes.get_ylabel() for axes in figures["balancing"].axes] == ["$F_b$, N", "$M_b$, N·m"]
     assert len(figures["other-reactions"].axes) == 2
 
 

@@ -26,7 +26,7 @@ def test_the_press() -> None:
     drawn = {line.get_label(): line.get_ydata() for line in figures["reduced-inertia"].axes[0].lines}
     # in the order of time, the drive turns back
     assert np.array_equal(drawn["sum"], data.reduced_inertia.values)
-    assert figures["reduced-inertia"].axes[0].get_ylabel() == "$J$, kg m²"
+    assert figures["reduced-inertia"].axes[0].get_ylabel() == "$J$, kg·m²"
 
 
 @pytest.mark.parametrize("name", ["a_b_c", "50 %", "#1", "A^2"])

@@ -55,8 +55,8 @@ def test_axes_path_and_initial_position() -> None:
     mechanism = five_bar(**DEGREES)
     region, figure = drawn(mechanism)
     axes = figure.axes[0]
-    assert axes.get_xlabel() == r"angle $\varphi$ of link OA, deg"
-    assert axes.get_ylabel() == r"angle $\varphi$ of link EC, deg"
+    assert axes.get_xlabel() == r"angle $\varphi$ of link OA, °"
+    assert axes.get_ylabel() == r"angle $\varphi$ of link EC, °"
     ends = np.degrees(region["first"].to_numpy()[[0, -1]])
     assert axes.get_xlim() == pytest.approx(tuple(ends))
     assert "reached" in texts(figure)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from centrode.locale import speaking
 from centrode.model.settings import Display
-from centrode.render.document.numbers import MINUS, Numbers, spelled_unit
+from centrode.quantities import spelled_unit
+from centrode.render.document.numbers import MINUS, Numbers
 
 FINITE = st.floats(-1e9, 1e9, allow_subnormal=False)
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -74,17 +75,18 @@ def test_units_of_the_display() -> None:
     small = numbers(length="mm", angle="deg")
     assert small.measured(0.5, "m") == "500\u202fmm"
     assert small.measured(math.pi, "rad") == "180°"
-    assert small.measured(math.pi, "rad/s^2") == "180°/s²"
+    assert small.measured(math.pi, "rad/s^2") == "180\u202f°/s²"
     assert small.measured(2.0, "m/rad^2") == "2000\u202fmm/rad²"  # analogs stay by radian
     assert small.measured(-2.0, "N m") == f"{MINUS}2\u202fN·m"
     assert small.head("$v$", "m/s") == "$v$, mm/s"
+    assert small.head("$φ$", "rad") == "$φ$,\u00a0°"
     assert small.head("n", "1") == "n"
     assert small.math(-0.5, "m") == "-500"
 
 
 def test_the_decimal_mark_is_the_language_s() -> None:
     with speaking("uk"):
-        assert numbers().measured(0.5, "m") == "0,5\u202fm"
+        assert numbers().measured(0.5, "m") == "0,5\u202fм"
         assert numbers().math(0.5) == '"0,5"'
         assert numbers().column([0.5]) == ("0,50000",)
 

@@ -162,7 +162,7 @@ def test_redundant_constraints_name_the_frame_in_its_case(language: str) -> None
 def test_coordinates_are_parted_as_the_decimal_mark_allows() -> None:
     """(1.2, 3.4) in English, (1,2; 3,4) where a comma stands before decimals; the head of their column agrees."""
     mechanism = ct.example("crank-rocker")
-    assert in_languages(Place((1.2, 3.4)), mechanism) == ["(1.2, 3.4) m", "(1,2; 3,4) m", "(1,2; 3,4) m"]
+    assert in_languages(Place((1.2, 3.4)), mechanism) == ["(1.2, 3.4) m", "(1,2; 3,4) м", "(1,2; 3,4) м"]
     heads = in_languages(Sentence("through $(x, y)$"), mechanism)
     assert [head.partition("$")[2] for head in heads] == ["(x, y)$", "(x; y)$", "(x; y)$"]
 

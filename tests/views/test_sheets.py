@@ -23,6 +23,7 @@ from centrode.dynamics.steady_motion.machine import machine_results
 from centrode.locale import _, choose_language
 from centrode.model.examples import example_text
 from centrode.model.settings import Display
+from centrode.quantities import UNIT_SYMBOLS
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
@@ -32,13 +33,16 @@ from centrode.render.files import write_table
 from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.table_spelling import TableSpelling
-from centrode.render.terminal import table_text
-from centrode.sheets.plots import Abscissa
-from centrode.sheets.sheet import Column, Sheet, Table
+from centrode.render.terminal import sheet_text, table_text
+from centrode.sheets.linkages import MotionPlayer
+from centrode.sheets.outlines import CamPlayer, WheelPlayer
+from centrode.sheets.plots import Abscissa, AxisLabel
+from centrode.sheets.sheet import Column, Illustration, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
 from centrode.topics.order import in_order
 from centrode.topics.registry import CENTRES, DIAGRAMS, TOPICS
 from centrode.topics.topic import Command, Lazily, Topic, ValueOption
+from report.texts import texts_of
 from samples import few
 
 SOURCE = Path(ct.__file__).parent
@@ -139,6 +143,67 @@ def test_no_sentence_holds_a_number_or_a_unit() -> None:
     assert len(seen) > 100
 
 
+LATIN_UNIT = "|".join(
+    unit for unit, (_english, russian, _ukrainian) in UNIT_SYMBOLS.items() if unit != russian
+)
+UNIT_BEHIND = re.compile(
+    rf"""(?:[\d°][ \u202f]|,[ ]|[\[(·/]|thin[ ]")(?:{LATIN_UNIT}|deg)[²³⁴]?(?=[\s·/,;.)"\]]|$)"""
+)
+"""A unit in Latin letters behind a number, in the head of a column or in brackets, in text or in mathematics."""
+PICTURED = (Illustration, MotionPlayer, CamPlayer, WheelPlayer)
+
+
+def texts_for_readers(sheet: Sheet, display: Display) -> Iterator[str]:
+    """What terminals, documents and the axes of figures show of a sheet; formulas by their numbers with units alone."""
+    yield from sheet_text(sheet, display).splitlines()
+    for name, chapter in sheet.chapters.items():
+        sections = tuple(
+            dataclasses.replace(
+                section, blocks=tuple(one for one in section.blocks if not isinstance(one, PICTURED))
+            )
+            for section in chapter.sections
+        )
+        words = dataclasses.replace(sheet, chapters={name: dataclasses.replace(chapter, sections=sections)})
+        for section in document_chapter(name, words, Numbers(display)).sections:
+            for block in section.blocks:
+                of_formula = isinstance(block, blocks.FormulaBlock | blocks.SystemBlock)
+                for text in texts_of(block):
+                    yield from re.findall(r'thin "[^"]*"', text) if of_formula else text.split("$")[::2]
+    for leaf in leaves(sheet.pictures):
+        if isinstance(leaf, AxisLabel):
+            yield FigureSpelling(display).label(leaf)[1]
+
+
+def test_no_unit_is_spelled_in_latin_letters() -> None:
+    """Every sheet of every topic, in the units of a drawing and in SI; in English units stand in those places."""
+    found = 0
+    for where, sheet in sheets(few(SAYING_MOST, (*SAYING_MOST, *ct.example_names("cam")))):
+        for display in (Display(length="mm", angle="deg"), Display()):
+            for language in ("ru", "uk"):
+                choose_language(language)
+                for text in texts_for_readers(sheet, display):
+                    assert not UNIT_BEHIND.search(text), (where, text)
+            choose_language("en")
+        found += sum(bool(UNIT_BEHIND.search(text)) for text in texts_for_readers(sheet, display))
+    assert found > 1000
+
+
+def test_tables_of_data_are_the_same_in_every_language(tmp_path: Path) -> None:
+    """Bytes of CSV: SI names in the heads and in the cells of what has a unit of its own."""
+    units = 0
+    for where, sheet in sheets(("six-bar-press", "valve-cam")):
+        for table in sheet.tables.values():
+            written = []
+            for language in ("en", "ru", "uk"):
+                choose_language(language)
+                write_table(table, tmp_path / "t.csv", Display(length="mm", angle="deg"))
+                written.append((tmp_path / "t.csv").read_bytes())
+            choose_language("en")
+            assert len(set(written)) == 1, (where, table.columns[0].name)
+            units += b" [mm" in written[0] or b"kg m^2" in written[0]
+    assert units > 5
+
+
 def test_every_literal_of_a_sentence_is_in_the_catalogues() -> None:
     """Sentences stand within each other: none of them is lost on the way to the translators."""
     text = (SOURCE / "locale" / "ru" / "LC_MESSAGES" / "centrode.po").read_text(encoding="utf-8")
@@ -174,7 +239,7 @@ def test_names_come_out_character_by_character(hostile: str, language: str, tmp_
     document = DocumentSpelling(Numbers(display)).text(text)
     assert f"({hostile})" in document.replace(r"\$", "$")
     mark = "." if language == "en" else ","
-    assert document.startswith(f"1{mark}5 kg")
+    assert document.startswith(f"1{mark}5 {'kg' if language == 'en' else 'кг'}")
     table = Table(
         (Column("name", (Name(hostile), Title(hostile))), Column("mass", np.array([2.5, np.nan]), "kg"))
     )
@@ -190,16 +255,17 @@ def test_names_come_out_character_by_character(hostile: str, language: str, tmp_
 
 @pytest.mark.parametrize("language", ["en", "ru", "uk"])
 def test_places_units_and_parts_are_spelled(language: str) -> None:
-    """A place has the unit of the display, a unit on its own stays SI, counts are written out."""
+    """A place has the unit of the display, a unit on its own stays SI, both by their names in the language."""
     choose_language(language)
     display = ct.example("crank-rocker").display.model_copy(update={"length": "mm"})
     plain, document = PlainSpelling(display), DocumentSpelling(Numbers(display))
     mark = "." if language == "en" else ","
     place = Place((0.0125, -0.5), "m")
-    assert plain.text(place) == "(12.5, -500) mm"
+    unit, inertia = ("mm", "kg·m²") if language == "en" else ("мм", "кг·м²")
+    assert plain.text(place) == f"(12.5, -500) {unit}"
     between = "," if language == "en" else ";"
-    assert document.text(place) == f"(12{mark}5{between} \u2212500) mm"
-    assert (plain.text(Unit("kg m^2")), document.text(Unit("kg m^2"))) == ("kg m^2", "kg·m²")
+    assert document.text(place) == f"(12{mark}5{between} \u2212500) {unit}"
+    assert plain.text(Unit("kg m^2")) == document.text(Unit("kg m^2")) == inertia
     part = Part(Name("No 1.23456"))
     assert (plain.text(part), document.text(part)) == ("  No 1.23456", "– No 1.23456")
     many = Counted("{n} turn of the drive", "{n} turns of the drive", 1_234_567)
@@ -244,7 +310,7 @@ def test_a_result_is_written_as_the_command_writes_it(tmp_path: Path) -> None:
     ct.write(results, tmp_path / "out")
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"machine.csv", "machine.nc", "machine-instants.csv", "summary.json", "works.svg"} <= names
-    assert "1456.73 kg m²" in ct.summary(results)
+    assert "1456.73 kg·m²" in ct.summary(results)
     assert ct.tables(results)["machine"].columns[0].name == "time"
 
 

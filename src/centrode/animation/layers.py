@@ -16,7 +16,7 @@ from centrode.cams.followers.geometry import Oscillating
 from centrode.errors import Status
 from centrode.locale import decimal_mark
 from centrode.model.settings import shown_as
-from centrode.quantities import QUANTITIES, status_word, typeset_unit
+from centrode.quantities import QUANTITIES, spelled_unit, status_word, with_unit
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import LinkageScene, View
 from centrode.scenes.sphere import Globe, globe_of
@@ -150,8 +150,9 @@ def instant_captions(film: Film) -> list[str]:
     factor, unit = shown_as(parameter.instant.unit, mechanism.display)
     symbol, values = parameter.instant.symbol, factor * parameter.instants(film.motion)
     decimals = _decimals(values, unit)
+    label = spelled_unit(unit)
     # plain text: mathematical text is laid out for every frame anew, at many times the cost
-    texts = [f"{symbol} = {_plain(value, decimals)} {typeset_unit(unit)}" for value in values]
+    texts = [f"{symbol} = {with_unit(_plain(value, decimals), label)}" for value in values]
     for k, status in enumerate(film.motion["status"].to_numpy().tolist()):
         if status != Status.OK:
             texts[k] += f" ({status_word(status)})"
@@ -161,8 +162,8 @@ def instant_captions(film: Film) -> list[str]:
 def turned_caption(angle: float, display: Display | None) -> str:
     """The angle that the carrier of a cam's rollers has turned by."""
     factor, unit = shown_as("rad", display)
-    quantity = QUANTITIES["carrier_angle"]
-    return f"{quantity.symbol} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)}"
+    turned = _plain(factor * angle, 1 if unit == "deg" else 3)
+    return f"{QUANTITIES['carrier_angle'].symbol} = {with_unit(turned, spelled_unit(unit))}"
 
 
 def follower_captions(body: FollowerCam, angles: Array, display: Display | None) -> list[str]:
@@ -173,9 +174,10 @@ def follower_captions(body: FollowerCam, angles: Array, display: Display | None)
     lifts = lift_factor * body.motion.lift(np.mod(angles, math.tau))[0]
     decimals = _decimals(lifts, lift_shown)
     turned, lifted = QUANTITIES["cam_angle"].symbol, QUANTITIES["lift"].symbol
+    label, lift_label = spelled_unit(unit), spelled_unit(lift_shown)
     return [
-        f"{turned} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)},  "
-        f"{lifted} = {_plain(lift, decimals)} {typeset_unit(lift_shown)}"
+        f"{turned} = {with_unit(_plain(factor * angle, 1 if unit == 'deg' else 3), label)},  "
+        f"{lifted} = {with_unit(_plain(lift, decimals), lift_label)}"
         for angle, lift in zip(angles.tolist(), lifts.tolist(), strict=True)
     ]
 

@@ -16,7 +16,7 @@ from centrode.animation.layers import NOTHING, Array, Layer, MotionLayer, ScaleA
 from centrode.animation.stage import ARROW_HEAD, arrow_outlines
 from centrode.locale import _, decimal_mark, ngettext
 from centrode.model.settings import shown_as
-from centrode.quantities import typeset_unit
+from centrode.quantities import spelled_unit
 from centrode.render.drawing.style import INK, pens
 from centrode.scenes.places import LinkageScene
 from centrode.scenes.sphere import Globe
@@ -163,7 +163,7 @@ def point_vectors(
     places = np.stack([scene.tracks[name][: len(film.places)] for name in points], axis=1)
     title = {"velocity": _("velocity"), "acceleration": _("acceleration")}[variable]
     colour = COLOURS[variable]
-    shown = Vectors(title, typeset_unit(unit), places, values, [colour] * len(points), colour)
+    shown = Vectors(title, spelled_unit(unit), places, values, [colour] * len(points), colour)
     return VectorLayer(film, scene, shown, 7.0 if variable == "velocity" else 6.8)
 
 

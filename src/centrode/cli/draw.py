@@ -14,6 +14,7 @@ from centrode.cli.announcements import announce_size
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
 from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark
+from centrode.quantities import spelled_unit
 from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
@@ -91,6 +92,7 @@ def draw(
             rolled,
             not no_names,
             course,
+            str if kind == ".dxf" else spelled_unit,
         )
     with output.output_file(out, force=force) as draft:
         KINDS[kind](drawing, draft)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.errors import CentrodeError, MotionError, Status
 from centrode.locale import _
+from centrode.quantities import terminal_unit, with_unit
 from centrode.topics.topic import InstantsOption, Topic, ValueOption
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def default_instants(
         return
     with about(name):
         places = library.default_instants(mechanism)
-    values = ", ".join(_value_text(mechanism, place) for place in places)
+    values = ", ".join(_value_text(mechanism, place, unit_name=terminal_unit) for place in places)
     if mechanism.study.instants and mechanism.motion_parameter.states_instants:
         output.tell(_("without --at, the instants of [study]: {values}").format(values=values))
         yield
@@ -95,8 +96,10 @@ def _clear_places(mechanism: Mechanism, course: xr.Dataset) -> list[float]:
     return sorted(good, key=clearance, reverse=True)
 
 
-def _value_text(mechanism: Mechanism, value: float, digits: str = ".9g") -> str:
-    """An instant [SI] in the unit of the description's display, as `--at` takes it."""
+def _value_text(
+    mechanism: Mechanism, value: float, digits: str = ".9g", unit_name: Callable[[str], str] = str
+) -> str:
+    """An instant [SI] in the unit of the display, as `--at` takes it unless `unit_name` spells the unit for readers."""
     instant, display = mechanism.motion_parameter.instant, mechanism.display
     unit = {"angle": display.angle, "length": display.length}.get(instant.kind, instant.unit)
-    return f"{value / library.unit_factor(unit, instant.kind):{digits}} {unit}"
+    return with_unit(f"{value / library.unit_factor(unit, instant.kind):{digits}}", unit_name(unit))

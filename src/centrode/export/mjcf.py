@@ -266,7 +266,7 @@ class Pose:
         self.greatest = max((float(mass.mass) for mass in self.masses.values()), default=1.0) or 1.0
         self.least = NOMINAL * self.greatest
         if min(self.least, self.nominal_inertia) < LIGHTEST:
-            what = _("MuJoCo has no bodies with a mass or moment of inertia below {least} kg or kg*m^2")
+            what = _("MuJoCo has no bodies with a mass or moment of inertia below {least} kg or kg·m²")
             raise NotComputedYet(
                 "links", what.format(least=LIGHTEST), _("export it enlarged, or in other units")
             )

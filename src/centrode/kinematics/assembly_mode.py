@@ -20,6 +20,7 @@ from centrode.kinematics.plan_evaluation import (
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.quantities import terminal_unit
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Contact, Positions
 from centrode.structure.dimensions import Dimensions
@@ -381,7 +382,7 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
             label,
             _(
                 "the initial position does not assemble: the residual of this constraint is {off:.3g} {unit}"
-            ).format(off=off, unit=unit),
+            ).format(off=off, unit=terminal_unit(unit)),
             _repair_of_misfit(structure.drives),
         )
     return value

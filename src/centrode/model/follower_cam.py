@@ -36,6 +36,7 @@ from centrode.model.reading import (
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
 from centrode.model.settings import CamReportWishes, Display, read_samples
 from centrode.model.values import Angle, Text, not_negative, positive, quantity, si
+from centrode.quantities import terminal_unit
 
 # Parts of a cam with a follower: cam, follower, spring, bounds, tool, study.
 
@@ -362,7 +363,7 @@ def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
     lifts = [segment.to for segment in segments if segment.to is not None]
     if lifts and lifts[-1] != 0:
         what = _("the lift does not return: a turn begins at 0 and ends at {lift:.9g} {unit}")
-        told = what.format(lift=lifts[-1], unit=UNITS[DRIVEN.get()])
+        told = what.format(lift=lifts[-1], unit=terminal_unit(UNITS[DRIVEN.get()]))
         found.append(Problem(told, _("let the last segment that moves go to 0"), ("segments",)))
     if not any(lifts) and not any(_swells(segment) for segment in segments):
         found.append(Problem(_("nothing moves: no segment lifts the follower"), at=("segments",)))
@@ -432,7 +433,7 @@ def _check_formulas(segment: LiftSegment, before: float) -> None:
     if not reached <= MOST_LIFT:
         what = _("the lift grows too large: with these conditions it may reach {lift:.3g} {unit}")
         repair = _("give smaller lifts and rates, or points that lie further apart")
-        raise Problem(what.format(lift=reached, unit=UNITS[DRIVEN.get()]), repair)
+        raise Problem(what.format(lift=reached, unit=terminal_unit(UNITS[DRIVEN.get()])), repair)
 
 
 class PlateCam(DescriptionPart):

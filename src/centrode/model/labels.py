@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.model.reading import body_word
-from centrode.quantities import display_unit, status_word
+from centrode.quantities import display_unit, status_word, terminal_unit, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,19 +44,23 @@ def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
 # locks.
 
 
-def value_with_unit(at: float, unit: str, display: Display) -> str:
-    """A value in SI as it is shown, with its unit; angles in radians also in degrees."""
+def value_with_unit(
+    at: float, unit: str, display: Display, unit_name: Callable[[str], str] = terminal_unit
+) -> str:
+    """A value in SI as it is shown, with its unit, which `unit_name` spells; angles in radians also in degrees."""
     factor, shown = display_unit(unit, display.length, display.angle)
-    text = f"{at * factor:.9g} {shown}"
-    return f"{text} ({math.degrees(at):.6g} deg)" if shown == "rad" else text
+    text = with_unit(f"{at * factor:.9g}", unit_name(shown))
+    return f"{text} ({with_unit(f'{math.degrees(at):.6g}', unit_name('deg'))})" if shown == "rad" else text
 
 
-def place_words(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> str:
+def place_words(
+    mechanism: Mechanism, motion: xr.Dataset, sample: int, unit_name: Callable[[str], str] = terminal_unit
+) -> str:
     """Where a sample is: values of the drives with their units, and its status where it is not ok."""
     values = motion["drive_value"].to_numpy()[sample].tolist()
     texts = []
     for drive, value in zip(mechanism.drives, values, strict=True):
         unit = mechanism.motion_parameter.drive(drive.id).unit
-        texts.append(f"{drive.id} {value_with_unit(value, unit, mechanism.display)}")
+        texts.append(f"{drive.id} {value_with_unit(value, unit, mechanism.display, unit_name)}")
     status = int(motion["status"][sample])
     return ", ".join(texts) + ("" if status == Status.OK else f" ({status_word(status)})")

@@ -11,6 +11,7 @@ from centrode.kinematics.motion import motion as motion_of
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.model.settings import shown_as
+from centrode.quantities import spelled_unit, with_unit
 from centrode.sheets.linkages import MechanismPicture
 from centrode.sheets.texts import Sentence
 from centrode.topics.presentation import display_of, is_result, page, sheet_of
@@ -92,4 +93,4 @@ def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:
     if link.length is None:
         return ", ".join(link.coordinates), ""
     factor, unit = shown_as("m" if mechanism.space == "plane" else "rad", mechanism.display)
-    return ", ".join(link.coordinates), f"{factor * link.length:.6g} {unit}"
+    return ", ".join(link.coordinates), with_unit(f"{factor * link.length:.6g}", spelled_unit(unit))

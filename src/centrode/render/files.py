@@ -14,7 +14,7 @@ from centrode.locale import speaking
 from centrode.model.settings import shown_as
 from centrode.render.netcdf import write_dataset
 from centrode.render.outlines import write_outlines
-from centrode.render.spelling import PlainSpelling
+from centrode.render.spelling import DataSpelling
 from centrode.render.table_spelling import PLAIN, TableSpelling
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def write_record(record: Mapping[str, Any], path: Path) -> None:
     """Write a result as JSON, names in their own letters; texts of a sheet in English, with numbers in SI."""
     with speaking("en"):
         text = json.dumps(
-            record, indent=2, ensure_ascii=False, allow_nan=False, default=PlainSpelling(None).text
+            record, indent=2, ensure_ascii=False, allow_nan=False, default=DataSpelling(None).text
         )
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
 
@@ -67,7 +67,7 @@ def write_table(
     wanted, if no other file is named for it.
     """
     encoding, delimiter, mark = ("utf-8-sig", ";", ",") if spelling.comma else ("utf-8", ",", ".")
-    words = PlainSpelling(display)
+    words = DataSpelling(display)
     headers = [header(column, display) for column in table.columns]
     with path.open("w", encoding=encoding, newline="") as file:
         writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
@@ -82,7 +82,7 @@ def write_table(
 
 def shown_columns(table: Table, display: Display | None) -> list[list[float] | list[str]]:
     """The columns of a table: numbers in the units of the display, in SI without one, and texts."""
-    words = PlainSpelling(display)
+    words = DataSpelling(display)
     return [_cells(column, words) for column in table.columns]
 
 
@@ -97,7 +97,7 @@ def _shown(column: Column, display: Display | None) -> tuple[float, str]:
     return shown_as(column.unit, None if column.unit_fixed else display)
 
 
-def _cells(column: Column, words: PlainSpelling, rows: slice = slice(None)) -> list[float] | list[str]:
+def _cells(column: Column, words: DataSpelling, rows: slice = slice(None)) -> list[float] | list[str]:
     """Numbers in the unit shown, or texts."""
     values = column.values[rows]
     if not isinstance(values, np.ndarray):
@@ -111,7 +111,7 @@ def _number(cell: float, column: Column) -> float | int:
     return int(cell) if column.whole else cell
 
 
-def _fields(column: Column, rows: slice, words: PlainSpelling, mark: str) -> list[str]:
+def _fields(column: Column, rows: slice, words: DataSpelling, mark: str) -> list[str]:
     """Cells as fields: the shortest digits that read back as the same number."""
     return [
         cell

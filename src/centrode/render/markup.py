@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _
 from centrode.render.latex import LatexSpelling, aligned_relations, escape, linear_system
-from centrode.render.spelling import PlainSpelling
+from centrode.render.spelling import PrintSpelling
 from centrode.render.symbolic import spell_symbolic
 from centrode.render.terminal import notes_of, sheet_text, symbol_texts, table_cells
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
@@ -59,8 +59,8 @@ def page_text(sheet: Sheet, title: str, kind: str, display: Display) -> str:
     return (LatexPage(display) if kind == "tex" else MarkdownPage(display)).page(sheet, title)
 
 
-class MarkupPage(PlainSpelling):
-    """Sheets in a language of marks; texts in it are spelled as on terminals."""
+class MarkupPage(PrintSpelling):
+    """Sheets in a language of marks; texts in it are spelled as on terminals, units as in books."""
 
     @abstractmethod
     def page(self, sheet: Sheet, title: str) -> str:

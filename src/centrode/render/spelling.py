@@ -1,4 +1,4 @@
-"""How texts of sheets become strings: the rules that all renderers share, and those of terminals and figures."""
+"""How texts of sheets become strings: the rules that all renderers share, those of terminals, figures and data."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, ngettext
 from centrode.model.settings import shown_as
-from centrode.quantities import typeset_unit
+from centrode.quantities import spelled_unit, terminal_unit, typeset_unit, with_unit
 from centrode.render.drawing.texts import formula, plain
 from centrode.render.symbolic import plain_symbolic
 from centrode.sheets.symbolic import SymbolicLeaf
@@ -120,9 +120,9 @@ class Spelling(ABC):
     def expression(self, expression: Expression) -> str:
         """A piece of mathematics."""
 
-    @abstractmethod
     def unit(self, unit: str) -> str:
-        """A unit on its own."""
+        """A unit as readers of the language print it; nothing for a plain number."""
+        return spelled_unit(unit)
 
     @abstractmethod
     def indexed(self, symbol: Indexed) -> str:
@@ -152,7 +152,7 @@ def filled_notation(relation: VectorNotation) -> str:
 
 
 class PlainSpelling(Spelling):
-    """Plain text, as terminals print it: a decimal point in every language, units with raised digits."""
+    """Plain text, as terminals print it: a decimal point in every language, degrees that can be typed again."""
 
     def name(self, text: str) -> str:
         """What a user called something, as it is."""
@@ -162,12 +162,14 @@ class PlainSpelling(Spelling):
         """A number with its unit behind a blank."""
         factor, unit = self.shown_unit(number)
         digits = self._digits(number.value * factor if factor != 1.0 else number.value, number.digits)
-        text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
-        if unit == "°":
-            text = f"{digits}°"
+        text = digits if number.unit_hidden else with_unit(digits, self.label_of(unit))
         if number.degrees_too and unit == "rad":
-            return f"{text} ({math.degrees(number.value):.6g} deg)"
+            return f"{text} ({with_unit(f'{math.degrees(number.value):.6g}', self.label_of('deg'))})"
         return text
+
+    def label_of(self, unit: str) -> str:
+        """A unit as it stands behind a number."""
+        return self.unit(unit)
 
     def _digits(self, value: float, digits: str) -> str:
         return DASH if math.isnan(value) else format(value, f"{digits}.6g" if digits in ("", "+") else digits)
@@ -186,13 +188,12 @@ class PlainSpelling(Spelling):
         return f"{symbol.letter}{symbol.index}"
 
     def unit(self, unit: str) -> str:
-        """A unit as tables head their columns: "kg m^2"."""
-        return unit
+        """A unit as terminals print it."""
+        return terminal_unit(unit)
 
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place as "(1.25, 0) m"."""
-        shown = shown_as(unit, self.display)[1]
-        label = "" if shown in ("", "1") else typeset_unit(shown)
+        label = self.label_of(shown_as(unit, self.display)[1])
         return f"({', '.join(map(self.number, coordinates))}) {label}".rstrip()
 
     def part(self, text: str) -> str:
@@ -214,16 +215,35 @@ class PlainSpelling(Spelling):
         return self.text(leaf.number if isinstance(leaf, Factor) else leaf)
 
 
-class DrawingSpelling(PlainSpelling):
-    """Plain texts within drawings, where room is short: degrees by their sign, and a minus as in print."""
+class DataSpelling(PlainSpelling):
+    """Plain text in files of data: units by their SI names in every language."""
+
+    def unit(self, unit: str) -> str:
+        """A unit by its name, "kg m^2"."""
+        return unit
+
+    def label_of(self, unit: str) -> str:
+        """A unit by its name, with raised powers; nothing for a plain number."""
+        return "" if unit == "1" else typeset_unit(unit)
+
+
+class PrintSpelling(PlainSpelling):
+    """Plain text beside drawings, with units as books print them."""
+
+    def unit(self, unit: str) -> str:
+        """A unit as books print it."""
+        return spelled_unit(unit)
+
+
+class DrawingSpelling(PrintSpelling):
+    """Plain texts within drawings: a minus as in print."""
 
     def number(self, number: Number) -> str:
-        """A number with its unit behind a blank, degrees with their sign."""
-        text = super().number(number).replace("-", "−")
-        return f"{text.removesuffix(' deg')}°" if text.endswith(" deg") else text
+        """A number with its unit behind a blank."""
+        return super().number(number).replace("-", "−")
 
 
-class FigureSpelling(PlainSpelling):
+class FigureSpelling(PrintSpelling):
     """Texts of figures, in which dollar signs part mathematics from words.
 
     The decimal mark of the language is set when figures are written.
@@ -247,6 +267,5 @@ class FigureSpelling(PlainSpelling):
         factor, unit = self.shown_unit(Number(0.0, label.unit, unit_fixed=label.unit_fixed))
         symbol = self.symbol(label.symbol) if label.symbol is not None else ""
         text = " ".join(filter(None, (self.text(label.text), symbol)))
-        # what is in degrees for every reader has their sign, as drawings have it
-        shown = "°" if label.unit == "deg" else typeset_unit(unit)
-        return factor, f"{text}, {shown}" if unit not in ("", "1") else text, unit
+        shown = self.unit(unit)
+        return factor, f"{text}, {shown}" if shown else text, unit

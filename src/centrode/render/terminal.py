@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _
-from centrode.quantities import typeset_unit
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
 from centrode.render.plain_table import WIDTH, aligned, listing
 from centrode.render.spelling import PlainSpelling
@@ -146,8 +145,8 @@ def symbol_texts(symbol: ExplainedSymbol, spelling: PlainSpelling) -> tuple[str,
 def _head(column: Column, spelling: PlainSpelling) -> str:
     """What a column holds, with the unit that is shown behind it."""
     name = spelling.text(column.head) or column.name
-    unit = spelling.shown_unit(Number(0.0, column.unit))[1]
-    return f"{name}, {typeset_unit(unit)}" if unit not in ("", "1") else name
+    unit = spelling.label_of(spelling.shown_unit(Number(0.0, column.unit))[1])
+    return f"{name}, {unit}" if unit else name
 
 
 def _stands_right(column: Column) -> bool:

@@ -59,9 +59,9 @@ def at(value: Text, place: float) -> Sentence:
     return Sentence("{value} at {at}", value=value, at=angle(place))
 
 
-def turns_a_minute(speed: float) -> Sentence:
+def turns_a_minute(speed: float) -> Number:
     """An angular velocity [rad/s] in turns a minute."""
-    return Sentence("{turns} rpm", turns=Number(30.0 * speed / np.pi))
+    return Number(30.0 * speed / np.pi, "rpm", unit_fixed=True)
 
 
 def letter_of(swings: bool) -> str:

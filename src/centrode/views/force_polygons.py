@@ -89,8 +89,8 @@ def sheet(results: ForcePolygonResults) -> Sheet:
 
 def _printed(found: ForcePolygons, place: float | str) -> Iterator[Block | Section]:
     """What is printed of one instant: what is what, the steps of each group, all forces, the three routes."""
-    unit = found.mechanism.motion_parameter.instant.unit
-    where = Name(place) if isinstance(place, str) else place_number(place, unit)
+    instant = found.mechanism.motion_parameter.instant
+    where = place_number(instant.read(place, "at"), instant.unit)
     yield Section(Sentence("at {value}", value=where), (FactTable(tuple(_facts(found))),))
     for group in found.groups:
         yield Section(_group_title(found, group), (_steps(found, group),))

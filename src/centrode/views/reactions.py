@@ -336,10 +336,8 @@ def _printed_parts(results: ReactionResults) -> Iterator[Table]:
     if not results.at:
         yield _extremes(results.mechanism, results.reactions)
         yield from _losses(results.reactions)
-    for sample, place in enumerate(results.at):
-        where: Text = (
-            Name(place) if isinstance(place, str) else _place(results.mechanism, results.reactions, sample)
-        )
+    for sample in range(len(results.at)):
+        where = _place(results.mechanism, results.reactions, sample)
         yield _instant_table(
             results.mechanism, results.reactions, sample, Sentence("at {value}", value=where)
         )

@@ -25,6 +25,7 @@ from centrode.model.settings import Display
 from centrode.model.units import read_quantity
 from centrode.model.values import Placed
 from centrode.numerics.arrays import ARRAYS
+from centrode.quantities import terminal_unit
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import SPACES, Dimensions, dimensions_of
 from centrode.structure.groups import Group, Meet, Rail, Rod, TurnedLink
@@ -157,7 +158,7 @@ def _given_bounds(one: Varying, bounds: tuple[Value, Value], display: Display) -
         raise InputError(
             one.path,
             _("its bounds must contain its present value, {value:.6g} {unit}").format(
-                value=one.before, unit=one.unit
+                value=one.before, unit=terminal_unit(one.unit)
             ),
             _("widen them"),
         )

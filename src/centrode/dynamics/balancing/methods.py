@@ -337,7 +337,7 @@ def _turns(rate: Array) -> bool:
 
 def _too_much(link: str, surplus: float) -> MotionError:
     what = _(
-        "the shaking moment cannot be balanced: the moment of inertia of {link} is {surplus:.6g} kg m² too "
+        "the shaking moment cannot be balanced: the moment of inertia of {link} is {surplus:.6g} kg·m² too "
         "large, and the link is not hinged to the frame, so that no counter-rotating disc can be placed"
     )
     return MotionError(

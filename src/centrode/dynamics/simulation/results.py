@@ -12,6 +12,7 @@ from centrode.dynamics.simulation.steady_state import Regime, steady_regime
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.locale import _
 from centrode.model.simulation import Simulation
+from centrode.quantities import terminal_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -144,7 +145,7 @@ def check_ended(results: SimulationResults) -> None:
             "kept, and beyond it the motion would be a different one"
         ).format(
             value=float(run["occasion_value"].to_numpy()[-1]),
-            unit=run["occasion_value"].attrs["units"],
+            unit=terminal_unit(run["occasion_value"].attrs["units"]),
             time=float(run["occasion_time"].to_numpy()[-1]),
         )
         repair = _('choose continuation = "smooth" in [assembly], which passes it, or a shorter time')

@@ -239,7 +239,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
     if not carried.least > 0.0:
         raise InputError(
             "[machine]",
-            _("the reduced moment of inertia is {inertia:.6g} kg m^2: it must be positive").format(
+            _("the reduced moment of inertia is {inertia:.6g} kg·m²: it must be positive").format(
                 inertia=carried.least
             ),
             _("give masses, [[machine.shafts]] with inertia, or fluctuation"),
@@ -257,7 +257,7 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
         raise InputError(
             "[machine]",
             _(
-                "a moment of inertia of {inertia:.6g} kg m^2 is too small: the machine would stop within the cycle"
+                "a moment of inertia of {inertia:.6g} kg·m² is too small: the machine would stop within the cycle"
             ).format(inertia=inertia),
             _("give [[machine.shafts]] with more inertia, or fluctuation to find a flywheel"),
         )

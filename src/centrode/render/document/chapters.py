@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.locale import _
+from centrode.quantities import spelled_unit
 from centrode.render.document import blocks
 from centrode.render.document.cam_player import moving_follower, moving_wheel
 from centrode.render.document.figures import picture
@@ -129,7 +130,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
 def _with_scales(page: GroupPage, name: str) -> str:
     """A caption with what a millimetre stands for: "...; $mu_l$ = 0.02 m/mm, $mu_F$ = 100 N/mm"."""
     scales = (
-        f"$mu_{letter}$ = {spelled_number(f'{size:g}')} {unit}/mm"
+        f"$mu_{letter}$ = {spelled_number(f'{size:g}')} {spelled_unit(unit)}/{spelled_unit('mm')}"
         for letter, size, unit in group_scales(page)
     )
     return f"{name}; {', '.join(scales)}"

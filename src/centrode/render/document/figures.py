@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 import textwrap
 from typing import Any
 
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 
 from centrode.render.document.blocks import Picture
 from centrode.render.drawing.style import house_style
-from centrode.render.figures.files import METADATA, respell, spell_decimals
+from centrode.render.figures.files import METADATA, spell_decimals
 
 FLAT = 0.68
 """Height of curves by their width of which two, with their captions, find room on a page."""
@@ -20,16 +19,14 @@ PANELS = 3
 """Panels above each other that can still be read at that height."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12
 """Inches: a letter of a label, what titles and ticks take of a figure's height, and what is between panels."""
-DEGREES = re.compile(r"(?<=\d) deg\b(/?)|(?<=, )deg\b")
 
 
 def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
     """A figure as a block, with its caption; one `to_scale` (at most as wide as A4) keeps its size on paper.
 
-    Curves are drawn no higher than half a page; numbers have the decimal mark of the language, degrees
-    their sign, as in the tables.
+    Curves are drawn no higher than half a page; numbers have the decimal mark of the language.
     """
-    spell_as_in_tables(figure)
+    spell_decimals(figure)
     if not to_scale:
         _flatten(figure)
     with house_style():
@@ -37,17 +34,6 @@ def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(stream, metadata=METADATA["svg"])
     return Picture(stream.getvalue(), caption, float(figure.get_figwidth()), to_scale)
-
-
-def spell_as_in_tables(figure: Figure) -> None:
-    """Numbers with the decimal mark of the language, degrees by their sign."""
-    spell_decimals(figure)
-    respell(figure, degrees)
-
-
-def degrees(text: str) -> str:
-    """A text with "30 deg" and "30 deg/s" as "30°" and "30 °/s"."""
-    return DEGREES.sub(lambda found: f" °{found[1]}" if found[1] else "°", text)
 
 
 def _flatten(figure: Figure) -> None:

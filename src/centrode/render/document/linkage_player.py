@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from centrode.errors import InputError, Status
 from centrode.locale import _
 from centrode.model.values import unit_vector
+from centrode.quantities import with_unit
 from centrode.render.document.blocks import Moving, Outline, RingBlock, shown
 from centrode.render.document.cam_player import AT_REST, LIFT, Array, Samples, cam_shapes, circle, hatch
 from centrode.render.document.figures import picture
@@ -254,9 +255,8 @@ def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[n
         name = f"{name} ({mechanism.drives[0].id})"
     numbers = Numbers(mechanism.display, DIGITS)
     label = numbers.shown(unit)[1]
-    room = "" if label.startswith("°") else NARROW
     texts = numbers.column(values.tolist(), unit, least=1e-9 * float(np.abs(values).max()))
-    return [f"{name} = {text}{room}{label}" for text in texts]
+    return [f"{name} = {with_unit(text, label, NARROW)}" for text in texts]
 
 
 def _bodies(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:

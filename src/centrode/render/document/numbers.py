@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from centrode.locale import decimal_mark
 from centrode.model.settings import DIGITS, Display
-from centrode.quantities import display_unit, typeset_unit
+from centrode.quantities import DEGREES, display_unit, spelled_unit, with_unit
 from centrode.render.document.typst import decimal
 
-MINUS, NOTHING, ENDLESS, NARROW = "\u2212", "\u2014", "\u221e", "\u202f"
+MINUS, NOTHING, ENDLESS, NARROW, NO_BREAK = "\u2212", "\u2014", "\u221e", "\u202f", "\u00a0"
 MOST_DECIMALS = 7
 """Zeros behind the decimal mark that can still be read; beyond them numbers get a power of ten."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_UNIT_SIGNS = (("deg", "°"), ("um", "µm"))
 
 
 def spelled_number(text: str) -> str:
@@ -25,15 +23,6 @@ def spelled_number(text: str) -> str:
     minus = MINUS if digits.startswith("-") and digits.strip("-0.") else ""
     digits = digits.removeprefix("-").replace(".", decimal_mark())
     return f"{minus}{digits}·10{str(int(power)).translate(_RAISED)}" if sign else f"{minus}{digits}"
-
-
-def spelled_unit(unit: str) -> str:
-    """A unit as books write it: "N·m", "mm/s²", "°/s"; nothing for a plain number."""
-    if unit in ("", "1"):
-        return ""
-    parts = re.split(r"([ /])", typeset_unit(unit))
-    names = [next((sign for name, sign in _UNIT_SIGNS if part == name), part) for part in parts]
-    return "".join("·" if name == " " else name for name in names)
 
 
 @dataclass(frozen=True)
@@ -65,8 +54,7 @@ class Numbers:
     def measured(self, value: float, unit: str, digits: int | None = None) -> str:
         """A quantity in SI as text, with its unit."""
         factor, label = self.shown(unit)
-        text = self.plain(value * factor, digits)
-        return f"{text}{'' if label.startswith('°') else NARROW}{label}" if label else text
+        return with_unit(self.plain(value * factor, digits), label, NARROW)
 
     def shown(self, unit: str) -> tuple[float, str]:
         """Factor and label of the unit in which a quantity of an SI unit is shown; analogs stay by radian."""
@@ -75,9 +63,12 @@ class Numbers:
         return factor, spelled_unit(label)
 
     def head(self, name: str, unit: str) -> str:
-        """Head of a column: a name (or mathematics between dollar signs) with the unit behind it."""
+        """Head of a column: a name (or mathematics between dollar signs) with the unit behind it.
+
+        The sign of degrees is too small for a line of its own.
+        """
         label = self.shown(unit)[1]
-        return f"{name}, {label}" if label else name
+        return f"{name},{NO_BREAK if label == DEGREES else ' '}{label}" if label else name
 
     def column(self, values: Iterable[float], unit: str = "1", least: float = 0.0) -> tuple[str, ...]:
         """Numbers in SI below each other, all with the same decimals; what is below `least` [SI] is zero."""

@@ -13,9 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from centrode.render.document.blocks import Picture
-from centrode.render.document.figures import spell_as_in_tables
 from centrode.render.drawing.style import house_style
-from centrode.render.figures.files import METADATA
+from centrode.render.figures.files import METADATA, spell_decimals
 
 INCH = 25.4
 ROOM = 2.0
@@ -31,7 +30,7 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
     caption : what it is, with its scale
     right, top : where the page's column and its head begin [mm]
     """
-    spell_as_in_tables(figure)
+    spell_decimals(figure)
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     kept: list[Any] = []

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import coordinate_separator
+from centrode.quantities import DEGREES, spelled_unit, with_unit
 from centrode.render.document.formulas import NumberSpelling, in_si
-from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
-from centrode.render.document.typst import TypstSpelling, quote, shown, word
+from centrode.render.document.numbers import NARROW, Numbers, spelled_number
+from centrode.render.document.typst import TypstSpelling, in_degrees, quote, shown, word
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
 from centrode.render.symbolic import spell_symbolic
@@ -59,11 +60,9 @@ class DocumentSpelling(Spelling):
         # a number that only the document gives its digits stands in titles, which keep it and its unit together
         gap = " " if number.digits else NARROW
         if number.degrees_too and unit == "rad" and value:
-            return f"{text}{gap}rad ({self.numbers.plain(math.degrees(value))}°)"
-        label = "" if number.unit_hidden else spelled_unit(unit)
-        if label == "°":
-            return f"{text}°"
-        return f"{text}{gap}{label}" if label else text
+            degrees = self.numbers.plain(math.degrees(value)) + DEGREES
+            return f"{with_unit(text, spelled_unit(unit), gap)} ({degrees})"
+        return text if number.unit_hidden else with_unit(text, spelled_unit(unit), gap)
 
     def _digits(self, value: float, digits: str) -> str:
         """A number in the format that its sentence wants, with no more digits than the document has."""
@@ -91,10 +90,6 @@ class DocumentSpelling(Spelling):
     def expression(self, expression: Expression) -> str:
         """Mathematics between dollar signs."""
         return f"${self.mathematics(expression)}$"
-
-    def unit(self, unit: str) -> str:
-        """A unit on its own, as books write it."""
-        return spelled_unit(unit)
 
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place, its coordinates parted as the decimal mark of the language allows."""
@@ -124,7 +119,9 @@ class DocumentSpelling(Spelling):
                 return notation.format(**{name: self.mathematics(value) for name, value in values.items()})
             case Number():
                 size, label = self._size(leaf)
-                return f"{size} thin {quote(label)}" if label and not leaf.unit_hidden else size
+                if leaf.unit_hidden or not label:
+                    return size
+                return in_degrees(size) if label == DEGREES else f"{size} thin {quote(label)}"
             case Factor(number):
                 size, _label = self._size(number)
                 return f"({size})" if number.value < 0 or "dot" in size else size

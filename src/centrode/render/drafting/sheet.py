@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from centrode.errors import NotComputedYet
 from centrode.locale import _
 from centrode.model.labels import place_words
+from centrode.quantities import spelled_unit
 from centrode.render.drafting.board import CAPITAL, Board, BoardWords, Drawing, Stroke, on_paper
 from centrode.render.drawing.cams import draw_axes_of_cams, draw_turned_cams
 from centrode.render.drawing.linkage import draw_drive, draw_frame, draw_hinges, draw_links, draw_names
@@ -43,6 +44,7 @@ def mechanism_drawing(
     centrodes: Sequence[xarray.Dataset] = (),
     names: bool = True,
     course: xarray.Dataset | None = None,
+    unit_name: Callable[[str], str] = spelled_unit,
 ) -> Drawing:
     """A mechanism at a sample of its motion, at full size in millimetres.
 
@@ -56,6 +58,7 @@ def mechanism_drawing(
     centrodes : results of `centrodes` that are drawn, the moving one where its link is at the instant
     names : write the points' names
     course : the motion that the paths belong to, where it is not `motion`
+    unit_name : how units are spelled: as readers print them, `str` for the names that files of data keep
 
     Raises
     ------
@@ -90,7 +93,7 @@ def mechanism_drawing(
         drawing.strokes.append(Stroke("paths", METRE * whole["position"].sel(point=name).to_numpy()))
     for pair in centrodes:
         drawing.strokes += _centrode(scene, pair, sample, board.scale)
-    _title(drawing, scene, motion, sample, CAPITAL * TITLE * board.letters)
+    _title(drawing, scene, place_words(mechanism, motion, sample, unit_name), CAPITAL * TITLE * board.letters)
     return drawing
 
 
@@ -121,14 +124,14 @@ def _centrode(scene: LinkageScene, pair: xarray.Dataset, sample: int, scale: flo
     return found
 
 
-def _title(drawing: Drawing, scene: LinkageScene, motion: xarray.Dataset, sample: int, height: float) -> None:
+def _title(drawing: Drawing, scene: LinkageScene, place: str, height: float) -> None:
     """The title below the drawing: what it is, where the drive is, scale and unit."""
     low, _high = drawing.box()
     lines = [
         _(scene.mechanism.title),
-        place_words(scene.mechanism, motion, sample),
+        place,
         _("scale 1:1, millimetres"),
     ]
     for number, text in enumerate(line for line in lines if line):
-        place = float(low[0]), float(low[1]) - LINE * height * (number + 1.5)
-        drawing.words.append(BoardWords("title", text, place, height, left=True))
+        corner = float(low[0]), float(low[1]) - LINE * height * (number + 1.5)
+        drawing.words.append(BoardWords("title", text, corner, height, left=True))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from centrode.quantities import typeset_unit
+from centrode.quantities import spelled_unit
 
 MATHEMATICAL = str.maketrans(
     {
@@ -34,7 +34,8 @@ def formula(symbol: str, subscript: str = "") -> str:
 
 def label_with_unit(text: str, unit: str) -> str:
     """A text with its unit behind it: "v, mm/s²"; a plain number has none."""
-    return f"{text}, {typeset_unit(unit)}" if unit not in ("", "1") else text
+    label = spelled_unit(unit)
+    return f"{text}, {label}" if label else text
 
 
 def centre_symbol(pair: tuple[int, int], bodies: int) -> str:

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 
 from centrode.render.drawing.style import INK, MUTED, PALETTE, Decimals
 from centrode.render.figures.curves import CUT_DASHES, angle_ticks, legend_width, write_legend, write_title
-from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ COLOURS = {AreaKind.MAIN: "#CFE3F2", AreaKind.BESIDE: "#E4E4E4"}
 
 def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     """Areas with their borders, paths over them, places over these, lengths and angles in the units of the display."""
-    spelling, words = FigureSpelling(display), PlainSpelling(display)
+    spelling, words = FigureSpelling(display), PrintSpelling(display)
     (x_factor, x_label, x_unit), (y_factor, y_label, y_unit) = map(spelling.label, (diagram.x, diagram.y))
     x, y = x_factor * diagram.across, y_factor * diagram.up
     # room for what other regions of the same kind show, so that pictures have one size

@@ -17,7 +17,7 @@ from centrode.render.drawing.linkage import draw_mechanism
 from centrode.render.drawing.style import DASHES, INK, MUTED, PALETTE, Decimals, Pen, pens
 from centrode.render.drawing.texts import formula, label_with_unit
 from centrode.render.figures.curves import legend_width, write_legend, write_title
-from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import LinkageScene, box
 from centrode.sheets.charts import (
@@ -44,7 +44,7 @@ def _pen(one: HodographCurve | Bars) -> Pen:
 
 
 def _write_titles(figure: Figure, chart: Chart, display: Display) -> None:
-    mechanism = PlainSpelling(display).text(chart.mechanism)
+    mechanism = PrintSpelling(display).text(chart.mechanism)
     write_title(figure, FigureSpelling(display).text(chart.title), mechanism)
 
 
@@ -115,7 +115,7 @@ def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
     scene = _wide_enough(scene_of(drawing.description, drawing.motion), drawing.discs, sample)
     size = scene.high - scene.low
     colours = pens(drawing.description.link_names)
-    names = [PlainSpelling(display).text(one.name) for one in drawing.discs]
+    names = [PrintSpelling(display).text(one.name) for one in drawing.discs]
     beside = legend_width(names) if names else 0.0
     width, height = 6.4 * size / scene.extent
     figure = Figure(figsize=(max(width, 3.2) + 1.0 + beside, height + 1.5), layout="constrained")
@@ -170,7 +170,7 @@ HIGH, LOW = 3.9, 1.35
 
 def front_figure(diagram: FrontDiagram, display: Display) -> Figure:
     """Best designs over the bound that moves; the legend stands beside the first panel."""
-    spelling, words = FigureSpelling(display), PlainSpelling(display)
+    spelling, words = FigureSpelling(display), PrintSpelling(display)
     across, label, _unit = spelling.label(diagram.x)
     first, *below = diagram.panels
     names = [_("best designs"), *(words.text(dot.name) for dot in first.dots)]

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.model.settings import shown_as
-from centrode.quantities import status_word, typeset_unit
+from centrode.quantities import spelled_unit, status_word, with_unit
 from centrode.render.drawing.globe import HIDDEN, draw_globe
 from centrode.render.drawing.linkage import MARGIN, draw_mechanism
 from centrode.render.drawing.style import MUTED, Decimals, pens
@@ -163,7 +163,9 @@ def instant_text(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> 
     value = factor * float(values[sample])
     if not parameter.by_time and abs(value) < 1e-9 * factor * float(np.nanmax(np.abs(values))):
         value = 0.0  # rounding of the range's middle or end
-    return f"{formula(parameter.variable.symbol)} = {value:.5g} {typeset_unit(unit)}".replace("-", "−")
+    return f"{formula(parameter.variable.symbol)} = {with_unit(f'{value:.5g}', spelled_unit(unit))}".replace(
+        "-", "−"
+    )
 
 
 def nearest_sample(mechanism: Mechanism, dataset: xarray.Dataset, value: float) -> int:

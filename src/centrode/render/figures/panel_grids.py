@@ -14,7 +14,7 @@ from centrode.locale import _
 from centrode.render.drawing.style import INK, MUTED, PALETTE, Decimals
 from centrode.render.drawing.tags import label_places
 from centrode.render.figures.curves import say_nothing_known, write_title
-from centrode.render.spelling import DrawingSpelling, FigureSpelling, PlainSpelling
+from centrode.render.spelling import DrawingSpelling, FigureSpelling, PrintSpelling
 from centrode.sheets.plots import HodographPanel, PanelGrid, SectorRings
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
         axes.set_title(spelling.text(panel.name))
     for axes in places[count:]:
         axes.set_axis_off()
-    write_title(figure, spelling.text(grid.title), PlainSpelling(display).text(grid.mechanism))
+    write_title(figure, spelling.text(grid.title), PrintSpelling(display).text(grid.mechanism))
     return figure
 
 

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from centrode.render.drawing.style import DASHES, INK, PALETTE, Decimals, Pen
 from centrode.render.figures.curves import DrawnAbscissa, Panel, angle_ticks, sheet, write_legend, write_title
-from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.plots import CurveRole, TraceKind
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def plot_figure(plot: Plot, display: Display) -> Figure:
     """A figure of panels over one abscissa."""
     spelling = FigureSpelling(display)
     rows = [[_panel(panel, spelling) for panel in row] for row in plot.rows]
-    title, mechanism = spelling.text(plot.title), PlainSpelling(display).text(plot.mechanism)
+    title, mechanism = spelling.text(plot.title), PrintSpelling(display).text(plot.mechanism)
     abscissa = drawn_abscissa(plot.abscissa, spelling)
     if plot.sizes_above is not None:
         figure = _sizes([panel for row in rows for panel in row], abscissa, plot.sizes_above)
@@ -60,7 +60,7 @@ def _add_dots(axes: Axes, panel: CurvePanel, across: float, spelling: FigureSpel
     up, entries = spelling.label(panel.label)[0], []
     for name, x, y in panel.dots:
         (dot,) = axes.plot([across * x], [up * y], "o", color=INK, markersize=5, clip_on=False, zorder=5)
-        entries.append((dot, PlainSpelling(spelling.display).text(name)))
+        entries.append((dot, PrintSpelling(spelling.display).text(name)))
     if entries:
         write_legend(axes, [*_entries(axes), *entries])
 
@@ -102,7 +102,7 @@ def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> Non
         for curve in panel.curves.values():
             axes.plot(abscissa.values, curve[abscissa.order], zorder=3, **look)
         if entries := _entries(axes):
-            name = PlainSpelling(spelling.display).text(overlay.name)
+            name = PrintSpelling(spelling.display).text(overlay.name)
             write_legend(axes, [*entries, (Line2D([], [], **look), name)])
 
 
@@ -145,7 +145,7 @@ def drawn_abscissa(abscissa: Abscissa, spelling: FigureSpelling) -> DrawnAbsciss
 def _panel(panel: CurvePanel, spelling: FigureSpelling) -> Panel:
     factor, label, unit = spelling.label(panel.label)
     # legends write names as they are: plain text, in which dollar signs are escaped where it is drawn
-    names = [PlainSpelling(spelling.display).text(curve.name) for curve in panel.curves]
+    names = [PrintSpelling(spelling.display).text(curve.name) for curve in panel.curves]
     curves = {name: factor * curve.values for name, curve in zip(names, panel.curves, strict=True)}
     pens = {name: _pen(curve) for name, curve in zip(names, panel.curves, strict=True)}
     return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend)
@@ -171,7 +171,7 @@ def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
     figure = Figure(figsize=(9.6, INCHES + 1.2), layout="constrained")
     axes = figure.subplots()
     key = [
-        _trace(axes, trace, place, (across, up), PlainSpelling(display))
+        _trace(axes, trace, place, (across, up), PrintSpelling(display))
         for place, trace in enumerate(diagram.traces)
     ]
     axes.set_xlim(across * diagram.across[0], across * diagram.across[1])
@@ -179,12 +179,12 @@ def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
     axes.set_ylabel(y_label)
     axes.yaxis.set_major_formatter(Decimals())
     write_legend(axes, key, inches=INCHES)
-    write_title(figure, spelling.text(diagram.title), PlainSpelling(display).text(diagram.mechanism))
+    write_title(figure, spelling.text(diagram.title), PrintSpelling(display).text(diagram.mechanism))
     return figure
 
 
 def _trace(
-    axes: Axes, trace: Trace, place: int, factors: tuple[float, float], spelling: PlainSpelling
+    axes: Axes, trace: Trace, place: int, factors: tuple[float, float], spelling: PrintSpelling
 ) -> tuple[Artist, str]:
     """Draw a trace with its marks; returns its entry in the legend."""
     colour = PALETTE[place % len(PALETTE)]

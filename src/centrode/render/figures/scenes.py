@@ -21,7 +21,7 @@ from centrode.render.drawing.texts import plain
 from centrode.render.drawing.window import carried_by, segments_of, widen, within
 from centrode.render.figures.curves import write_title
 from centrode.render.figures.linkages import caption, initial_sample, label_lengths
-from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import Array
 from centrode.scenes.places import LinkageScene as Sheet
@@ -133,7 +133,7 @@ class _Drawing:
             self._write_legend(axes)
         else:
             self._draw_column(figure, scene.diagram, [one.mark for one in marks])
-        title = PlainSpelling(self.spelling.display).text(scene.mechanism)
+        title = PrintSpelling(self.spelling.display).text(scene.mechanism)
         write_title(figure, self.spelling.text(scene.title), title)
         return figure
 

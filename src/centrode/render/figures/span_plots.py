@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from centrode.locale import _
 from centrode.render.drawing.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals
 from centrode.render.figures.curves import angle_ticks, legend_width, write_legend, write_title
-from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.spelling import FigureSpelling, PrintSpelling
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ ROUNDING = 1e-9
 
 def span_figure(plot: SpanPlot, display: Display) -> Figure:
     """A figure of panels below each other; with more than one curve their names stand beside the first panel."""
-    spelling, words = FigureSpelling(display), PlainSpelling(display)
+    spelling, words = FigureSpelling(display), PrintSpelling(display)
     names = [words.text(curve.name) for curve in plot.panels[0].curves]
     keyed, headed = len(names) > 1, bool(words.text(plot.panels[0].heading))
     width = WIDTH_BESIDE_LEGEND + legend_width(names) if keyed else WIDTH
@@ -103,7 +103,7 @@ def _draw_jump(
         axes.plot([across * place] * 2, heights, color=PALETTE[1], linestyle=JUMP, clip_on=clipped)
 
 
-def _name_spans(axes: Axes, plot: SpanPlot, factor: float, words: PlainSpelling) -> None:
+def _name_spans(axes: Axes, plot: SpanPlot, factor: float, words: PrintSpelling) -> None:
     """The name of each span above it, its number where there is no room."""
     ends = factor * np.array(plot.ends)
     room = (WIDTH - EDGES) / (ends[-1] - ends[0])

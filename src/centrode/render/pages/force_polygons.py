@@ -11,6 +11,7 @@ import numpy as np
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import FORCE_SCALES, round_scale
+from centrode.quantities import spelled_unit
 from centrode.render.drawing.style import INK, MUTED, Pen, pens
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.force_column import FOOT, GUTTER, LEFT, TOP, write_column, write_title
@@ -58,9 +59,15 @@ def group_page(sheet: GroupPage) -> Figure:
     corner, size = np.array([LEFT + drawn + GUTTER, FOOT]), np.array([room, height])
     scale = draw_polygons(page, sheet, corner, size)
     column = column_of(sheet)
-    heads = [caption(mechanism, sheet.instant, 0), f"$\\mu_l$ = {length:g} {unit} " + _("per mm")]
-    heads.append(f"$\\mu_F$ = {scale:g} N " + _("per mm"))
-    sizes = (f"{name} = {force:.6g} N, {force / scale:.1f} mm" for name, force in sheet.sizes)
+    heads = [
+        caption(mechanism, sheet.instant, 0),
+        f"$\\mu_l$ = {length:g} {spelled_unit(unit)} " + _("per mm"),
+    ]
+    heads.append(f"$\\mu_F$ = {scale:g} {spelled_unit('N')} " + _("per mm"))
+    sizes = (
+        f"{name} = {force:.6g} {spelled_unit('N')}, {force / scale:.1f} {spelled_unit('mm')}"
+        for name, force in sheet.sizes
+    )
     lines = [*(spelling.text(line) for line in sheet.lines), "", *sizes]
     write_column(page, column, spelling.text(sheet.heading), heads, lines)
     write_title(page, column, spelling.text(sheet.title), mechanism)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
-from centrode.quantities import typeset_unit
+from centrode.quantities import spelled_unit
 from centrode.render.drawing import signs
 from centrode.render.drawing.linkage import draw_bodies, draw_drive
 from centrode.render.drawing.style import INK, MUTED, Pen, pens
@@ -35,7 +35,7 @@ from centrode.render.pages.page import (
     symbol,
     write_head,
 )
-from centrode.render.spelling import PlainSpelling
+from centrode.render.spelling import PrintSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import SIGN_INCHES, LinkageScene
 
@@ -55,7 +55,7 @@ ARC = 3.2
 
 def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     """A page A5 across: the mechanism at its scale, which is true on paper, with what its velocities say."""
-    spelling = PlainSpelling(display)
+    spelling = PrintSpelling(display)
     page = new_page()
     factor, unit = shown_as("m", display)
     greatest = max((abs(one.rate) for one in sheet.velocities), default=0.0)
@@ -74,8 +74,8 @@ def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     speed_factor, speed_unit = shown_as("m/s", display)
     head = [
         caption(sheet.mechanism, sheet.instant, 0),
-        f"μ_l = {factor * sheet.scale:g} {unit} " + _("per mm"),
-        f"μ_v = {speed_factor * per_mm:g} {typeset_unit(speed_unit)} " + _("per mm"),
+        f"μ_l = {factor * sheet.scale:g} {spelled_unit(unit)} " + _("per mm"),
+        f"μ_v = {speed_factor * per_mm:g} {spelled_unit(speed_unit)} " + _("per mm"),
     ]
     listed = [spelling.text(one) for one in sheet.lines]
     write_head(page, spelling.text(sheet.title), sheet.mechanism, head, listed)

@@ -10,6 +10,7 @@ import numpy as np
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
+from centrode.quantities import spelled_unit
 from centrode.render.drawing import signs
 from centrode.render.drawing.style import INK, pens
 from centrode.render.figures.linkages import caption
@@ -47,7 +48,7 @@ def lever_page(sheet: LeverPage) -> Figure:
     draw_forces(page, view, sheet, factor)
     column = lever_column(sheet)
     per = "/rad" if sheet.unit == "N m" else ""
-    size_of = f"{scale:g} {unit}{per}" if unit != "1" else f"{scale:g}"
+    size_of = f"{scale:g} {spelled_unit(unit + per)}" if unit != "1" else f"{scale:g}"
     heads = [caption(mechanism, sheet.instant, 0), f"$\\mu_v$ = {size_of} " + _("per mm")]
     write_title(page, column, spelling.text(sheet.title), mechanism)
     write_column(page, column, spelling.text(sheet.heading), heads, list(map(spelling.text, sheet.lines)))

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
+from centrode.quantities import spelled_unit
 from centrode.render.drawing.linkage import draw_bodies, draw_links
 from centrode.render.drawing.style import INK, MUTED, pens
 from centrode.render.drawing.tags import lines
@@ -58,7 +59,7 @@ def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
         page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
     page.write(6.0, TOP, spelling.text(sheet.title), size=11.0, va="bottom")
     page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=7.5, va="bottom", label=AS_WRITTEN)
-    scale_text = f"μ_l = {scale:g} {unit} " + _("per mm")
+    scale_text = f"μ_l = {scale:g} {spelled_unit(unit)} " + _("per mm")
     write_column(page, sheet, spelling.text(sheet.note), scale_text)
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 7.0]]))
     return page.figure

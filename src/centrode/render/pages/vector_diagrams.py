@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from centrode.locale import _
 from centrode.model.settings import shown_as
-from centrode.quantities import typeset_unit
+from centrode.quantities import spelled_unit
 from centrode.render.drawing.style import GROUND, INK, Pen, pens
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.page import (
@@ -28,7 +28,7 @@ from centrode.render.pages.page import (
     typeset,
     write_head,
 )
-from centrode.render.spelling import PlainSpelling
+from centrode.render.spelling import PrintSpelling
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
@@ -56,11 +56,11 @@ def vector_diagram_figure(sheet: VectorDiagramPage, display: Display) -> Figure:
     drawn = draw_strokes(page, view, sheet.strokes, factor, colours)
     draw_images(page, view, sheet, factor)
     name_strokes(page, view, drawn, sheet.order, factor, colours)
-    spelling = PlainSpelling(display)
+    spelling = PrintSpelling(display)
     symbol = "μ_v" if sheet.order == 1 else "μ_a"
     head = [
         caption(sheet.mechanism, sheet.instant, 0),
-        f"{symbol} = {scale:g} {typeset_unit(unit)} " + _("per mm"),
+        f"{symbol} = {scale:g} {spelled_unit(unit)} " + _("per mm"),
     ]
     write_head(
         page, spelling.text(sheet.title), sheet.mechanism, head, [spelling.text(one) for one in sheet.lines]

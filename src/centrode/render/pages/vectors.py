@@ -10,6 +10,7 @@ import numpy as np
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
+from centrode.quantities import spelled_unit
 from centrode.render.drawing.linkage import draw_bodies
 from centrode.render.drawing.style import GROUND, INK, pens
 from centrode.render.drawing.tags import lines
@@ -72,8 +73,8 @@ def vector_page(sheet: VectorPage) -> Figure:
             moment_arc(page, view.mm(places[moment.point]), moment.value, moment.symbol)
     head = [
         caption(mechanism, motion, sample),
-        f"μ_l = {view.scale:g} {shown_as('m', mechanism.display)[1]} " + _("per mm"),
-        f"{sheet.symbol} = {per_mm:g} {sheet.unit} " + _("per mm"),
+        f"μ_l = {view.scale:g} {spelled_unit(shown_as('m', mechanism.display)[1])} " + _("per mm"),
+        f"{sheet.symbol} = {per_mm:g} {spelled_unit(sheet.unit)} " + _("per mm"),
     ]
     write_head(page, spelling.text(sheet.title), mechanism, head, [spelling.text(one) for one in sheet.lines])
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
