@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     from centrode.model.settings import Display
 
-LEAST, EDGES, HEAD = 1.8, 0.75, 1.1
-"""The least side of the axes, and what stands beside and above them [inch]."""
+LEAST, TALLEST, EDGES, HEAD = 1.8, 4.6, 0.75, 1.1
+"""The least side of the axes, the most of their height, and what stands beside and above them [inch]."""
 COLOURS = {AreaKind.MAIN: "#CFE3F2", AreaKind.BESIDE: "#E4E4E4"}
 
 
@@ -45,9 +45,10 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     names += [name for name, _x, _y in diagram.places]
     texts = [words.text(name) for name in names]
     beside, above = legend_width(texts), legend_height(texts)
-    _wide, high = _inches(diagram, PAGE_WIDTH - EDGES - beside, PAGE_HEIGHT - HEAD - above)
+    wide, high = _inches(diagram, PAGE_WIDTH - EDGES - beside, min(TALLEST, PAGE_HEIGHT - HEAD - above))
     figure = Figure(figsize=(PAGE_WIDTH, high + HEAD + above), layout="constrained")
     axes = figure.subplots()
+    axes.set_box_aspect(high / wide)
     shown = [area for area in diagram.areas if (area.levels > 0.0).any()]
     for area in reversed(shown):
         _draw_area(axes, area, (x, y))

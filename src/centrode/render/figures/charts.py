@@ -148,7 +148,7 @@ def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
     room = np.array([PAGE_WIDTH - 0.9 - beside, MOST])
     scene = replace(scene, inches=float(np.min(room * scene.extent / size)))
     height = scene.inches * float(size[1]) / scene.extent
-    figure = Figure(figsize=(PAGE_WIDTH, height + 1.2 + legend_height(names)), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, height + 1.35 + legend_height(names)), layout="constrained")
     axes = figure.subplots()
     draw_mechanism(axes, scene, sample)
     key: list[tuple[Artist, str]] = []

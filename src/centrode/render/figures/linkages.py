@@ -16,10 +16,11 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.quantities import status_word, typeset_unit
-from centrode.render.drawing.globe import HIDDEN, draw_globe
+from centrode.render.drawing.globe import draw_globe
 from centrode.render.drawing.linkage import MARGIN, draw_mechanism
 from centrode.render.drawing.style import (
     CUT,
+    HIDDEN,
     LINK,
     MUTED,
     PAGE_HEIGHT,

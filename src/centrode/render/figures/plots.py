@@ -27,6 +27,7 @@ from centrode.render.drawing.style import (
 )
 from centrode.render.figures.curves import (
     ABOVE_INCHES,
+    LONE_INCHES,
     PANEL_INCHES,
     DrawnAbscissa,
     Panel,
@@ -149,7 +150,8 @@ def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> Non
 
 def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Figure:
     """Panels below each other with the sizes of their curves on logarithmic scales."""
-    height = ABOVE_INCHES + sum(PANEL_INCHES + legend_height(list(panel.curves)) for panel in panels)
+    each = LONE_INCHES if len(panels) == 1 else PANEL_INCHES
+    height = ABOVE_INCHES + sum(each + legend_height(list(panel.curves)) for panel in panels)
     figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
     grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False)
     for axes, panel in zip(grid.ravel(), panels, strict=True):
@@ -167,12 +169,13 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
             )
             handles.append((line, name))
         axes.set_yscale("log")
+        axes.margins(y=0.12)  # the lowest power stands clear of the ticks below
         if abscissa.values[0] < abscissa.values[-1]:
             ends = float(abscissa.values[0]), float(abscissa.values[-1])
             axes.set_xlim(ends)
             angle_ticks(axes.xaxis, *ends, abscissa.unit, TICKS)
         axes.set_ylabel(panel.label)
-        wrap_label(axes, PANEL_INCHES)
+        wrap_label(axes, each)
         write_legend(axes, handles)
     grid[-1, 0].set_xlabel(abscissa.label)
     return figure
