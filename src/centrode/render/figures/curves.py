@@ -121,6 +121,8 @@ ENTRY_INCHES = 0.163
 """Height of an entry of a legend."""
 BESIDE_INCHES = 1.75
 """A wider legend stands above its axes."""
+TICKS = 9
+"""The most ticks of an angle, over the width of the figure."""
 KEY_INCHES = 0.55
 """Width of what a legend has beside the text of an entry."""
 MARK_DASHES = {EventKind.LIMIT: CENTRE_LINE, EventKind.CHANGE_POINT: DOTS}
@@ -306,7 +308,9 @@ def set_range(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> None:
     across = abscissa.values[np.isfinite(abscissa.values)]
     if across.size and across.max() > across.min():
         axes.set_xlim(float(across.min()), float(across.max()))
-        angle_ticks(axes.xaxis, float(across.min()), float(across.max()), abscissa.unit, 9)
+        place = axes.get_subplotspec()
+        most = TICKS if place is None else TICKS // place.get_gridspec().ncols
+        angle_ticks(axes.xaxis, float(across.min()), float(across.max()), abscissa.unit, most)
     heights = np.concatenate([np.empty(0), *panel.curves.values()])
     heights = heights[np.isfinite(heights)]
     if not heights.size:

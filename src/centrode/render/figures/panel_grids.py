@@ -28,7 +28,7 @@ PANEL = 1.3
 """Sides of a panel [inch], of three beside each other."""
 ROOM = 1.5
 """A panel is so many times as wide as its hodograph: values stand outside it."""
-FLATTEST = 0.4
+FLATTEST = 0.6
 """The least side of a panel over the greater one."""
 MOST_SEGMENTS = 90
 """Of so many parts of a hodograph its texts keep clear."""
@@ -94,9 +94,10 @@ def _frame_about(axes: Axes, curve: Array) -> None:
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    for axis in (axes.xaxis, axes.yaxis):
+    axes.xaxis.labelpad = 11.0  # below the common factor of the ticks
+    for axis, side in zip((axes.xaxis, axes.yaxis), half, strict=True):
         axis.set_major_formatter(Decimals())
-        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_major_locator(MaxNLocator(4 if side > 0.7 * np.max(half) else 1, steps=[1, 2, 2.5, 5, 10]))
 
 
 def _mark(axes: Axes, curve: Array, places: dict[str, Array]) -> None:
