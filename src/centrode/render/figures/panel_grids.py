@@ -97,7 +97,8 @@ def _frame_about(axes: Axes, curve: Array) -> None:
     axes.xaxis.labelpad = 11.0  # below the common factor of the ticks
     for axis, side in zip((axes.xaxis, axes.yaxis), half, strict=True):
         axis.set_major_formatter(Decimals())
-        axis.set_major_locator(MaxNLocator(4 if side > 0.7 * np.max(half) else 1, steps=[1, 2, 2.5, 5, 10]))
+        most = 4 if side > 0.7 * np.max(half) else 1
+        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10], min_n_ticks=min(most, 2)))
 
 
 def _mark(axes: Axes, curve: Array, places: dict[str, Array]) -> None:
