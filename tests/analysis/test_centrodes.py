@@ -119,6 +119,13 @@ def test_pieces_end_where_the_centre_goes_to_infinity() -> None:
     assert (found["fixed_arc"].to_numpy()[begins] == 0.0).all()
 
 
+@pytest.mark.parametrize("samples", [37, 91])
+def test_an_arc_that_goes_to_infinity_has_no_length_of_its_samples(samples: int) -> None:
+    told = ct.summary(ct.centrodes(ct.motion(ct.example("crank-rocker"), samples), "AB"))
+    arcs = [line.split()[-1] for line in told.splitlines() if line.startswith("arc of the")]
+    assert arcs == ["∞", "∞"]
+
+
 def test_a_translation_and_an_absence_have_no_centrode() -> None:
     found = ct.centrodes(ct.motion(ct.example("slider-between-cranks"), samples=9), "slider C")
     assert (found["centrode_piece"] == -1).all()

@@ -15,6 +15,7 @@ from centrode.model.examples.catalogue import load_cam
 from centrode.render.drawing.cams import draw_cams
 from centrode.render.drawing.tags import cam_lines
 from centrode.scenes.linkage import scene_of
+from drawn_curves import at_samples
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,7 @@ def test_every_curve_of_the_forces_is_drawn():
     assert len(curves) == len(names)
     for name, curve in zip(names, curves, strict=True):
         factor = 1e-6 if name == "contact_stress" else 1.0
-        assert np.array_equal(curve, factor * found[name].to_numpy())
+        assert np.array_equal(at_samples(curve, 73), factor * found[name].to_numpy())
     swinging = load_cam("indexing-cam")
     figure = ct.figures(follower_force_results(swinging, 13))["cam-forces"]
     assert "Q" in figure.axes[0].get_ylabel()

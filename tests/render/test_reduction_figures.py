@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 import centrode as ct
 from centrode.dynamics.reduction_results import reduction_results
+from drawn_curves import at_samples
 
 
 def names(figure: Figure, panel: int) -> list[str]:
@@ -25,7 +26,7 @@ def test_the_press() -> None:
     assert names(figures["reduced-moment"], 1) == ["weight AB", "weight CD", "weight DH"]
     drawn = {line.get_label(): line.get_ydata() for line in figures["reduced-inertia"].axes[0].lines}
     # in the order of time, the drive turns back
-    assert np.array_equal(drawn["sum"], data.reduced_inertia.values)
+    assert np.array_equal(at_samples(drawn["sum"], 37), data.reduced_inertia.values)
     assert figures["reduced-inertia"].axes[0].get_ylabel() == "$J$, kg·m²"
 
 

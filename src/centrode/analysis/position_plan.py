@@ -115,7 +115,10 @@ def plan_of_positions(
     name, extremes = _extremes(mechanism, path, by, link)
     zero = extremes[0] if extremes else float(by[0])
     # a full turn ends where it begins: its last position would be the first one again
-    values = zero + (by[-1] - by[0]) * np.arange(positions) / positions
+    turn = by[-1] - by[0]
+    values = zero + turn * np.arange(positions) / positions
+    # beyond the end of the range the turn begins again, so that every value lies in the range
+    values = np.where((values - by[-1]) / turn >= -SAME, values - turn, values)
     return PositionPlan(mechanism, listed, motion(mechanism, at=values), path, zero, name, closed, extremes)
 
 

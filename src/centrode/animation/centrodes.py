@@ -18,7 +18,7 @@ from centrode.locale import _
 from centrode.model.labels import body_name, sliders_of
 from centrode.model.reading import FRAME
 from centrode.render.drawing.globe import draw_line
-from centrode.render.drawing.style import pens
+from centrode.render.drawing.style import LINK, marked, pens
 from centrode.render.drawing.texts import centre_symbol
 from centrode.render.drawing.window import carried_by, within
 from centrode.scenes.places import LinkageScene
@@ -206,7 +206,7 @@ class CentresLayer(MotionLayer):
         for number, name in enumerate(self.bodies):
             if name in shown:
                 line = (
-                    Line2D([], [], color=links[name].colour, linestyle=links[name].dashes, linewidth=2.2)
+                    Line2D([], [], color=links[name].colour, linewidth=LINK, **marked(links[name], None))
                     if name in links
                     else Line2D([], [], linewidth=0.0)
                 )

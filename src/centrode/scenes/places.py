@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # What every drawing of a motion knows: its points, its corners and its size on paper.
 
 Array = NDArray[np.float64]
-SIGN_INCHES = 0.07  # radius of a hinge's circle on paper
+SIGN_INCHES = 0.06  # radius of a hinge's circle on paper
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -89,6 +89,7 @@ class Curve:
     place : its place among the things of its kind, which have the same pen in every figure
     approximate : drawn beside the exact curve, dashed
     role : a thing by itself, a part of a sum, or the sum
+    slopes : (sample) derivatives by the abscissa, in the units of both labels, NaN where not known; None if nowhere
     """
 
     name: Text
@@ -96,6 +97,7 @@ class Curve:
     place: int
     approximate: bool = False
     role: CurveRole = CurveRole.THING
+    slopes: Array | None = None
 
 
 @dataclass(frozen=True)

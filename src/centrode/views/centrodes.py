@@ -56,6 +56,8 @@ def _rolling_facts(results: CentrodeResults) -> Iterator[Fact]:
     pieces = found["centrode_piece"].to_numpy()
     arcs = [found[name].to_numpy() for name in ("fixed_arc", "moving_arc")]
     rolled = [sum(_last(arc[pieces == piece]) for piece in np.unique(pieces[pieces >= 0])) for arc in arcs]
+    if _goes_to_infinity(results):
+        rolled = [math.inf, math.inf]
     slip = float(np.nanmax(np.abs(arcs[0] - arcs[1]), initial=0.0))
     unit = "m" if mechanism.space == "plane" else "rad"
     yield Fact(Sentence("bodies"), pair_text(mechanism, results.link, results.against))
@@ -65,6 +67,20 @@ def _rolling_facts(results: CentrodeResults) -> Iterator[Fact]:
     yield Fact(Sentence("arc of the fixed centrode"), _length(rolled[0], unit))
     yield Fact(Sentence("arc of the moving centrode"), _length(rolled[1], unit))
     yield Fact(Sentence("greatest difference"), _length(slip, unit))
+
+
+def _goes_to_infinity(results: CentrodeResults) -> bool:
+    """Whether the centre passes through infinity: where the relative rotation of a plane mechanism turns back.
+
+    What the samples see of such an arc depends on how near to infinity they come.
+    """
+    if results.mechanism.space != "plane":
+        return False
+    found = results.centrodes
+    pieces, status = found["centrode_piece"].to_numpy(), found["status"].to_numpy()
+    turns_back = (pieces[1:] != pieces[:-1]) & (pieces[1:] >= 0) & (pieces[:-1] >= 0)
+    absent = (pieces < 0) & np.isin(status, (Status.OK, Status.CUT_OFF))
+    return bool(turns_back.any() or absent.any())
 
 
 def _last(arc: Array) -> float:

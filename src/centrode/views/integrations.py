@@ -232,7 +232,7 @@ def _pictures(results: IntegrationResults) -> Iterator[tuple[str, Plot]]:
     """Integrated curves over those in closed form, and the errors."""
     mechanism = results.mechanism
     closed, integrated = (
-        PlottedMotion(mechanism, dataset) for dataset in (results.closed, results.integration)
+        PlottedMotion(mechanism, dataset, 1.0) for dataset in (results.closed, results.integration)
     )
     under, over = over_time(results.closed), over_time(results.integration)
     for name, title in (

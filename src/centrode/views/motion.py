@@ -262,7 +262,8 @@ def _pictures(
     title = Sentence("Mechanism")
     yield "mechanism", partial(MechanismPicture, title, mechanism, motion, values, instants)
     yield "paths", partial(_paths, mechanism, motion)
-    plotted = PlottedMotion(mechanism, motion)
+    parameter = mechanism.motion_parameter
+    plotted = PlottedMotion(mechanism, motion, parameter.drives[0].speed if parameter.is_uniform else 1.0)
     for name, (title, rows) in _curves(plotted).items():
         yield name, partial(_plot, plotted, title, rows)
     if not mechanism.motion_parameter.by_time and "velocity_coefficient" in motion:

@@ -23,6 +23,20 @@ if TYPE_CHECKING:
 Array: TypeAlias = NDArray[np.float64]
 Rows: TypeAlias = tuple[tuple[CurvePanel, ...], ...]
 MAGNITUDE = "magnitude"
+DERIVATIVES = {
+    "angle": "angular_velocity",
+    "angular_velocity": "angular_acceleration",
+    "joint_angle": "joint_velocity",
+    "joint_velocity": "joint_acceleration",
+    "velocity": "acceleration",
+    "slide": "slide_velocity",
+    "slide_velocity": "slide_acceleration",
+    "velocity_coefficient": "acceleration_coefficient",
+    "angular_velocity_coefficient": "angular_acceleration_coefficient",
+    "joint_velocity_coefficient": "joint_acceleration_coefficient",
+    "slide_velocity_coefficient": "slide_acceleration_coefficient",
+}
+"""Variables and their derivatives: by time, of coefficients by the drive."""
 CURVES, PANELS = 7, 4
 """The most curves that can be told apart in a panel, and the most panels below each other that are not crowded."""
 
@@ -34,11 +48,13 @@ class PlottedMotion:
     Attributes
     ----------
     mechanism, dataset : the motion
+    pace : by how much the abscissa grows in a second [its SI unit/s]; None where that changes
     places : "link", "joint", "point", "guide" -> name -> its place, which gives it the same pen in every figure
     """
 
     mechanism: Mechanism
     dataset: xarray.Dataset
+    pace: float | None = None
 
     @functools.cached_property
     def places(self) -> Mapping[str, Mapping[str, int]]:
@@ -167,13 +183,33 @@ def _panel(
     values = motion.dataset[variable]
     unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
     curves = tuple(
-        Curve(Name(name), component(values.sel({kind: name}), part), motion.places[kind][name])
+        Curve(
+            Name(name),
+            component(values.sel({kind: name}), part),
+            motion.places[kind][name],
+            slopes=_slopes(motion, variable, kind, name, part),
+        )
         for name in names
     )
     symbol = Symbol(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "", slanted=True)
     return CurvePanel(
         AxisLabel(symbol=symbol, unit=unit), curves, great_value(motion.dataset, variable), legend
     )
+
+
+def _slopes(motion: PlottedMotion, variable: str, kind: str, name: str, part: str) -> Array | None:
+    """Derivatives of a curve by what it is drawn over; None where the motion does not hold them."""
+    rate = DERIVATIVES.get(variable)
+    pace = 1.0 if variable.endswith("coefficient") else motion.pace
+    if rate is None or pace is None or rate not in motion.dataset:
+        return None
+    derivative = motion.dataset[rate].sel({kind: name})
+    if part != MAGNITUDE:
+        return np.asarray((derivative.sel(axis=part) if part else derivative).to_numpy()) / pace
+    vector = motion.dataset[variable].sel({kind: name})
+    with np.errstate(divide="ignore", invalid="ignore"):
+        growth = (vector * derivative).sum("axis", skipna=False).to_numpy() / component(vector, MAGNITUDE)
+    return np.asarray(np.where(np.isfinite(growth), growth, np.nan) / pace)
 
 
 def component(values: xarray.DataArray, part: str) -> Array:

@@ -52,7 +52,9 @@ def _facts(plan: PositionPlan) -> list[Fact]:
         )
     else:
         facts.append(Fact(first, shown(plan.zero)))
-    facts.append(Fact(Sentence("step"), shown(float(values[1] - values[0]))))
+    along = parameter.instants(plan.path)
+    step = (along[-1] - along[0]) / len(values) if plan.closed else values[1] - values[0]
+    facts.append(Fact(Sentence("step"), shown(float(step))))
     ends = Sentence("{first} to {last}", first=shown(float(values[0])), last=shown(float(values[-1])))
     return [*facts, Fact(Sentence("range"), Sentence("a full turn") if plan.closed else ends)]
 

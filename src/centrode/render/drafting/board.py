@@ -213,7 +213,9 @@ class Board:
             )
 
     def plot(self, x: Sequence[float], y: Sequence[float], **how: Any) -> None:
-        """A line through places."""
+        """A line through places; no markers, which tell colours apart that a drawing for machines does not have."""
+        if "marker" in how:
+            return
         places = self.scale * np.stack([np.asarray(x, dtype=float), np.asarray(y, dtype=float)], axis=1)
         self.drawing.strokes.append(Stroke(self.layer, places, float(how.get("zorder", 2.0))))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -12,12 +12,13 @@ from matplotlib.patches import Circle, Polygon
 
 from centrode.render.drawing import signs
 from centrode.render.drawing.linkage import frame_axes, write_names
-from centrode.render.drawing.style import GROUND, INK, Pen, pens
+from centrode.render.drawing.style import GROUND, HAIR, HIDDEN, INK, Pen, marked, pens
 from centrode.scenes.places import corners
-from centrode.scenes.sphere import Array, Globe, great_arc
+from centrode.scenes.sphere import STEPS, Array, Globe, great_arc
 
-HIDDEN = (0, (4, 3))
-RIM, SHADE = "#C8C8C8", "#FAFAFA"
+RIM, SHADE, GRID = "#B0B0B0", "#ECECEC", "#D2D2D2"
+SHADES = 6
+"""Discs that make the sphere lighter towards the light."""
 
 
 def draw_globe(
@@ -54,6 +55,32 @@ def frame_globe(axes: Axes, globe: Globe) -> None:
     axes.set_yticks([])
     axes.spines[:].set_visible(False)
     axes.add_patch(Circle((0.0, 0.0), 1.0, facecolor=SHADE, edgecolor=RIM, linewidth=1.0, zorder=0.5))
+    # lighter towards the light, which falls from the upper left
+    for number in range(1, SHADES + 1):
+        share = number / SHADES
+        middle = (-0.28 * share, 0.28 * share)
+        axes.add_patch(
+            Circle(middle, 1.0 - 0.6 * share, facecolor="white", alpha=0.22, linewidth=0.0, zorder=0.51)
+        )
+    seen = [np.where(globe.in_front(one)[:, None], globe.flat(one), np.nan) for one in graticule()]
+    axes.plot(*np.concatenate(seen).T, color=GRID, linewidth=HAIR, zorder=0.9)
+
+
+def graticule() -> Iterator[Array]:
+    """Meridians and parallels each 30 degrees about the frame's third axis, as places with a gap at the end."""
+    around = np.append(np.linspace(0.0, 2.0 * np.pi, 4 * STEPS + 1), np.nan)
+    for longitude in np.radians(np.arange(0, 180, 30)):
+        level = np.array([np.cos(longitude), np.sin(longitude), 0.0])
+        yield np.cos(around)[:, None] * level + np.sin(around)[:, None] * np.array([0.0, 0.0, 1.0])
+    for latitude in np.radians([-60, -30, 0, 30, 60]):
+        yield np.stack(
+            [
+                np.cos(latitude) * np.cos(around),
+                np.cos(latitude) * np.sin(around),
+                np.full(len(around), np.sin(latitude)),
+            ],
+            axis=1,
+        )
 
 
 def draw_line(axes: Axes, globe: Globe, places: Array, colour: str, width: float, **more: Any) -> None:
@@ -90,7 +117,9 @@ def draw_arcs(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen], a
         pen = links[name]
         for arc in arcs:
             width = 2.4 if alpha == 1.0 else 1.4
-            draw_line(axes, globe, arc, pen.colour, width, alpha=alpha, linestyle=pen.dashes, zorder=3.0)
+            draw_line(axes, globe, arc, pen.colour, width, alpha=alpha, zorder=3.0)
+            if pen.marker and alpha == 1.0:
+                draw_marker(axes, globe, arc[len(arc) // 2], pen, alpha)
         rim = np.concatenate(arcs) if len(arcs) >= 3 else np.empty((0, 3))
         if len(rim) and globe.in_front(rim).all():
             axes.add_patch(
@@ -98,6 +127,12 @@ def draw_arcs(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen], a
                     globe.flat(rim), facecolor=pen.colour, edgecolor="none", alpha=0.18 * alpha, zorder=2.0
                 )
             )
+
+
+def draw_marker(axes: Axes, globe: Globe, place: Array, pen: Pen, alpha: float) -> None:
+    """The marker of a link at a place of its arc."""
+    faint = alpha if globe.in_front(place) else 0.4 * alpha
+    axes.plot(*globe.flat(place), color=pen.colour, alpha=faint, zorder=3.1, **marked(pen, None))
 
 
 def draw_points(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen]) -> None:
@@ -116,6 +151,12 @@ def draw_points(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen])
 
 def draw_turns(axes: Axes, globe: Globe, sample: int) -> None:
     """An arrow around the fixed hinge of each link that is driven against the frame, where it is seen."""
+    for arc in drive_rings(globe, sample):
+        signs.turning_arrow(axes, arc, GROUND)
+
+
+def drive_rings(globe: Globe, sample: int) -> Iterator[Array]:
+    """The arcs of the drives' arrows on paper, where they are seen."""
     places = globe.at(sample)
     for drive in globe.mechanism.drives:
         if drive.link is None or drive.relative_to != "frame":
@@ -124,7 +165,7 @@ def draw_turns(axes: Axes, globe: Globe, sample: int) -> None:
         if pivot in places and second in places and globe.in_front(places[pivot]):
             arc = turning_ring(places[pivot], places[second], 4.2 * globe.sign)
             forward = drive.speed is None or drive.speed >= 0
-            signs.turning_arrow(axes, globe.flat(arc if forward else arc[::-1]), GROUND)
+            yield globe.flat(arc if forward else arc[::-1])
 
 
 def turning_ring(pivot: Array, towards: Array, radius: float) -> Array:
@@ -156,4 +197,6 @@ def arcs_on_paper(globe: Globe, sample: int) -> list[tuple[Array, Array]]:
         outline = [places[name] for name in corners(link) if name in places]
         for start, end in pairwise(outline):
             found += list(pairwise(globe.flat(great_arc(start, end))[::6]))
+    for arc in drive_rings(globe, sample):
+        found += list(pairwise(arc))
     return found

@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 from centrode.model.mechanism import FRAME
 from centrode.render.drawing import signs
 from centrode.render.drawing.cams import draw_cams
-from centrode.render.drawing.style import GROUND, INK, Pen, pens
+from centrode.render.drawing.style import GROUND, INK, LINK, Pen, halo, marked, pens
 from centrode.render.drawing.tags import drive_arcs, ground_line, label_places, lines, unit
 from centrode.render.drawing.texts import plain
 from centrode.scenes.linkage import cylinders, pitch_circles, round_track, straight_track, wheel_at
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Rolling
 
 MARGIN = 0.10  # room around the drawing, as a part of its extent
-NAME_POINTS = 10.0  # height of the names of points [pt]
+NAME_POINTS = 9.0  # height of the names of points [pt]
 
 
 def draw_mechanism(
@@ -145,14 +145,18 @@ def draw_body(
             path[:, 0],
             path[:, 1],
             color=pen.colour,
-            linestyle=pen.dashes,
             alpha=alpha,
-            linewidth=2.4 if alpha == 1.0 else 1.4,
+            linewidth=LINK if alpha == 1.0 else 1.4,
             solid_capstyle="round",
             solid_joinstyle="round",
             zorder=level,
             label=name,
         )
+        if pen.marker and alpha == 1.0:
+            middle = 0.5 * (path[0] + path[1])
+            axes.plot(
+                middle[:1], middle[1:], color=pen.colour, alpha=alpha, zorder=level, **marked(pen, None)
+            )
 
 
 def draw_slot(
@@ -254,6 +258,7 @@ def write_names(
             ha="center",
             va="center",
             zorder=8,
+            path_effects=halo(),
         )
 
 

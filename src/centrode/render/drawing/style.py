@@ -1,4 +1,7 @@
-"""One look for all figures: colours that colour-blind readers can tell apart, line widths, texts."""
+"""The style sheet of all figures: sizes on paper, sizes of texts, widths of lines, colours that all can tell apart.
+
+A figure is drawn at the size that it has on paper, so that a size in points is that size in print.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import colorsys
 import logging
 import re
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -18,12 +21,22 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
 
 # Okabe and Ito, Color Universal Design (2008), without its yellow, which is lost on white paper.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-DASHES: tuple[Any, ...] = ("-", (0, (5, 1.2)), (0, (5, 1.2, 1.2, 1.2)), (0, (1.2, 1.0)))
+MARKERS = ("", "o", "s", "^", "D", "v")
+"""Markers of the things that share a colour, the first seven, the next seven and so on."""
+APPROXIMATE: Any = (0, (5, 1.2))
+CUT: Any = (0, (3, 2))
+JUMP: Any = (0, (2, 1.5))
+CENTRE_LINE: Any = (0, (6, 2, 1.5, 2))
+DOTS: Any = (0, (1, 1.5))
+HIDDEN: Any = (0, (4, 3))
+"""Dashes, each of one meaning: what another curve is compared with, what is cut off, a jump, limits and axes, change
+points, what lies behind."""
 MUTED = "#8A8A8A"
 GROUND = "#404040"
 INK = "#202020"
@@ -31,33 +44,55 @@ MATHTEXT = logging.getLogger("matplotlib.mathtext")
 BACKEND = ("backend", "backend_fallback")
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
+# Sizes [inch] and [pt] on paper, and widths of lines [pt].
+
+PAGE_WIDTH, PAGE_HEIGHT = 6.3, 8.2
+"""The most a figure may take of a page: the width of the text, and its height less a caption."""
+LEAST_POINTS = 7.0
+"""No text is smaller."""
+TITLE, LABEL, NAME, SMALL = 10.0, 8.5, 8.0, 7.2
+"""Titles; labels of axes; names beside places, ticks and legends; notes, and numbers along a curve."""
+LETTER = 0.0083
+"""Width of a letter, on an average [inch], over the size of the text in points."""
+CURVE, THIN, HAIR, LINK = 1.5, 0.9, 0.6, 2.4
+"""Curves; marks across a panel and what is compared; lines of zero and construction lines; links."""
+
 SETTINGS: dict[str, Any] = {
     "axes.edgecolor": "#606060",
     "axes.formatter.limits": (-3, 4),
     "axes.formatter.useoffset": False,
     "axes.grid": True,
     "axes.linewidth": 0.7,
-    "axes.titlesize": 10,
+    "axes.labelsize": LABEL,
+    "axes.titlesize": LABEL + 0.5,
     "figure.dpi": 150,
     "font.family": ["DejaVu Sans"],
-    "font.size": 9.5,
+    "font.size": LABEL,
     "grid.color": "#DDDDDD",
     "grid.linewidth": 0.6,
-    "legend.fontsize": 9,
+    "legend.fontsize": NAME,
     "legend.frameon": False,
-    "lines.linewidth": 1.5,
+    "lines.linewidth": CURVE,
     "mathtext.fontset": "dejavusans",
     "svg.fonttype": "path",
     "svg.hashsalt": "centrode",
+    "xtick.labelsize": NAME,
+    "ytick.labelsize": NAME,
 }
 
 
 @dataclass(frozen=True)
 class Pen:
-    """Colour and dashes of one link, point or guide, the same in every figure."""
+    """Colour and marker of one link, point or guide, the same in every figure; dashes of what is approximate."""
 
     colour: str
     dashes: Any = "-"
+    marker: str = ""
+
+
+def halo() -> list[AbstractPathEffect]:
+    """A white edge about the letters of a name, so that it can be read over a line."""
+    return [withStroke(linewidth=2.0, foreground="white")]
 
 
 @contextmanager
@@ -84,11 +119,21 @@ def _is_no_missing_letter(record: logging.LogRecord) -> bool:
 
 
 def pens(names: Iterable[str]) -> Mapping[str, Pen]:
-    """A pen for each name: colours in turn, then the same colours dashed."""
-    return {
-        name: Pen(PALETTE[number % len(PALETTE)], DASHES[number // len(PALETTE) % len(DASHES)])
-        for number, name in enumerate(names)
-    }
+    """A pen for each name: colours in turn, then the same colours with markers."""
+    return {name: numbered_pen(number) for number, name in enumerate(names)}
+
+
+def numbered_pen(number: int, colours: Sequence[str] = PALETTE) -> Pen:
+    """The pen of a thing by its place among its kind."""
+    marker = MARKERS[number // len(colours) % len(MARKERS)]
+    return Pen(colours[number % len(colours)], marker=marker)
+
+
+def marked(pen: Pen, at: Any = 0.12) -> dict[str, Any]:
+    """The marker of a pen for a line of matplotlib: along a curve, or in the places `at` of it; nothing without one."""
+    if not pen.marker:
+        return {}
+    return {"marker": pen.marker, "markersize": 4.0, "markevery": at, "markeredgewidth": 0.6}
 
 
 class Decimals(ScalarFormatter):

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from centrode.render.drawing import signs
-from centrode.render.drawing.style import INK, MUTED
+from centrode.render.drawing.style import INK, MUTED, halo
 from centrode.scenes.linkage import Disc, cylinders, round_track, straight_track, wheel_at
 from centrode.scenes.places import Array, LinkageScene, corners
 
@@ -35,6 +35,7 @@ class Tag:
 
     place: Array
     text: str
+    colour: str = INK
 
 
 def write_tags(
@@ -128,12 +129,13 @@ def _write(axes: Axes, tag: Tag, box: Array, anchor: Array, size: float) -> None
         place[1],
         tag.text,
         fontsize=size,
-        color=INK,
+        color=tag.colour,
         ha="center",
         va="center",
         linespacing=1.05,
         zorder=9,
         gid="tag",
+        path_effects=halo(),
     )
     nearest = np.clip(anchor, box[:2], box[2:])
     if np.hypot(*(nearest - anchor)) > LEADER * size * axes.figure.dpi / 72.0:

@@ -15,7 +15,7 @@ from matplotlib.patches import Circle, Polygon
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.render.drawing.signs import ground, slider
-from centrode.render.drawing.style import GROUND, INK, MUTED, PALETTE
+from centrode.render.drawing.style import CENTRE_LINE, GROUND, INK, MUTED, PAGE_HEIGHT, PAGE_WIDTH, PALETTE
 from centrode.render.drawing.texts import label_with_unit
 from centrode.render.figures.curves import write_title
 from centrode.render.spelling import DrawingSpelling
@@ -65,7 +65,7 @@ def wheel_keys() -> list[tuple[Line2D, str]]:
     return [
         (Line2D([], [], color=CAM), _("cam")),
         (
-            Line2D([], [], color=MUTED, linestyle=(0, (5, 1.2, 1.2, 1.2)), linewidth=0.8),
+            Line2D([], [], color=MUTED, linestyle=CENTRE_LINE, linewidth=0.8),
             _("path of the rollers"),
         ),
         (Line2D([], [], color=CARRIER), _("carrier")),
@@ -103,7 +103,7 @@ def _cam(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     path = factor * pose.of_cam(frame.place)
     axes.add_patch(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
     axes.plot(*profile.T, color=CAM, linewidth=1.6, zorder=4)
-    axes.plot(*path.T, color=MUTED, linewidth=0.8, linestyle=(0, (5, 1.2, 1.2, 1.2)), zorder=3)
+    axes.plot(*path.T, color=MUTED, linewidth=0.8, linestyle=CENTRE_LINE, zorder=3)
 
 
 def _carrier(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
@@ -161,7 +161,8 @@ def wheel_figure(positions: WheelPositions, display: Display) -> Figure:
     turned = positions.turned[:MOST_INSTANTS]
     columns = min(COLUMNS, len(turned))
     rows = -(-len(turned) // columns)
-    figure = Figure(figsize=(3.6 * columns + 0.6, 3.7 * rows + 1.3), layout="constrained")
+    high = min(3.0, PAGE_WIDTH / columns)
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, (high + 0.2) * rows + 1.1)), layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False).reshape(-1)
     for axes in grid[len(turned) :]:
         axes.set_visible(False)

@@ -11,8 +11,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from centrode.render.drawing.style import INK, MUTED, PALETTE, Decimals
-from centrode.render.figures.curves import CUT_DASHES, angle_ticks, legend_width, write_legend, write_title
+from centrode.render.drawing.style import (
+    APPROXIMATE,
+    CURVE,
+    INK,
+    MUTED,
+    PAGE_HEIGHT,
+    PAGE_WIDTH,
+    PALETTE,
+    Decimals,
+)
+from centrode.render.figures.curves import angle_ticks, legend_height, legend_width, write_legend, write_title
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath
 
@@ -21,8 +30,8 @@ if TYPE_CHECKING:
 
     from centrode.model.settings import Display
 
-INCHES, LEAST = 5.2, 2.0
-"""The longer side of the axes, and the least of the shorter one."""
+LEAST, TALLEST, EDGES, HEAD = 1.8, 4.6, 0.75, 1.1
+"""The least side of the axes, the most of their height, and what stands beside and above them [inch]."""
 COLOURS = {AreaKind.MAIN: "#CFE3F2", AreaKind.BESIDE: "#E4E4E4"}
 
 
@@ -34,10 +43,12 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     # room for what other regions of the same kind show, so that pictures have one size
     names = [area.name for area in diagram.areas] + [path.name for path in diagram.paths]
     names += [name for name, _x, _y in diagram.places]
-    wide, high = _inches(diagram)
-    room = legend_width([words.text(name) for name in names], high)
-    figure = Figure(figsize=(wide + 0.9 + room, high + 1.3), layout="constrained")
+    texts = [words.text(name) for name in names]
+    beside, above = legend_width(texts), legend_height(texts)
+    wide, high = _inches(diagram, PAGE_WIDTH - EDGES - beside, min(TALLEST, PAGE_HEIGHT - HEAD - above))
+    figure = Figure(figsize=(PAGE_WIDTH, high + HEAD + above), layout="constrained")
     axes = figure.subplots()
+    axes.set_box_aspect(high / wide)
     shown = [area for area in diagram.areas if (area.levels > 0.0).any()]
     for area in reversed(shown):
         _draw_area(axes, area, (x, y))
@@ -57,18 +68,18 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
         axis.set_major_formatter(Decimals())
         angle_ticks(axis, float(values[0]), float(values[-1]), unit, 9)
         axis.set_label_text(label)
-    write_legend(axes, key, inches=high)
+    write_legend(axes, key)
     write_title(figure, spelling.text(diagram.title), words.text(diagram.mechanism))
     return figure
 
 
-def _inches(diagram: AreaDiagram) -> tuple[float, float]:
-    """Width and height of the axes: of one unit in their proportions, otherwise square."""
+def _inches(diagram: AreaDiagram, wide: float, high: float) -> tuple[float, float]:
+    """Width and height of the axes in this room: of one unit in their proportions, otherwise square."""
     if diagram.x.unit != diagram.y.unit:
-        return INCHES, INCHES
-    wide, high = float(np.ptp(diagram.across)), float(np.ptp(diagram.up))
-    longer = max(wide, high)
-    return max(INCHES * wide / longer, LEAST), max(INCHES * high / longer, LEAST)
+        return wide, min(wide, high)
+    sides = np.array([np.ptp(diagram.across), np.ptp(diagram.up)])
+    across, up = np.maximum(sides * float(np.min(np.array([wide, high]) / sides)), LEAST).tolist()
+    return across, up
 
 
 def _draw_area(axes: Axes, area: Area, lines: Sequence[np.ndarray]) -> None:
@@ -86,8 +97,8 @@ def _draw_path(axes: Axes, path: AreaPath, factors: tuple[float, float]) -> Line
         factors[0] * path.x,
         factors[1] * path.y,
         color=PALETTE[1] if main else MUTED,
-        linestyle="-" if main else CUT_DASHES,
-        linewidth=1.5,
+        linestyle="-" if main else APPROXIMATE,
+        linewidth=CURVE,
         zorder=2.5,
     )
     return line

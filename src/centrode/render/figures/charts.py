@@ -14,9 +14,23 @@ from matplotlib.patches import Circle
 
 from centrode.locale import _
 from centrode.render.drawing.linkage import draw_mechanism
-from centrode.render.drawing.style import DASHES, INK, MUTED, PALETTE, Decimals, Pen, pens
+from centrode.render.drawing.style import (
+    APPROXIMATE,
+    CENTRE_LINE,
+    DOTS,
+    INK,
+    MUTED,
+    PAGE_HEIGHT,
+    PAGE_WIDTH,
+    PALETTE,
+    THIN,
+    Decimals,
+    Pen,
+    numbered_pen,
+    pens,
+)
 from centrode.render.drawing.texts import formula, label_with_unit
-from centrode.render.figures.curves import legend_width, write_legend, write_title
+from centrode.render.figures.curves import legend_height, legend_width, wrap_label, write_legend, write_title
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import LinkageScene, box
@@ -37,10 +51,15 @@ if TYPE_CHECKING:
 Chart: TypeAlias = Hodograph | BarChart | LinkageWithDiscs
 TICKS = 20
 """The most positions of bars that have a tick each."""
+BARS = 1.9
+"""Height of a panel of bars [inch]."""
+LEAST, MOST = 2.4, 4.6
+"""Height of a hodograph, and the most of it [inch]."""
 
 
 def _pen(one: HodographCurve | Bars) -> Pen:
-    return Pen(PALETTE[one.place], DASHES[1] if one.approximate else DASHES[0])
+    pen = numbered_pen(one.place)
+    return Pen(pen.colour, APPROXIMATE if one.approximate else "-", pen.marker)
 
 
 def _write_titles(figure: Figure, chart: Chart, display: Display) -> None:
@@ -54,12 +73,18 @@ def hodograph_figure(hodograph: Hodograph, display: Display) -> Figure:
     (across, x_label, _x), (up, y_label, _y) = spelling.label(hodograph.x), spelling.label(hodograph.y)
     curves = [(one, _pen(one), one.ends * (across, up)) for one in hodograph.curves]
     size = np.ptp(np.concatenate([ends for _one, _pen, ends in curves]), axis=0)
-    width, height = np.maximum(6.0 * size / max(float(size.max()), np.finfo(float).tiny), 2.6)
-    figure = Figure(figsize=(width + 2.9, height + 1.1), layout="constrained")
+    names = [PrintSpelling(display).text(one.name) for one in hodograph.curves]
+    beside, above = legend_width(names, LEAST), legend_height(names, inches=LEAST)
+    room = np.array([PAGE_WIDTH - beside - 0.8, MOST])
+    tiny = np.finfo(float).tiny
+    inches = size * float(np.min(room / np.maximum(size, tiny)))
+    figure = Figure(figsize=(PAGE_WIDTH, max(float(inches[1]), LEAST) + above + 1.1), layout="constrained")
     axes = figure.subplots()
-    for one, pen, ends in curves:
+    key: list[tuple[Artist, str]] = []
+    for (one, pen, ends), name in zip(curves, names, strict=True):
         word = spelling.text(one.name)
-        axes.plot(ends[:, 0], ends[:, 1], color=pen.colour, linestyle=pen.dashes, label=word)
+        (line,) = axes.plot(ends[:, 0], ends[:, 1], color=pen.colour, linestyle=pen.dashes, label=word)
+        key.append((line, name))
         marks = np.unique(np.linspace(0, len(ends) - 1, 11).round().astype(int))
         axes.plot(ends[marks, 0], ends[marks, 1], ".", color=pen.colour, markersize=5)
         axes.plot(ends[:1, 0], ends[:1, 1], "o", color=pen.colour, markersize=6)
@@ -69,7 +94,7 @@ def hodograph_figure(hodograph: Hodograph, display: Display) -> Figure:
     axes.set_ylabel(y_label)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(Decimals())
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    write_legend(axes, key, inches=LEAST)
     _write_titles(figure, hodograph, display)
     return figure
 
@@ -77,12 +102,15 @@ def hodograph_figure(hodograph: Hodograph, display: Display) -> Figure:
 def bar_figure(chart: BarChart, display: Display) -> Figure:
     """Panels of bars below each other; the legend stands in the first."""
     spelling = FigureSpelling(display)
-    figure = Figure(figsize=(9.2, 6.4), layout="constrained")
+    figure = Figure(
+        figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, 1.0 + BARS * len(chart.panels))), layout="constrained"
+    )
     rows = figure.subplots(len(chart.panels), 1, sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(rows, chart.panels, strict=True):
         factor, label, _unit = spelling.label(panel.label)
         _draw_bars(axes, panel.bars, factor, spelling)
         axes.set_ylabel(label)
+        wrap_label(axes, BARS - 0.4)
         axes.yaxis.set_major_formatter(Decimals())
         axes.grid(visible=False, axis="x")
         axes.set_axisbelow(True)
@@ -117,15 +145,17 @@ def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
     colours = pens(drawing.description.link_names)
     names = [PrintSpelling(display).text(one.name) for one in drawing.discs]
     beside = legend_width(names) if names else 0.0
-    width, height = 6.4 * size / scene.extent
-    figure = Figure(figsize=(max(width, 3.2) + 1.0 + beside, height + 1.5), layout="constrained")
+    room = np.array([PAGE_WIDTH - 0.9 - beside, MOST])
+    scene = replace(scene, inches=float(np.min(room * scene.extent / size)))
+    height = scene.inches * float(size[1]) / scene.extent
+    figure = Figure(figsize=(PAGE_WIDTH, height + 1.35 + legend_height(names)), layout="constrained")
     axes = figure.subplots()
     draw_mechanism(axes, scene, sample)
     key: list[tuple[Artist, str]] = []
     for one, name in zip(drawing.discs, names, strict=True):
         circle = _draw_disc(axes, scene, sample, one, colours[one.link].colour)
         key += [] if circle is None else [(circle, name)]
-    write_legend(axes, key, inches=float(height))
+    write_legend(axes, key)
     axes.grid(visible=False)
     axes.set_xlabel(label_with_unit(formula("x"), str(display.length)))
     axes.set_ylabel(label_with_unit(formula("y"), str(display.length)))
@@ -164,7 +194,7 @@ def _draw_disc(axes: Axes, scene: LinkageScene, sample: int, one: CarriedDisc, c
 
 
 FRONT, CHOSEN, START, BOUND = PALETTE[0], PALETTE[1], INK, PALETTE[3]
-HIGH, LOW = 3.9, 1.35
+HIGH, LOW = 2.8, 1.15
 """Inches of the panel of the front, and of each below it."""
 
 
@@ -174,8 +204,8 @@ def front_figure(diagram: FrontDiagram, display: Display) -> Figure:
     across, label, _unit = spelling.label(diagram.x)
     first, *below = diagram.panels
     names = [_("best designs"), *(words.text(dot.name) for dot in first.dots)]
-    height = HIGH + LOW * len(below) + 1.1
-    figure = Figure(figsize=(6.6 + legend_width(names, HIGH), height), layout="constrained")
+    height = HIGH + LOW * len(below) + 0.9 + legend_height(names, inches=HIGH)
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
     rows = figure.subplots(
         len(diagram.panels), 1, sharex=True, height_ratios=[HIGH, *([LOW] * len(below))], squeeze=False
     )[:, 0]
@@ -188,12 +218,13 @@ def front_figure(diagram: FrontDiagram, display: Display) -> Figure:
         )
         key.append((line, _("best designs")))
         if panel is first and diagram.bound is not None:
-            bound = axes.axvline(across * diagram.bound, color=BOUND, linestyle="--", linewidth=1.2)
+            bound = axes.axvline(across * diagram.bound, color=BOUND, linestyle=CENTRE_LINE, linewidth=THIN)
             key.append((bound, _("bound")))
         for level in panel.levels:
-            axes.axhline(up * level, color=MUTED, linewidth=0.9, linestyle=":")
+            axes.axhline(up * level, color=MUTED, linewidth=THIN, linestyle=DOTS)
         key += [(_dot(axes, dot, (across, up)), words.text(dot.name)) for dot in panel.dots]
         axes.set_ylabel(y_label)
+        wrap_label(axes, HIGH if panel is first else LOW)
         axes.yaxis.set_major_formatter(Decimals())
         if panel is first:
             axes.xaxis.set_major_formatter(Decimals())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -18,8 +18,29 @@ from matplotlib.ticker import FuncFormatter, MultipleLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.render.drawing.style import INK, MUTED, PALETTE, Decimals, Pen
+from centrode.render.drawing.style import (
+    CENTRE_LINE,
+    CURVE,
+    CUT,
+    DOTS,
+    INK,
+    JUMP,
+    LABEL,
+    LETTER,
+    MUTED,
+    NAME,
+    PAGE_HEIGHT,
+    PAGE_WIDTH,
+    PALETTE,
+    SMALL,
+    THIN,
+    TITLE,
+    Decimals,
+    Pen,
+    marked,
+)
 from centrode.render.drawing.texts import plain
+from centrode.render.figures.interpolation import interpolated, jumps
 from centrode.sheets.plots import EventKind
 
 Array = NDArray[np.float64]
@@ -91,12 +112,20 @@ def part_of_pi(value: float) -> str:
 
 
 Parts = tuple[Array, Array]  # regular, cut off
-WIDTH = 1.5
 ROUNDING = 1e-9
-PANEL_INCHES = 2.35
-ENTRIES_PER_INCH = 4.9
-CUT_DASHES = (0, (3, 2))
-MARK_DASHES = {EventKind.LIMIT: (0, (6, 2, 1.5, 2)), EventKind.CHANGE_POINT: (0, (1, 1.5))}
+PANEL_INCHES, LONE_INCHES = 1.85, 2.6
+"""Height of a panel of several, and of one alone."""
+ABOVE_INCHES = 0.75
+"""Height of the title and of the label of the abscissa."""
+ENTRY_INCHES = 0.163
+"""Height of an entry of a legend."""
+BESIDE_INCHES = 1.75
+"""A wider legend stands above its axes."""
+TICKS = 9
+"""The most ticks of an angle, over the width of the figure."""
+KEY_INCHES = 0.55
+"""Width of what a legend has beside the text of an entry."""
+MARK_DASHES = {EventKind.LIMIT: CENTRE_LINE, EventKind.CHANGE_POINT: DOTS}
 WILD = 8.0  # a curve that runs to infinity at a limit is shown up to this many times its upper decile
 
 
@@ -115,7 +144,9 @@ class Panel:
     scale : float
         What counts as a great value; parts in 10^9 of it are rounding, and no axis is stretched to show them.
     legend : bool
-        Put the names at the right.
+        Put the names beside the panel, or above it.
+    slopes : mapping of name -> (sample)
+        Derivatives of curves by the abscissa, in shown units, where they are known.
     """
 
     label: str
@@ -124,18 +155,29 @@ class Panel:
     pens: Mapping[str, Pen]
     scale: float = 0.0
     legend: bool = True
+    slopes: Mapping[str, Array] = field(default_factory=dict)
 
 
 def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: DrawnAbscissa) -> Figure:
     """A figure of panels in rows and columns, all over the same abscissa."""
     columns = max(map(len, rows))
-    beside = [
-        max(legend_width(list(panel.curves)) if panel.legend else 0.0 for panel in column)
-        for column in zip(*rows, strict=True)
+    width = PAGE_WIDTH / columns
+    # all legends of a figure stand on the same side
+    beside = all(
+        stands_beside(with_events(list(panel.curves)), PANEL_INCHES, width)
+        for panels in rows
+        for panel in panels
+        if panel.legend
+    )
+    above = [
+        0.0
+        if beside
+        else max(_height(list(panel.curves), width) if panel.legend else 0.0 for panel in panels)
+        for panels in rows
     ]
-    width = sum(beside) + (6.6 if columns == 1 else 4.7 * columns)
-    height = 1.2 + PANEL_INCHES * len(rows) + (1.0 if len(rows) == 1 else 0.0)
-    figure = Figure(figsize=(width, height), layout="constrained")
+    each = LONE_INCHES if len(rows) == 1 else PANEL_INCHES
+    height = min(PAGE_HEIGHT, ABOVE_INCHES + each * len(rows) + sum(above))
+    figure = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
     grid = figure.subplots(len(rows), columns, sharex=True, squeeze=False)
     told = False
     for row, (axes_row, panels) in enumerate(zip(grid, rows, strict=True)):
@@ -143,8 +185,9 @@ def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: 
             names = draw_panel(axes, panel, abscissa)
             extra = [] if told else draw_key(abscissa, panel)
             if panel.legend:
-                write_legend(axes, names, extra)
+                write_legend(axes, names, extra, columns=columns, beside=beside)
                 told = True
+            wrap_label(axes, each)
             if row == len(rows) - 1:
                 axes.set_xlabel(abscissa.label)
     write_title(figure, title, subtitle)
@@ -153,20 +196,47 @@ def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: 
 
 def write_title(figure: Figure, title: str, subtitle: str) -> None:
     """What the figure shows, and below it of which mechanism."""
-    width = int(13 * figure.get_figwidth())
-    figure.suptitle("\n".join([title, *textwrap.wrap(plain(subtitle), width)]), fontsize=11)
+    room = figure.get_figwidth() / LETTER
+    size = max(SMALL, min(TITLE, room / max(len(title), 1)))
+    lines = [title, *textwrap.wrap(plain(subtitle), int(room / size))]
+    figure.suptitle("\n".join(lines), fontsize=size)
+
+
+def _draw_curve(axes: Axes, panel: Panel, abscissa: DrawnAbscissa, name: str, width: float) -> Line2D:
+    """A curve through its samples; a jump is dashed."""
+    parts, pen, across = abscissa.parts(panel.curves[name]), panel.pens[name], abscissa.drawn
+    slopes = abscissa.parts(panel.slopes[name]) if name in panel.slopes else (None, None)
+    leaps = jumps(across, parts[0])
+    for k in leaps:
+        axes.plot(
+            across[k : k + 2],
+            parts[0][k : k + 2],
+            color=pen.colour,
+            linestyle=JUMP,
+            linewidth=THIN,
+            zorder=1.9,
+        )
+    places, heights = np.insert(across, leaps + 1, np.nan), np.insert(parts[0], leaps + 1, np.nan)
+    known = None if slopes[0] is None else np.insert(slopes[0], leaps + 1, np.nan)
+    regular, beyond = interpolated(places, heights, known), interpolated(across, parts[1], slopes[1])
+    return draw_parts(axes, (regular[0], beyond[0]), (regular[1], beyond[1]), name, pen, width)
+
+
+def wrap_label(axes: Axes, inches: float) -> None:
+    """Wrap the label of the vertical axis where it is longer than axes so high; formulas stay whole."""
+    label, room = axes.get_ylabel(), int(inches / (LABEL * LETTER))
+    if len(label) > room and "$" not in label:
+        axes.set_ylabel(
+            textwrap.fill(label.replace(", ", ",\N{NO-BREAK SPACE}"), room, break_long_words=False)
+        )
 
 
 def draw_panel(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> list[tuple[Line2D, str]]:
     """Draw the curves with their events; returns a handle and a name for each."""
-    across = (abscissa.drawn, abscissa.drawn)
     widths = band_widths(panel)
-    drawn = [
-        (draw_parts(axes, across, abscissa.parts(curve), name, panel.pens[name], widths[name]), name)
-        for name, curve in panel.curves.items()
-    ]
+    drawn = [(_draw_curve(axes, panel, abscissa, name, widths[name]), name) for name in panel.curves]
     for value, kind in abscissa.marks:
-        axes.axvline(value, color=INK, linewidth=0.9, linestyle=MARK_DASHES[kind], zorder=1.5)
+        axes.axvline(value, color=INK, linewidth=THIN, linestyle=MARK_DASHES[kind], zorder=1.5)
     axes.set_ylabel(panel.label)
     axes.yaxis.set_major_formatter(Decimals())
     set_range(axes, panel, abscissa)
@@ -179,8 +249,8 @@ def band_widths(panel: Panel) -> dict[str, float]:
     """Widths of the curves: one that later curves cover entirely is wider, so that all of them show."""
     names = list(panel.curves)
     if len(names) > 2 * len(PALETTE):
-        return dict.fromkeys(names, WIDTH)
-    return {name: WIDTH + 1.2 * covers(panel, name, names[k + 1 :]) for k, name in enumerate(names)}
+        return dict.fromkeys(names, CURVE)
+    return {name: CURVE + 1.2 * covers(panel, name, names[k + 1 :]) for k, name in enumerate(names)}
 
 
 def covers(panel: Panel, name: str, later: Sequence[str]) -> int:
@@ -196,7 +266,7 @@ def covers(panel: Panel, name: str, later: Sequence[str]) -> int:
 
 
 def draw_parts(
-    axes: Axes, x: Parts, y: Parts, name: str, pen: Pen, width: float = WIDTH, level: float = 2.0
+    axes: Axes, x: Parts, y: Parts, name: str, pen: Pen, width: float = CURVE, level: float = 2.0
 ) -> Line2D:
     """A line: its regular part in its own pen, its cut-off part grey and dashed; returns the regular part."""
     if np.isfinite(y[1]).any():
@@ -205,7 +275,7 @@ def draw_parts(
             x[1],
             y[1],
             color=MUTED,
-            linestyle=CUT_DASHES,
+            linestyle=CUT,
             linewidth=1.0,
             label=cut,
             zorder=level,
@@ -219,7 +289,7 @@ def draw_parts(
         linewidth=width,
         label=name,
         zorder=level,
-        **lonely(y[0]),
+        **marked(pen) | lonely(y[0]),
     )
     return line
 
@@ -238,7 +308,9 @@ def set_range(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> None:
     across = abscissa.values[np.isfinite(abscissa.values)]
     if across.size and across.max() > across.min():
         axes.set_xlim(float(across.min()), float(across.max()))
-        angle_ticks(axes.xaxis, float(across.min()), float(across.max()), abscissa.unit, 9)
+        place = axes.get_subplotspec()
+        most = TICKS if place is None else TICKS // place.get_gridspec().ncols
+        angle_ticks(axes.xaxis, float(across.min()), float(across.max()), abscissa.unit, most)
     heights = np.concatenate([np.empty(0), *panel.curves.values()])
     heights = heights[np.isfinite(heights)]
     if not heights.size:
@@ -281,12 +353,12 @@ def draw_key(abscissa: DrawnAbscissa, panel: Panel) -> list[tuple[Artist, str]]:
     kinds = {kind for _value, kind in abscissa.marks}
     words = {EventKind.LIMIT: _("limit"), EventKind.CHANGE_POINT: _("change point")}
     key: list[tuple[Artist, str]] = [
-        (Line2D([], [], color=INK, linewidth=0.9, linestyle=MARK_DASHES[kind]), words[kind])
+        (Line2D([], [], color=INK, linewidth=THIN, linestyle=MARK_DASHES[kind]), words[kind])
         for kind in EventKind
         if kind in kinds
     ]
     if any(np.isfinite(abscissa.parts(curve)[1]).any() for curve in panel.curves.values()):
-        key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT_DASHES), _("cut off")))
+        key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT), _("cut off")))
     return key
 
 
@@ -295,27 +367,81 @@ def write_legend(
     names: Sequence[tuple[Artist, str]],
     extra: Sequence[tuple[Artist, str]] = (),
     inches: float = PANEL_INCHES,
+    columns: int = 1,
+    beside: bool | None = None,
 ) -> None:
-    """The legend at the right of the axes, where it covers nothing, in as many columns as its height asks for."""
+    """The legend where it covers nothing: at the right of the axes, or above them where it is wide.
+
+    Parameters
+    ----------
+    inches : height that the legend may have beside the axes
+    columns : axes beside each other that share the width of the figure
+    beside : where it stands; chosen by the names if None
+    """
     entries = [*names, *extra]
-    if entries:
-        axes.legend(
-            [handle for handle, _name in entries],
-            [plain(name) for _handle, name in entries],
-            loc="upper left",
-            bbox_to_anchor=(1.01, 1.0),
-            borderaxespad=0.0,
-            handlelength=2.6,
-            ncols=legend_columns(len(entries), inches),
-        )
+    if not entries:
+        return
+    texts = [name for _handle, name in entries]
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    width = figure.get_figwidth() / columns
+    if stands_beside(texts, inches, width) if beside is None else beside:
+        look: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)}
+        look |= {"ncols": legend_columns(len(texts), inches), "borderaxespad": 0.0}
+    else:
+        look = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.25}
+        look |= {"ncols": columns_above(texts, width)}
+        texts = [textwrap.fill(text, letters_above(width)) for text in texts]
+        if axes.get_title():
+            axes.set_title(axes.get_title(), pad=4.0 + 72.0 * _height(texts, width))
+    handles = [handle for handle, _name in entries]
+    axes.legend(
+        handles, list(map(plain, texts)), handlelength=2.2, columnspacing=1.2, labelspacing=0.3, **look
+    )
+
+
+def stands_beside(names: Sequence[str], inches: float, width: float) -> bool:
+    """Whether a legend of these names is narrow enough to stand beside axes in a part of a figure so wide."""
+    each = KEY_INCHES + NAME * LETTER * max(map(len, names))
+    return legend_columns(len(names), inches) * each <= min(BESIDE_INCHES, 0.45 * width)
 
 
 def legend_columns(entries: int, inches: float) -> int:
     """Columns of a legend that may be this high."""
-    return -(-entries // max(1, int(ENTRIES_PER_INCH * inches)))
+    return -(-entries // max(1, int(inches / ENTRY_INCHES)))
 
 
-def legend_width(names: Sequence[str], inches: float = PANEL_INCHES) -> float:
-    """Room [inch] for a legend of these names that may be this high, the events included."""
-    texts = [*names, _("limit"), _("change point"), _("cut off")]
-    return legend_columns(len(texts), inches) * (0.65 + 0.085 * max(map(len, texts)))
+def columns_above(names: Sequence[str], width: float) -> int:
+    """Columns of a legend above axes."""
+    each = KEY_INCHES + NAME * LETTER * max(map(len, names))
+    return max(1, min(len(names), int((width - 0.6) / each)))
+
+
+def letters_above(width: float) -> int:
+    """Letters in a line of a legend above axes."""
+    return max(12, int((width - 0.6 - KEY_INCHES) / (NAME * LETTER)))
+
+
+def _height(names: Sequence[str], width: float) -> float:
+    """Height [inch] of a legend above axes."""
+    lines = max((len(textwrap.wrap(name, letters_above(width))) for name in names), default=1)
+    return 0.08 + ENTRY_INCHES * lines * -(-len(names) // columns_above(names, width))
+
+
+def with_events(names: Sequence[str]) -> list[str]:
+    """What a legend may have: the names, and the events."""
+    return [*names, _("limit"), _("change point"), _("cut off")]
+
+
+def legend_height(names: Sequence[str], width: float = PAGE_WIDTH, inches: float = PANEL_INCHES) -> float:
+    """Room [inch] that a legend of these names needs above its axes; none where it stands beside them."""
+    texts = with_events(names)
+    return 0.0 if stands_beside(texts, inches, width) else _height(names or texts, width)
+
+
+def legend_width(names: Sequence[str], inches: float = PANEL_INCHES, width: float = PAGE_WIDTH) -> float:
+    """Room [inch] that a legend of these names needs beside its axes; none where it stands above them."""
+    texts = with_events(names)
+    if not stands_beside(texts, inches, width):
+        return 0.0
+    return legend_columns(len(texts), inches) * (KEY_INCHES + NAME * LETTER * max(map(len, texts)))

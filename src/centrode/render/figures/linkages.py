@@ -16,18 +16,30 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.quantities import spelled_unit, status_word, with_unit
-from centrode.render.drawing.globe import HIDDEN, draw_globe
+from centrode.render.drawing.globe import draw_globe
 from centrode.render.drawing.linkage import MARGIN, draw_mechanism
-from centrode.render.drawing.style import MUTED, Decimals, pens
+from centrode.render.drawing.style import (
+    CUT,
+    HIDDEN,
+    LINK,
+    MUTED,
+    PAGE_HEIGHT,
+    PAGE_WIDTH,
+    Decimals,
+    Pen,
+    marked,
+    pens,
+)
 from centrode.render.drawing.texts import formula, label_with_unit
 from centrode.render.figures.curves import (
-    CUT_DASHES,
     draw_parts,
+    legend_height,
     legend_width,
     say_nothing_known,
     write_legend,
     write_title,
 )
+from centrode.render.figures.interpolation import interpolated
 from centrode.render.figures.plots import drawn_abscissa
 from centrode.render.spelling import FigureSpelling
 from centrode.scenes.linkage import scene_of
@@ -42,6 +54,10 @@ if TYPE_CHECKING:
 GHOSTS = 7  # fading pictures behind the initial position
 COLUMNS = 3
 FAINT = "#B4B4B4"
+INCHES = 4.2
+"""The most that the longer side of a mechanism takes [inch]."""
+BESIDE, HEAD = (0.75, 0.7), 0.45
+"""What stands beside and above each drawing, and above the figure [inch]."""
 
 
 def mechanism_figure(picture: MechanismPicture, display: Display) -> Figure:
@@ -82,10 +98,12 @@ def paths_figure(picture: PathsPicture, display: Display) -> Figure:
             )
             path = np.where(scene.in_front(path)[:, None], scene.flat(path), np.nan)
         x, y = (abscissa.parts(path[:, axis]) for axis in (0, 1))
+        regular, beyond = (interpolated(one, other) for one, other in zip(x, y, strict=True))
+        x, y = (regular[0], beyond[0]), (regular[1], beyond[1])
         drawn.append((draw_parts(axes, x, y, name, pen, level=7.0), name))
     key = []
     if abscissa.cut.any():
-        key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT_DASHES), _("cut off")))
+        key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT), _("cut off")))
     write_legend(axes, drawn, key, figure.get_figheight() - 1.0)
     if not any(np.isfinite(scene.tracks[name]).any() for name in picture.points):
         say_nothing_known(axes)
@@ -124,11 +142,13 @@ def place_on_paper(
     scene: LinkageScene | Globe, names: Sequence[str], rows: int = 1, columns: int = 1
 ) -> tuple[LinkageScene | Globe, Figure]:
     """The scene at the size that it gets on paper, and an empty figure in its proportions."""
-    inches = 5.2 if columns == 1 else 3.6
-    wide, high = inches * ((scene.high - scene.low) / scene.extent + 2 * MARGIN)
-    height = rows * (high + 0.75) + 0.55
-    width = max(6.0, columns * (wide + 0.9) + legend_width(names, height - 1.0))
-    return replace(scene, inches=inches), Figure(figsize=(width, height), layout="constrained")
+    beside, above = legend_width(names, 3.0), legend_height(names, inches=3.0)
+    # what labels and titles leave of the page, and the proportions of the scene
+    room = np.array([PAGE_WIDTH - beside, PAGE_HEIGHT - above - HEAD]) / (columns, rows) - BESIDE
+    sides = (scene.high - scene.low) / scene.extent + 2 * MARGIN
+    inches = min(INCHES, float(np.min(room / sides)))
+    height = rows * (inches * float(sides[1]) + BESIDE[1]) + above + HEAD
+    return replace(scene, inches=inches), Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
 
 
 def label_lengths(axes: Axes, scene: LinkageScene) -> None:
@@ -140,12 +160,14 @@ def label_lengths(axes: Axes, scene: LinkageScene) -> None:
         axis.set_major_formatter(Decimals())
 
 
+def link_line(pen: Pen) -> Line2D:
+    """What stands for a link in a legend."""
+    return Line2D([], [], color=pen.colour, linewidth=LINK, **marked(pen, None))
+
+
 def link_key(mechanism: Mechanism) -> list[tuple[Line2D, str]]:
     """Entries of the legend for the links."""
-    return [
-        (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), name)
-        for name, pen in pens(mechanism.link_names).items()
-    ]
+    return [(link_line(pen), name) for name, pen in pens(mechanism.link_names).items()]
 
 
 def caption(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> str:

@@ -12,9 +12,18 @@ from matplotlib.patches import Circle
 
 from centrode.model.settings import shown_as
 from centrode.render.drawing.signs import cross, fixed_hinge, ground, turning_arrow
-from centrode.render.drawing.style import GROUND, INK, MUTED, PALETTE, Decimals
+from centrode.render.drawing.style import (
+    CENTRE_LINE,
+    GROUND,
+    INK,
+    MUTED,
+    PAGE_WIDTH,
+    PALETTE,
+    SMALL,
+    Decimals,
+)
 from centrode.render.drawing.texts import formula, label_with_unit
-from centrode.render.figures.curves import write_legend, write_title
+from centrode.render.figures.curves import legend_height, legend_width, write_legend, write_title
 from centrode.render.outlines import GREY, STROKES, group_by_layer
 from centrode.render.spelling import DrawingSpelling
 from centrode.sheets.outlines import (
@@ -36,9 +45,9 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.outlines import OutlineDrawing, PathDrawing
 
-SIZE = (8.4, 6.0)
-"""Inches of a figure."""
-LEGEND = 5.0
+HEIGHT = 4.6
+"""Inches of a figure, less its legend."""
+LEGEND = 4.0
 """Inches that a legend may take."""
 ROOM = 0.06
 """Room around the body, over its size."""
@@ -47,7 +56,7 @@ CROSS = 0.012
 FOLLOWER = PALETTE[2]
 BASE_CIRCLE: Mapping[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (1.2, 2.0))}
 PENS: Mapping[LineUse, dict[str, Any]] = {
-    LineUse.AXIS: {"color": MUTED, "linewidth": 0.8, "linestyle": (0, (6, 2, 1.5, 2)), "zorder": 1},
+    LineUse.AXIS: {"color": MUTED, "linewidth": 0.8, "linestyle": CENTRE_LINE, "zorder": 1},
     LineUse.FOLLOWER: {"color": FOLLOWER, "linewidth": 2.0, "zorder": 4, "solid_capstyle": "round"},
     LineUse.NORMAL: {"color": MUTED, "linewidth": 0.6, "zorder": 2},
     LineUse.UNDERCUT: {"color": "#B00020", "linewidth": 2.4, "zorder": 5},
@@ -58,7 +67,7 @@ def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
     """A body between its outlines, lengths in the unit of the display."""
     spelling = DrawingSpelling(display)
     factor, unit = shown_as("m", display)
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, HEIGHT), layout="constrained")
     axes = figure.subplots()
     key: list[tuple[Artist, str]] = []
     for layer, pieces in group_by_layer(drawing.pieces).items():
@@ -97,6 +106,7 @@ def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
     axes.margins(ROOM)
     axes.set_xlabel(label_with_unit("x", unit))
     axes.set_ylabel(label_with_unit("y", unit))
+    figure.set_figheight(HEIGHT + legend_height([name for _line, name in key], inches=LEGEND))
     write_legend(axes, key, inches=LEGEND)
     write_title(figure, spelling.text(drawing.title), spelling.text(drawing.mechanism))
     return figure
@@ -113,7 +123,7 @@ def _marks(axes: Axes, marks: MarkedPlaces, factor: float, spelling: DrawingSpel
         factor * marks.places, marks.texts, factor * marks.text_places, strict=True
     ):
         axes.plot(*place, marker="o", color=INK, markersize=3.5, zorder=6)
-        look: dict[str, Any] = {"fontsize": 8, "color": INK, "ha": "center", "va": "center", "zorder": 6}
+        look: dict[str, Any] = {"fontsize": SMALL, "color": INK, "ha": "center", "va": "center", "zorder": 6}
         axes.text(beside[0], beside[1], spelling.text(text), **look)
     return Line2D([], [], color=INK, marker="o", linestyle="none", markersize=3.5)
 
@@ -150,13 +160,13 @@ def _rollers(axes: Axes, rollers: DrawnRollers, factor: float, spelling: Drawing
         away = place * (1.0 + 1.25 * radius / float(np.hypot(*place)))
         axes.update_datalim([tuple(away * 1.1)])
         side = "left" if away[0] >= 0 else "right"
-        look: dict[str, Any] = {"fontsize": 8.5, "color": INK, "ha": side, "va": "center", "zorder": 6}
+        look: dict[str, Any] = {"fontsize": SMALL, "color": INK, "ha": side, "va": "center", "zorder": 6}
         axes.text(away[0], away[1], spelling.text(text), **look)
     return Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", markersize=8)
 
 
-PATH_INCHES = 5.6
-"""Length on paper of the longer side of a path."""
+PATH_INCHES = 4.4
+"""The most that a path is high on paper."""
 BESIDE = 0.075
 """How far the text of a ray stands beyond its end, over the greatest distance of the path from the origin."""
 
@@ -168,8 +178,11 @@ def path_figure(drawing: PathDrawing, display: Display) -> Figure:
     places = factor * drawing.places
     with_origin = np.concatenate([places[np.isfinite(places).all(axis=1)], np.zeros((1, 2))])
     width, height = np.ptp(with_origin, axis=0).tolist()
-    scale = PATH_INCHES / (max(width, height) or 1.0)
-    figure = Figure(figsize=(scale * width + 4.2, max(scale * height + 1.5, 3.2)), layout="constrained")
+    names = [spelling.text(one) for one in (drawing.path, drawing.ray, drawing.normal)]
+    room = 0.78 * (PAGE_WIDTH - legend_width(names)) - 0.7
+    scale = min(room / (width or 1.0), PATH_INCHES / (height or 1.0))
+    size = (PAGE_WIDTH, max(1.3 * scale * height + 1.0, 2.4) + legend_height(names))
+    figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots()
     far = BESIDE * float(np.hypot(*with_origin.T).max())
     for ray in drawing.rays:
@@ -177,7 +190,7 @@ def path_figure(drawing: PathDrawing, display: Display) -> Figure:
         beyond = end * (1.0 + far / float(np.hypot(*end)))
         axes.plot(*np.stack([np.zeros(2), end]).T, color=MUTED, linewidth=0.7)
         axes.plot(*np.stack([inwards, end]).T, color=PALETTE[1], linewidth=1.1)
-        look: dict[str, Any] = {"color": GROUND, "ha": "center", "va": "center", "fontsize": 8}
+        look: dict[str, Any] = {"color": GROUND, "ha": "center", "va": "center", "fontsize": SMALL}
         axes.text(beyond[0], beyond[1], spelling.text(ray.text), **look)
     (line,) = axes.plot(*places.T, color=PALETTE[0], linewidth=2.0)
     key: list[tuple[Artist, str]] = [

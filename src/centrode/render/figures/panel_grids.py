@@ -11,8 +11,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.render.drawing.style import INK, MUTED, PALETTE, Decimals
-from centrode.render.drawing.tags import label_places
+from centrode.render.drawing.style import HAIR, INK, MUTED, PAGE_HEIGHT, PAGE_WIDTH, PALETTE, SMALL, Decimals
+from centrode.render.drawing.tags import WIDE, label_places
 from centrode.render.figures.curves import say_nothing_known, write_title
 from centrode.render.spelling import DrawingSpelling, FigureSpelling, PrintSpelling
 from centrode.sheets.plots import HodographPanel, PanelGrid, SectorRings
@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = NDArray[np.float64]
 COLUMNS = 3
-PANEL = 3.3
-"""Sides of a panel [inch]."""
-ROOM = 1.36
+PANEL = 1.3
+"""Sides of a panel [inch], of three beside each other."""
+ROOM = 1.5
 """A panel is so many times as wide as its hodograph: values stand outside it."""
+FLATTEST = 0.6
+"""The least side of a panel over the greater one."""
 MOST_SEGMENTS = 90
 """Of so many parts of a hodograph its texts keep clear."""
-NAME_POINTS = 7.5
 INSIDE, OUTSIDE = PALETTE[0], PALETTE[1]
 DEPTH = 0.42
 """The deepest ring, over the radius of the circle."""
@@ -41,8 +42,8 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
     count, spelling = len(grid.panels), FigureSpelling(display)
     columns = 2 if count == 4 else min(COLUMNS, count)
     rows = -(-count // columns)
-    size = (columns * (PANEL + 0.75), rows * (PANEL + 0.8) + 0.6)
-    figure = Figure(figsize=size, layout="constrained")
+    high = PAGE_WIDTH / max(columns, 2) + 0.25
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, rows * high + 0.5)), layout="constrained")
     places = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, panel in zip(places, grid.panels, strict=False):
         match panel:
@@ -55,6 +56,11 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
         axes.set_title(spelling.text(panel.name))
     for axes in places[count:]:
         axes.set_axis_off()
+    for row in range(rows):  # one label serves a row and a column of panels
+        for axes in places[row * columns + 1 : (row + 1) * columns]:
+            axes.set_ylabel("")
+    for axes in places[: count - columns]:
+        axes.set_xlabel("")
     write_title(figure, spelling.text(grid.title), PrintSpelling(display).text(grid.mechanism))
     return figure
 
@@ -79,35 +85,38 @@ def _hodograph(axes: Axes, hodograph: HodographPanel, display: Display) -> None:
 
 
 def _frame_about(axes: Axes, curve: Array) -> None:
-    """Square limits around a curve and its origin, with room for what stands beside it."""
+    """Limits around a curve and its origin, with room for what stands beside it."""
     known = np.vstack([curve[np.isfinite(curve).all(axis=1)], np.zeros((1, 2))])
     low, high = known.min(axis=0), known.max(axis=0)
-    half = 0.5 * ROOM * float(np.max(high - low)) or 1.0
+    most = 0.5 * ROOM * float(np.max(high - low)) or 1.0
+    half = np.maximum(0.5 * ROOM * (high - low), FLATTEST * most)
     middle = (low + high) / 2
     axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(middle[0] - half, middle[0] + half)
-    axes.set_ylim(middle[1] - half, middle[1] + half)
-    for axis in (axes.xaxis, axes.yaxis):
+    axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+    axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+    axes.xaxis.labelpad = 11.0  # below the common factor of the ticks
+    for axis, side in zip((axes.xaxis, axes.yaxis), half, strict=True):
         axis.set_major_formatter(Decimals())
-        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+        most = 4 if side > 0.7 * np.max(half) else 1
+        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10], min_n_ticks=min(most, 2)))
 
 
 def _mark(axes: Axes, curve: Array, places: dict[str, Array]) -> None:
     """Dots with the values beside them, where there is room."""
-    low, high = axes.get_xlim()
-    height = NAME_POINTS * (high - low) / (72.0 * PANEL)
+    corners = np.array([axes.get_xlim(), axes.get_ylim()]).T
+    height = SMALL * float(np.max(corners[1] - corners[0])) / (72.0 * PANEL)
     apart: dict[str, Array] = {}
     dots = np.array(list(places.values())).reshape(-1, 2)
     axes.plot(dots[:, 0], dots[:, 1], "o", color=INSIDE, markersize=3.2, zorder=4)
     for text, place in places.items():
-        if all(np.hypot(*(place - other)) > 1.6 * height for other in apart.values()):
+        if all(np.hypot(*(place - other)) > 2.6 * height for other in apart.values()):
             apart[text] = place
     coarse = curve[:: max(1, len(curve) // MOST_SEGMENTS)]
     segments = [(a, b) for a, b in pairwise(coarse) if np.isfinite([a, b]).all()]
     for text, centre in label_places(apart, segments, 1.1 * height, height).items():
-        axes.text(
-            centre[0], centre[1], text, fontsize=NAME_POINTS, color=INK, ha="center", va="center", zorder=5
-        )
+        half = height * np.array([0.5 * WIDE * len(text), 0.6])
+        centre = np.clip(centre, corners[0] + half, corners[1] - half)
+        axes.text(centre[0], centre[1], text, fontsize=SMALL, color=INK, ha="center", va="center", zorder=5)
 
 
 def _rings(axes: Axes, rings: SectorRings, display: Display) -> None:
@@ -122,11 +131,15 @@ def _rings(axes: Axes, rings: SectorRings, display: Display) -> None:
     ways = np.radians(np.arange(0, 360, 30))[:, None]
     spokes = np.array([0.3, 1.0 + DEPTH, np.nan])
     axes.plot(
-        (np.cos(ways) * spokes).ravel(), (np.sin(ways) * spokes).ravel(), color=MUTED, linewidth=0.4, zorder=1
+        (np.cos(ways) * spokes).ravel(),
+        (np.sin(ways) * spokes).ravel(),
+        color=MUTED,
+        linewidth=HAIR,
+        zorder=1,
     )
     for turn, (x, y) in {0: (1, 0), 90: (0, 1), 180: (-1, 0), 270: (0, -1)}.items():
         far = 1.0 + DEPTH + 0.14
-        axes.text(far * x, far * y, f"{turn}°", fontsize=NAME_POINTS, color=MUTED, ha="center", va="center")
+        axes.text(far * x, far * y, f"{turn}°", fontsize=SMALL, color=MUTED, ha="center", va="center")
     shares = np.stack([rings.inside, rings.outside])
     if not np.isfinite(shares).all():
         axes.text(0.0, 0.0, _("no turning\nunder load"), color=MUTED, ha="center", va="center")
@@ -139,7 +152,7 @@ def _rings(axes: Axes, rings: SectorRings, display: Display) -> None:
         radius = np.append(radius, radius[0])
         axes.plot(radius * np.cos(outline), radius * np.sin(outline), color=colour, linewidth=1.3, zorder=4)
     text = DrawingSpelling(display).text(rings.text)
-    axes.text(0.0, 0.0, text, fontsize=8.0, color=INK, ha="center", va="center", zorder=5)
+    axes.text(0.0, 0.0, text, fontsize=SMALL, color=INK, ha="center", va="center", zorder=5)
 
 
 def _ring(middles: Array, radius: Array) -> tuple[Array, Array]:

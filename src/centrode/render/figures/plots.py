@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
@@ -10,8 +11,33 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.render.drawing.style import DASHES, INK, PALETTE, Decimals, Pen
-from centrode.render.figures.curves import DrawnAbscissa, Panel, angle_ticks, sheet, write_legend, write_title
+from centrode.render.drawing.style import (
+    APPROXIMATE,
+    CENTRE_LINE,
+    INK,
+    PAGE_HEIGHT,
+    PAGE_WIDTH,
+    PALETTE,
+    SMALL,
+    THIN,
+    Decimals,
+    Pen,
+    marked,
+    numbered_pen,
+)
+from centrode.render.figures.curves import (
+    ABOVE_INCHES,
+    LONE_INCHES,
+    PANEL_INCHES,
+    DrawnAbscissa,
+    Panel,
+    angle_ticks,
+    legend_height,
+    sheet,
+    wrap_label,
+    write_legend,
+    write_title,
+)
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.plots import CurveRole, TraceKind
 
@@ -21,22 +47,24 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.plots import Abscissa, Curve, CurveDiagram, CurvePanel, Overlay, Plot, Trace
 
-INCHES = 4.6
+INCHES = 3.4
 """Height of a diagram's axes, which its legend may take."""
 COLOURED = PALETTE[:-1]
 """The palette without its black, which is the sum's among parts."""
+COLUMNS = 2
+"""The most columns of panels."""
 TICKS = 9
 """The most ticks of an angle."""
 ROOM = 0.08
 """Share of the panel that the name of a single place takes at its right."""
-MARKED = (0, (6, 2, 1.5, 2))
-"""Dashes of the line at a single place."""
 
 
 def plot_figure(plot: Plot, display: Display) -> Figure:
     """A figure of panels over one abscissa."""
     spelling = FigureSpelling(display)
-    rows = [[_panel(panel, spelling) for panel in row] for row in plot.rows]
+    plot = _turned(plot)
+    across = spelling.label(plot.abscissa.label)[0]
+    rows = [[_panel(panel, spelling, across) for panel in row] for row in plot.rows]
     title, mechanism = spelling.text(plot.title), PrintSpelling(display).text(plot.mechanism)
     abscissa = drawn_abscissa(plot.abscissa, spelling)
     if plot.sizes_above is not None:
@@ -46,13 +74,27 @@ def plot_figure(plot: Plot, display: Display) -> Figure:
         figure = sheet(title, mechanism, rows, abscissa)
     if plot.overlay is not None:
         _lay_over(figure, plot.overlay, spelling)
-    across = spelling.label(plot.abscissa.label)[0]
     for axes, panel in zip(figure.axes, (panel for row in plot.rows for panel in row), strict=True):
         _add_dots(axes, panel, across, spelling)
         if panel.from_zero:
             axes.set_ylim(bottom=0.0)
     _mark_places(figure, plot, across, spelling)
     return figure
+
+
+def _turned(plot: Plot) -> Plot:
+    """The plot with its columns as rows where it has more columns than find room; names stand beside the last."""
+    if max(map(len, plot.rows)) <= COLUMNS:
+        return plot
+
+    def turn(rows: tuple[tuple[CurvePanel, ...], ...]) -> tuple[tuple[CurvePanel, ...], ...]:
+        return tuple(
+            tuple(replace(panel, legend=panel is row[-1] and row[0].legend) for panel in row)
+            for row in zip(*rows, strict=True)
+        )
+
+    overlay = plot.overlay and replace(plot.overlay, rows=turn(plot.overlay.rows))
+    return replace(plot, rows=turn(plot.rows), overlay=overlay)
 
 
 def _add_dots(axes: Axes, panel: CurvePanel, across: float, spelling: FigureSpelling) -> None:
@@ -73,11 +115,11 @@ def _mark_places(figure: Figure, plot: Plot, across: float, spelling: FigureSpel
         if not low <= place <= high:
             continue
         for axes in figure.axes:
-            axes.axvline(place, color=INK, linewidth=0.9, linestyle=MARKED)
+            axes.axvline(place, color=INK, linewidth=THIN, linestyle=CENTRE_LINE)
         beside = 12 if high - place > ROOM * (high - low) else -4
         figure.axes[0].annotate(
             spelling.text(name), (place, 0.34), xycoords=("data", "axes fraction"), xytext=(beside, 0),
-            textcoords="offset points", rotation=90, ha="right", va="center", color=INK, fontsize=8.5,
+            textcoords="offset points", rotation=90, ha="right", va="center", color=INK, fontsize=SMALL,
         )  # fmt: skip
 
 
@@ -96,7 +138,7 @@ def _entries(axes: Axes) -> list[tuple[Artist, str]]:
 def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> None:
     """Draw the curves of a second route over those of a figure, with one entry in its legends."""
     abscissa = drawn_abscissa(overlay.abscissa, spelling)
-    look: dict[str, Any] = {"color": INK, "linestyle": (0, (2.5, 2.5)), "linewidth": 0.9}
+    look: dict[str, Any] = {"color": INK, "linestyle": APPROXIMATE, "linewidth": THIN}
     panels = [_panel(panel, spelling) for row in overlay.rows for panel in row]
     for axes, panel in zip(figure.axes, panels, strict=True):
         for curve in panel.curves.values():
@@ -108,7 +150,9 @@ def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> Non
 
 def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Figure:
     """Panels below each other with the sizes of their curves on logarithmic scales."""
-    figure = Figure(figsize=(8.2, 3.0 * len(panels)), layout="constrained")
+    each = LONE_INCHES if len(panels) == 1 else PANEL_INCHES
+    height = ABOVE_INCHES + sum(each + legend_height(list(panel.curves)) for panel in panels)
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
     grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False)
     for axes, panel in zip(grid.ravel(), panels, strict=True):
         handles: list[tuple[Artist, str]] = []
@@ -121,14 +165,17 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
                 color=pen.colour,
                 linestyle=pen.dashes,
                 label=name,
+                **marked(pen),
             )
             handles.append((line, name))
         axes.set_yscale("log")
+        axes.margins(y=0.12)  # the lowest power stands clear of the ticks below
         if abscissa.values[0] < abscissa.values[-1]:
             ends = float(abscissa.values[0]), float(abscissa.values[-1])
             axes.set_xlim(ends)
             angle_ticks(axes.xaxis, *ends, abscissa.unit, TICKS)
         axes.set_ylabel(panel.label)
+        wrap_label(axes, each)
         write_legend(axes, handles)
     grid[-1, 0].set_xlabel(abscissa.label)
     return figure
@@ -142,25 +189,28 @@ def drawn_abscissa(abscissa: Abscissa, spelling: FigureSpelling) -> DrawnAbsciss
     return DrawnAbscissa(factor * abscissa.values, abscissa.order, abscissa.breaks, cut, events, label, unit)
 
 
-def _panel(panel: CurvePanel, spelling: FigureSpelling) -> Panel:
+def _panel(panel: CurvePanel, spelling: FigureSpelling, across: float = 1.0) -> Panel:
     factor, label, unit = spelling.label(panel.label)
     # legends write names as they are: plain text, in which dollar signs are escaped where it is drawn
     names = [PrintSpelling(spelling.display).text(curve.name) for curve in panel.curves]
     curves = {name: factor * curve.values for name, curve in zip(names, panel.curves, strict=True)}
     pens = {name: _pen(curve) for name, curve in zip(names, panel.curves, strict=True)}
-    return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend)
+    slopes = {
+        name: factor / across * curve.slopes
+        for name, curve in zip(names, panel.curves, strict=True)
+        if curve.slopes is not None
+    }
+    return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend, slopes)
 
 
 def _pen(curve: Curve) -> Pen:
-    """Colours in turn, then the same colours dashed; what is approximate is dashed at once, black is a sum's alone."""
+    """Colours in turn, then the same colours with markers; what is approximate is dashed, black is a sum's alone."""
     if curve.role is CurveRole.LEVEL:
-        return Pen(INK, DASHES[1])
+        return Pen(INK, APPROXIMATE)
     if curve.role is CurveRole.SUM:
         return Pen(INK)
-    place = curve.place
-    colours: Sequence[str] = COLOURED if curve.role is CurveRole.PART else PALETTE
-    dashes = DASHES[1] if curve.approximate else DASHES[place // len(colours) % len(DASHES)]
-    return Pen(colours[place % len(colours)], dashes)
+    pen = numbered_pen(curve.place, COLOURED if curve.role is CurveRole.PART else PALETTE)
+    return Pen(pen.colour, APPROXIMATE if curve.approximate else "-", pen.marker)
 
 
 def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
@@ -168,7 +218,9 @@ def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
     spelling = FigureSpelling(display)
     across, x_label, _unit = spelling.label(diagram.x)
     up, y_label, _unit = spelling.label(diagram.y)
-    figure = Figure(figsize=(9.6, INCHES + 1.2), layout="constrained")
+    names = [PrintSpelling(display).text(trace.name) for trace in diagram.traces]
+    height = INCHES + ABOVE_INCHES + legend_height(names, inches=INCHES)
+    figure = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
     axes = figure.subplots()
     key = [
         _trace(axes, trace, place, (across, up), PrintSpelling(display))

@@ -1,4 +1,4 @@
-"""Scenes as figures that fit A5 across: the linkage in its conventional signs, with its marks, lines and curves."""
+"""Scenes as figures as wide as a page: the linkage in its conventional signs, with its marks, lines and curves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from centrode.locale import _, ngettext
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe, draw_line
 from centrode.render.drawing.linkage import draw_mechanism
-from centrode.render.drawing.style import INK, MUTED, pens
+from centrode.render.drawing.style import INK, LINK, MUTED, NAME, PAGE_WIDTH, SMALL, marked, pens
 from centrode.render.drawing.tags import Tag, lines, write_tags
 from centrode.render.drawing.texts import plain
 from centrode.render.drawing.window import carried_by, segments_of, widen, within
@@ -34,15 +34,13 @@ if TYPE_CHECKING:
 
 Segments: TypeAlias = list[tuple[Array, Array]]
 
-WIDTH, HEIGHT = 8.2, 5.75
-"""Of a figure [inch]: A5 across."""
-LEFT, BOTTOM, UP = 0.085, 0.095, 0.775
+HEIGHT = 4.9
+"""Of a figure [inch]."""
+LEFT, BOTTOM, UP = 0.105, 0.1, 0.76
 """Where the drawing stands, as parts of the figure."""
-ACROSS, BESIDE_LEGEND, BESIDE_DIAGRAM = 0.66, 0.62, 0.53
+ACROSS, BESIDE_LEGEND, BESIDE_DIAGRAM = 0.62, 0.58, 0.51
 """Width of the drawing beside two lines of a legend, beside more of them, and beside a circle diagram."""
 CENTRE, FOUND = "#A00000", "#0072B2"
-NAMED = 10.0
-"""Size of names [pt]."""
 TOGETHER = {"plane": 0.3, "sphere": 0.5}
 """Places nearer than this share one text, in radii of a hinge."""
 LOOKS = 9
@@ -103,7 +101,7 @@ class _Drawing:
     def figure(self) -> Figure:
         """Draw everything."""
         scene, paper = self.scene, self.paper
-        figure = Figure(figsize=(WIDTH, HEIGHT))
+        figure = Figure(figsize=(PAGE_WIDTH, HEIGHT))
         axes = figure.add_axes(self.box)
         if isinstance(paper, Globe):
             draw_globe(axes, paper, self.sample, names=False)
@@ -128,7 +126,7 @@ class _Drawing:
             else [*segments_of([self._inside(curve) for curve in curves]), *rays]
         )
         reach = 72 * paper.sign * paper.inches / paper.extent
-        write_tags(axes, self._tags(marks), solid, thin, NAMED, reach)
+        write_tags(axes, [*self._tags(marks), *self._branches(axes, curves)], solid, thin, NAME, reach)
         if scene.diagram is None:
             self._write_legend(axes)
         else:
@@ -151,7 +149,7 @@ class _Drawing:
             self._placed_curve(curve, look)[::every] for look in looks for curve, every in framed if every
         ]
         places += [self._placed(mark).place[None] for mark in self.scene.marks]
-        room = (self.box[2] * WIDTH - 0.3, self.box[3] * HEIGHT - 0.3)
+        room = (self.box[2] * PAGE_WIDTH - 0.3, self.box[3] * HEIGHT - 0.3)
         return widen(self.paper, np.concatenate([*places, np.empty((0, 2))]), room)
 
     def _chosen_sample(self) -> int:
@@ -251,6 +249,18 @@ class _Drawing:
             texts.append(self.spelling.text(one.mark.name))
         return [Tag(place, _wrap(texts)) for place, texts in entries]
 
+    def _branches(self, axes: Axes, curves: Sequence[Array]) -> Iterator[Tag]:
+        """The numbers of the branches of curves that have several, beside the middle of what is seen of each."""
+        for curve, places in zip(self.scene.curves, curves, strict=True):
+            numbers = np.unique(curve.pieces[curve.pieces >= 0])
+            if numbers.size < 2 or isinstance(self.paper, Globe):
+                continue
+            for number in numbers.tolist():
+                own = self._inside(places[curve.pieces == number])
+                own = own[np.isfinite(own).all(axis=1)]
+                if len(own) and within(axes, own[len(own) // 2]):
+                    yield Tag(own[len(own) // 2], str(number + 1), CURVES[curve.kind].colour)
+
     # what stands beside it
 
     def _write_legend(self, axes: Axes) -> None:
@@ -272,7 +282,7 @@ class _Drawing:
         key.set_axis_off()
         links = pens(self.mechanism.link_names)
         handles = [
-            Line2D([], [], color=links[name].colour, linestyle=links[name].dashes, linewidth=2.2)
+            Line2D([], [], color=links[name].colour, linewidth=LINK, **marked(links[name], None))
             if name in links
             else Line2D([], [], color=INK, linewidth=0.0)
             for name, _text in diagram.bodies
@@ -282,7 +292,7 @@ class _Drawing:
         ]
         columns = 1 if len(texts) <= 4 else 2 if len(texts) <= 12 else 3
         key.legend(
-            handles, texts, loc="upper left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=8.0,
+            handles, texts, loc="upper left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=SMALL,
             handlelength=1.4, borderaxespad=0.0, columnspacing=0.8, labelspacing=0.25,
         )  # fmt: skip
         rows = -(-len(texts) // columns)
@@ -297,7 +307,7 @@ class _Drawing:
             rest = len(texts) - room + 1
             more = ngettext("… and {n} more", "… and {n} more", rest).format(n=rest)
             texts = [*texts[: room - 1], more]
-        key.text(0.0, top, "\n".join(texts), fontsize=7.6, color=INK, va="top", linespacing=1.22,
+        key.text(0.0, top, "\n".join(texts), fontsize=SMALL, color=INK, va="top", linespacing=1.22,
                  transform=key.transAxes)  # fmt: skip
 
     def _note(self, note: SceneNote, shown: Sequence[Mark]) -> str:
@@ -319,7 +329,7 @@ def draw_circle_diagram(axes: Axes, diagram: CircleDiagram) -> None:
     for number, place in enumerate(places):
         axes.plot(*place, marker="o", markersize=4.0, color=INK, zorder=3)
         x, y = 1.16 * place
-        axes.text(x, y, str(number), fontsize=9.0, color=INK, ha="center", va="center")
+        axes.text(x, y, str(number), fontsize=NAME, color=INK, ha="center", va="center")
     axes.set_aspect("equal")
     axes.set_xlim(-1.3, 1.3)
     axes.set_ylim(-1.3, 1.3)

@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from centrode.locale import _
-from centrode.render.drawing.style import DASHES, GROUND, INK, MUTED, PALETTE, Decimals
-from centrode.render.figures.curves import angle_ticks, legend_width, write_legend, write_title
+from centrode.render.drawing.style import (
+    CENTRE_LINE,
+    GROUND,
+    HAIR,
+    INK,
+    JUMP,
+    LETTER,
+    MUTED,
+    PAGE_HEIGHT,
+    PAGE_WIDTH,
+    PALETTE,
+    SMALL,
+    THIN,
+    Decimals,
+    marked,
+    numbered_pen,
+)
+from centrode.render.figures.curves import angle_ticks, legend_height, wrap_label, write_legend, write_title
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 
 if TYPE_CHECKING:
@@ -19,12 +35,10 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.plots import SpanPanel, SpanPlot
 
-WIDTH, WIDTH_BESIDE_LEGEND = 7.6, 6.6
-PANEL, HEADED, KEYED = 1.75, 2.4, 1.9
-"""Inches of a panel's height: of a plain one, with a heading, with a legend."""
-LETTER, EDGES, TICKS = 0.085, 1.1, 12
-"""Inches of a letter of a span's name, and of what is beside the axes; the most ticks of an angle."""
-JUMP, BOUND = (0, (2, 1.5)), (0, (6, 2, 1.5, 2))
+PANEL, HEADED = 1.45, 1.9
+"""Inches of a panel's height: of a plain one, and with a heading."""
+EDGES, TICKS = 0.9, 12
+"""Inches of what is beside the axes; the most ticks of an angle."""
 ROUNDING = 1e-9
 """Share of the greatest value below which a jump is not drawn."""
 
@@ -34,10 +48,9 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
     spelling, words = FigureSpelling(display), PrintSpelling(display)
     names = [words.text(curve.name) for curve in plot.panels[0].curves]
     keyed, headed = len(names) > 1, bool(words.text(plot.panels[0].heading))
-    width = WIDTH_BESIDE_LEGEND + legend_width(names) if keyed else WIDTH
-    height = KEYED if keyed else HEADED if headed else PANEL
-    top = 1.3 if headed else 1.4
-    figure = Figure(figsize=(width, top + height * len(plot.panels)), layout="constrained")
+    each = HEADED if headed else PANEL
+    height = 1.1 + each * len(plot.panels) + (legend_height(names) if keyed else 0.0)
+    figure = Figure(figsize=(PAGE_WIDTH, min(height, PAGE_HEIGHT)), layout="constrained")
     grid = figure.subplots(len(plot.panels), 1, sharex=True, squeeze=False)[:, 0]
     factor, label, unit = spelling.label(plot.label)
     pieces = np.split(np.arange(len(plot.values)), 1 + np.flatnonzero(np.diff(plot.values) == 0.0))
@@ -47,15 +60,15 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
             at_end = jump[0] in (plot.ends[0], plot.ends[-1])
             _draw_jump(axes, panel, jump, factor, spelling, clipped=not at_end)
         for end in plot.ends if plot.names else plot.ends[1:-1]:
-            axes.axvline(factor * end, color=MUTED, linewidth=0.6, zorder=1)
+            axes.axvline(factor * end, color=MUTED, linewidth=HAIR, zorder=1)
     _name_spans(grid[0], plot, factor, words)
     low, high = factor * plot.ends[0], factor * plot.ends[-1]
     grid[-1].set_xlabel(label)
     angle_ticks(grid[-1].xaxis, low, high, unit, TICKS)
     grid[-1].set_xlim(low, high)
     if keyed:
-        keys = [Line2D([], [], color=_colour(curve.place), linestyle=_dashes(curve.place))
-                for curve in plot.panels[0].curves]  # fmt: skip
+        pens = [numbered_pen(curve.place) for curve in plot.panels[0].curves]
+        keys = [Line2D([], [], color=pen.colour, **marked(pen, None)) for pen in pens]
         write_legend(grid[0], list(zip(keys, names, strict=True)))
     write_title(figure, spelling.text(plot.title), words.text(plot.mechanism))
     return figure
@@ -68,19 +81,20 @@ def _draw(
     factor, label, _unit = spelling.label(panel.label)
     for curve in panel.curves:
         for piece in pieces:
-            colour, dashes = _colour(curve.place), _dashes(curve.place)
-            axes.plot(across[piece], factor * curve.values[piece], color=colour, linestyle=dashes)
+            pen = numbered_pen(curve.place)
+            axes.plot(across[piece], factor * curve.values[piece], color=pen.colour, **marked(pen))
     for bound in panel.bounds:
-        axes.axhline(factor * bound, color=PALETTE[1], linewidth=0.9, linestyle=BOUND)
+        axes.axhline(factor * bound, color=PALETTE[1], linewidth=THIN, linestyle=CENTRE_LINE)
         axes.annotate(
             _("admissible"), (1.0, factor * bound), xycoords=("axes fraction", "data"), xytext=(-4, 2),
-            textcoords="offset points", ha="right", va="bottom", color=GROUND, fontsize=8.5,
+            textcoords="offset points", ha="right", va="bottom", color=GROUND, fontsize=SMALL,
         )  # fmt: skip
     if panel.zero_line:
-        axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
+        axes.axhline(0.0, color=INK, linewidth=HAIR, zorder=1)
     if heading := spelling.text(panel.heading):
-        axes.set_title(heading, fontsize=9.5)
+        axes.set_title(heading)
     axes.set_ylabel(label)
+    wrap_label(axes, PANEL)
     axes.yaxis.set_major_formatter(Decimals())
     axes.margins(y=0.05 if len(panel.curves) > 1 else 0.08)
 
@@ -106,20 +120,12 @@ def _draw_jump(
 def _name_spans(axes: Axes, plot: SpanPlot, factor: float, words: PrintSpelling) -> None:
     """The name of each span above it, its number where there is no room."""
     ends = factor * np.array(plot.ends)
-    room = (WIDTH - EDGES) / (ends[-1] - ends[0])
+    room = (PAGE_WIDTH - EDGES) / (ends[-1] - ends[0])
     for number, (text, low, high) in enumerate(
         zip(map(words.text, plot.names), ends, ends[1:], strict=False)
     ):
-        name = text if LETTER * len(text) < room * (high - low) else str(number + 1)
+        name = text if SMALL * LETTER * (len(text) + 1) < room * (high - low) else str(number + 1)
         axes.annotate(
             name, (0.5 * (low + high), 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3),
-            textcoords="offset points", ha="center", va="bottom", color=GROUND, fontsize=8.5,
+            textcoords="offset points", ha="center", va="bottom", color=GROUND, fontsize=SMALL,
         )  # fmt: skip
-
-
-def _colour(place: int) -> str:
-    return PALETTE[place % len(PALETTE)]
-
-
-def _dashes(place: int) -> Any:
-    return DASHES[place // len(PALETTE) % len(DASHES)]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
+from centrode.render.drawing.style import LEAST_POINTS, NAME, SMALL, TITLE
 from centrode.render.drawing.texts import plain
 from centrode.render.figures.files import AS_WRITTEN
 from centrode.render.pages.page import Page
@@ -18,16 +19,16 @@ LEFT, GUTTER, FOOT, TOP = 7.0, 4.0, 7.0, 14.0
 """Margins of a sheet, room between its columns, below and above [mm]."""
 LINE = 3.7
 """From line to line [mm]."""
-LETTER = 1.33
+LETTER = 1.5
 """Width of a letter [mm]."""
 
 
 def write_title(page: Page, column: float, title: str, mechanism: Mechanism) -> None:
     """What the sheet shows, and of which mechanism."""
     _wide, high = page.size
-    page.write(LEFT, high - TOP + 3.0, title, size=11.0, va="bottom")
+    page.write(LEFT, high - TOP + 3.0, title, size=TITLE, va="bottom")
     name = textwrap.shorten(plain(_(mechanism.title)), 50, placeholder=" …")
-    page.write(column, high - TOP + 3.0, name, size=8.0, va="bottom", label=AS_WRITTEN)
+    page.write(column, high - TOP + 3.0, name, size=NAME, va="bottom", label=AS_WRITTEN)
 
 
 def write_column(page: Page, column: float, title: str, heads: Sequence[str], lines: Sequence[str]) -> None:
@@ -36,10 +37,10 @@ def write_column(page: Page, column: float, title: str, heads: Sequence[str], li
     letters = int((wide - column - 3.0) / LETTER)
     y = high - TOP - 1.0
     for text in textwrap.wrap(title, int(0.8 * letters)):
-        page.write(column, y, plain(text), size=7.5, va="top", weight="bold")
+        page.write(column, y, plain(text), size=SMALL, va="top", weight="bold")
         y -= 1.1 * LINE
     for text in heads:
-        page.write(column, y - 0.5, text, size=8.0, va="top")
+        page.write(column, y - 0.5, text, size=NAME, va="top")
         y -= 1.35 * LINE
     y -= 0.6 * LINE
-    page.write_lines(column, y, lines, letters=letters, step=LINE, size=6.3, indent=3)
+    page.write_lines(column, y, lines, letters=letters, step=LINE, size=LEAST_POINTS, indent=3)

@@ -12,7 +12,7 @@ from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.quantities import spelled_unit
 from centrode.render.drawing import signs
-from centrode.render.drawing.style import INK, pens
+from centrode.render.drawing.style import CURVE, INK, marked, pens
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.force_column import FOOT, GUTTER, LEFT, TOP, write_column, write_title
 from centrode.render.pages.force_signs import force_arrows, moment_arc
@@ -78,9 +78,9 @@ def draw_outlines(page: Page, view: PageView, sheet: LeverPage, factor: float) -
         if len(places) < 2:
             continue
         path = np.array([*places, places[0]])
-        page.overlay.plot(
-            *path.T, color=colours[name].colour, linestyle=colours[name].dashes, linewidth=1.6, zorder=4
-        )
+        pen = colours[name]
+        page.overlay.plot(*path.T, color=pen.colour, linewidth=CURVE, zorder=4)
+        page.overlay.plot(*path[:2].mean(axis=0), color=pen.colour, zorder=4, **marked(pen, None))
         page.avoid(pairwise(path))
 
 

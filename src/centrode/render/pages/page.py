@@ -17,7 +17,7 @@ from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.render.drawing.style import INK, MUTED
+from centrode.render.drawing.style import INK, LEAST_POINTS, MUTED, NAME, SMALL, TITLE, halo
 from centrode.render.drawing.texts import plain
 from centrode.render.figures.files import AS_WRITTEN
 
@@ -67,7 +67,9 @@ class Page:
     boxes: list[Array] = field(default_factory=list)
     size: tuple[float, float] = (WIDE, HIGH)
 
-    def name(self, place: Array, text: str, clear: float = 1.5, size: float = 8.0, colour: str = INK) -> None:
+    def name(
+        self, place: Array, text: str, clear: float = 1.5, size: float = NAME, colour: str = INK
+    ) -> None:
         """Wish for a name."""
         self.wishes.append(Wish(np.asarray(place, dtype=float), text, clear, size, colour))
 
@@ -75,7 +77,7 @@ class Page:
         """Lines [mm] that names should not cover."""
         self.segments += [(np.asarray(a, dtype=float), np.asarray(b, dtype=float)) for a, b in segments]
 
-    def write(self, x: float, y: float, text: str, size: float = 8.0, **how: Any) -> Text:
+    def write(self, x: float, y: float, text: str, size: float = NAME, **how: Any) -> Text:
         """A text at a place that is given; names keep clear of it."""
         written = self.overlay.text(x, y, text, fontsize=size, color=how.pop("color", INK), **how)
         self.boxes.append(self.box_of(written))
@@ -117,8 +119,9 @@ class Page:
         """Put every wished name where it covers no other and as few lines as can be, inside a room [mm]."""
         for wish in self.wishes:
             text = self.overlay.text(
-                0, 0, wish.text, fontsize=wish.size, color=wish.colour, ha="center", va="center", zorder=9
-            )
+                0, 0, wish.text, fontsize=wish.size, color=wish.colour, ha="center", va="center", zorder=9,
+                path_effects=halo(),
+            )  # fmt: skip
             low, high = self.box_of(text)
             half = (high - low) / 2 + GAP
             place = self._best(wish, half, room)
@@ -229,7 +232,7 @@ CORNER, SIZE = np.array([6.0, 6.0]), np.array([128.0, 128.0])
 COLUMN, TOP = 138.0, 140.0
 LINE = 3.8
 """From line to line of the column at the right [mm]."""
-COLUMNS = 52
+COLUMNS = 49
 """Letters in a line of it."""
 MARKS = {"normal": "ⁿ", "tangential": "ᵗ", "coriolis": "ᵏ", "driven": "ʳ", "sliding": "ʳ"}
 LETTERS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
@@ -283,12 +286,14 @@ def write_head(
     page: Page, title: str, mechanism: Mechanism, head: Sequence[str], lines: Sequence[str]
 ) -> None:
     """Title and mechanism above, at the right what the page is about and how it was drawn."""
-    page.write(6.0, TOP, title, size=11.0, va="bottom")
+    page.write(6.0, TOP, title, size=TITLE, va="bottom")
     name = textwrap.shorten(plain(_(mechanism.title)), 60, placeholder=" …")
-    page.write(COLUMN, TOP, textwrap.fill(name, 40), size=7.5, va="bottom", label=AS_WRITTEN)
+    page.write(COLUMN, TOP, textwrap.fill(name, 40), size=SMALL, va="bottom", label=AS_WRITTEN)
     y = TOP - 6.0
     for text in head:
-        page.write(COLUMN, y, text if "$" in text else typeset(text), size=8.0, va="top")
+        page.write(COLUMN, y, text if "$" in text else typeset(text), size=NAME, va="top")
         y -= 1.4 * LINE
     y -= 0.5 * LINE
-    page.write_lines(COLUMN, y, lines, letters=COLUMNS, step=LINE, size=6.5, indent=4, spelled=typeset)
+    page.write_lines(
+        COLUMN, y, lines, letters=COLUMNS, step=LINE, size=LEAST_POINTS, indent=4, spelled=typeset
+    )

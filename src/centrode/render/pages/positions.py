@@ -14,7 +14,7 @@ from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.quantities import spelled_unit
 from centrode.render.drawing.linkage import draw_bodies, draw_links
-from centrode.render.drawing.style import INK, MUTED, pens
+from centrode.render.drawing.style import INK, LEAST_POINTS, MUTED, NAME, SMALL, TITLE, pens
 from centrode.render.drawing.tags import lines
 from centrode.render.drawing.texts import plain
 from centrode.render.figures.files import AS_WRITTEN
@@ -57,8 +57,8 @@ def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
         number_path(page, view, scene, name, count)
     for name, place in scene.at(0).items():
         page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
-    page.write(6.0, TOP, spelling.text(sheet.title), size=11.0, va="bottom")
-    page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=7.5, va="bottom", label=AS_WRITTEN)
+    page.write(6.0, TOP, spelling.text(sheet.title), size=TITLE, va="bottom")
+    page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=SMALL, va="bottom", label=AS_WRITTEN)
     scale_text = f"μ_l = {scale:g} {spelled_unit(unit)} " + _("per mm")
     write_column(page, sheet, spelling.text(sheet.note), scale_text)
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 7.0]]))
@@ -90,20 +90,20 @@ def number_path(page: Page, view: PageView, scene: LinkageScene, name: str, coun
             continue
         at = view.mm(place)
         page.overlay.plot([at[0]], [at[1]], marker="o", markersize=2.2, color=INK, zorder=6.5)
-        page.name(at, str(sample), clear=0.9, size=6.5)
+        page.name(at, str(sample), clear=0.9, size=LEAST_POINTS)
 
 
 def write_column(page: Page, sheet: PositionsPage, note: str, scale: str) -> None:
     """Scale, note and list of the positions at the right."""
     y = TOP - 6.0
-    page.write(COLUMN, y, typeset(scale), size=8.0, va="top")
+    page.write(COLUMN, y, typeset(scale), size=NAME, va="top")
     y -= 2 * LINE
     if note:
-        page.write(COLUMN, y, note, size=7.0, va="top")
+        page.write(COLUMN, y, note, size=SMALL, va="top")
         y -= LINE
     count = sheet.positions.sizes["sample"]
     step = min(LINE, (y - 6.0) / count)
     for sample in range(count):
         value = instant_text(sheet.mechanism, sheet.positions, sample)
-        page.write(COLUMN, y, f"{sample}:  {value}", size=min(7.0, 2.0 * step), va="top")
+        page.write(COLUMN, y, f"{sample}:  {value}", size=LEAST_POINTS, va="top")
         y -= step

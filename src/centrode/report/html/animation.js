@@ -83,7 +83,9 @@ class Stage extends Picture {
     if (on === this.playing) return;
     this.playing = on && this.last > 0;
     const word = this.playing ? this.data.words.pause : this.data.words.play;
-    this.button.textContent = this.playing ? "\u23F8\uFE0E" : "\u25B6\uFE0E";
+    const icon = make("svg", { viewBox: "0 0 16 16", width: 14, height: 14, "aria-hidden": "true" });
+    make("path", { fill: "currentColor", d: this.playing ? "M3 2h4v12H3zM9 2h4v12H9z" : "M3 1l11 7-11 7z" }, icon);
+    this.button.replaceChildren(icon);
     this.button.setAttribute("aria-label", word);
     this.button.title = word;
     if (this.playing) requestAnimationFrame((time) => this.frame(time, time));

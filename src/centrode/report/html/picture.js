@@ -63,10 +63,11 @@ class Picture {
 
   body(body, parent) {
     const fill = make("path", { class: "fill", fill: body.colour }, parent);
-    const style = { fill: "none", stroke: body.colour, "stroke-dasharray": body.dashes };
+    const style = { fill: "none", stroke: body.colour };
     const lines = [make("path", { class: "link", ...style }, parent), make("path", { class: "link far", ...style }, parent)];
     lines[0].setAttribute("data-link", body.name);
-    return { ...body, fill, lines };
+    const badge = body.marker ? make("path", { d: body.marker, fill: body.colour }, parent) : null;
+    return { ...body, fill, lines, badge };
   }
 
   shape(shape, parent) {
@@ -121,8 +122,16 @@ class Picture {
     }
     const front = this.draw(body.lines, places);
     body.grip.setAttribute("d", front);
+    if (body.badge) this.showBadge(body.badge, known);
     const whole = known.length > 2 && places.every((place) => this.space.front(place));
     body.fill.setAttribute("d", whole ? front : "");
+  }
+
+  showBadge(badge, known) {
+    badge.setAttribute("display", known.length > 1 ? "inline" : "none");
+    if (known.length < 2) return;
+    const [x, y] = this.space.flat(this.space.between(known[0], known[1], 0.5));
+    badge.setAttribute("transform", `translate(${text(x)} ${text(y)})`);
   }
 
   draw(lines, places) {

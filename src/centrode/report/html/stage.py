@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.render.document.blocks import Moving, Outline, RingBlock
-from centrode.render.drawing.style import DASHES, GROUND, PALETTE
+from centrode.render.drawing.style import GROUND, MARKERS, PALETTE
 
 Array = NDArray[np.float64]
 WIDE, TALLEST = 6400, 5200
@@ -81,6 +81,22 @@ def stage_of(moving: Moving, still: str) -> str:
     )
 
 
+PLAY_ICON = (
+    '<svg viewBox="0 0 16 16" width="14" height="14" aria-hidden="true">'
+    '<path fill="currentColor" d="M3 1l11 7-11 7z"/></svg>'
+)
+"""Drawn, since fonts lack the signs of players; `animation.js` has the one for a pause."""
+_MARKERS = {
+    "": "",
+    "o": "M-45 0a45 45 0 1 0 90 0a45 45 0 1 0 -90 0Z",
+    "s": "M-42 -42H42V42H-42Z",
+    "^": "M0 -55L50 38H-50Z",
+    "D": "M0 -58L58 0L0 58L-58 0Z",
+    "v": "M0 55L50 -38H-50Z",
+}
+"""Outlines of the markers of links that share a colour, in thousandths of an inch as the picture is."""
+
+
 def _controls(moving: Moving) -> str:
     def word(text: str) -> str:
         return html.escape(text)
@@ -89,7 +105,7 @@ def _controls(moving: Moving) -> str:
     position, speed, paths, names = word(_("Position")), word(_("speed")), word(_("paths")), word(_("names"))
     return (
         '<div class="controls" hidden>'
-        f'<button type="button" data-do="play" title="{play}" aria-label="{play}">\u25b6\ufe0e</button>'
+        f'<button type="button" data-do="play" title="{play}" aria-label="{play}">{PLAY_ICON}</button>'
         f'<button type="button" data-do="back" title="{back}" aria-label="{back}">\u2039</button>'
         f'<button type="button" data-do="on" title="{on}" aria-label="{on}">\u203a</button>'
         f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{position}">'
@@ -119,7 +135,7 @@ def _data(moving: Moving) -> dict[str, Any]:
                 "name": name,
                 "points": [names.index(one) for one in points if one in moving.places],
                 "colour": PALETTE[number % len(PALETTE)],
-                "dashes": _dashes(number),
+                "marker": _MARKERS[MARKERS[number // len(PALETTE) % len(MARKERS)]],
             }
             for number, (name, points) in enumerate(moving.bodies.items())
         ],
@@ -170,11 +186,6 @@ def _point(moving: Moving, sheet: PictureMap, name: str) -> dict[str, Any]:
         "dot": name in moving.dots,
         "slider": slope,
     }
-
-
-def _dashes(number: int) -> str:
-    dashes = DASHES[number // len(PALETTE) % len(DASHES)]
-    return "none" if dashes == "-" else " ".join(f"{26 * part:g}" for part in dashes[1])
 
 
 def _ground(sheet: PictureMap, line: Array) -> str:
