@@ -11,7 +11,10 @@ from centrode.locale import _, chosen_language, speaking
 from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import ChapterBlocks, Report
+from centrode.render.document.numbering import caption_blocks, number_blocks, refer_to_figures
 from centrode.report.chapters import CHAPTERS, Kind
+from centrode.report.checks import gather_checks
+from centrode.report.opening import move_players, opening_of
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
 
@@ -64,9 +67,13 @@ def report(
         study.assemble()
         wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
         chapters = tuple(_chapters(wanted, study, said))
+        opening = opening_of(study, chapters)
+        if not study.wishes.full:
+            opening, chapters = move_players(opening, gather_checks(chapters))
         title = _(description.title) or name or _("Mechanism")
         subtitle = _("Computed by centrode {version}").format(version=__version__)
-        return Report(title, subtitle, chosen_language(), chapters)
+        made = Report(title, subtitle, chosen_language(), caption_blocks(chapters), opening)
+        return refer_to_figures(number_blocks(made))
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:

@@ -34,7 +34,7 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
         return left_out(chapter.name, _(chapter.title), reason)
     if chapter.name not in sheet.chapters:
         return None
-    return document_chapter(chapter.name, sheet, study.numbers)
+    return document_chapter(chapter.name, sheet, study.numbers, full=study.wishes.full)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:

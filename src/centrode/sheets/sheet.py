@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture
+from centrode.sheets.linkages import MechanismPicture, MotionPlayer, PathsPicture, SchemePicture
 from centrode.sheets.outlines import (
     CamPlayer,
     OutlineDrawing,
@@ -48,6 +48,7 @@ Picture: TypeAlias = (
     | VectorDiagramPage
     | MechanismPicture
     | PathsPicture
+    | SchemePicture
     | OutlineDrawing
     | PathDrawing
     | WheelPositions
@@ -163,10 +164,14 @@ class FactTable:
 
 @dataclass(frozen=True)
 class Illustration:
-    """A picture of the sheet by its name, or one of a document alone, with a caption; its own title if None."""
+    """A picture of the sheet by its name, or one of a document alone, with a caption; its own title if None.
+
+    A `detail` is shown by the full form of a document alone.
+    """
 
     picture: str | Picture
     caption: Text | None = None
+    detail: bool = False
 
 
 @dataclass(frozen=True)
@@ -252,10 +257,11 @@ Block: TypeAlias = (
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and the blocks under it."""
+    """A heading and the blocks under it; a `detail` is shown by the full form of a document alone."""
 
     title: Text
     blocks: tuple[Block, ...]
+    detail: bool = False
 
 
 @dataclass(frozen=True)
@@ -375,7 +381,14 @@ def _merge(mappings: Iterable[Mapping[str, Part]]) -> Mapping[str, Part]:
     return Deferred({name: partial(mapping.__getitem__, name) for mapping in mappings for name in mapping})
 
 
-def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:
-    """The section of the figures of a chapter, each with its own caption or, without one, with its title."""
-    figures = tuple(Illustration(name, captions.get(name)) for name in pictures)
-    return Section(Sentence("Figures"), figures)
+def illustrations(
+    pictures: Iterable[str],
+    captions: Mapping[str, Text] = MappingProxyType({}),
+    details: Collection[str] = (),
+) -> Section:
+    """The figures of a chapter, each with its own caption or, without one, with its title.
+
+    Those among the `details` are shown by the full form of a document alone.
+    """
+    figures = tuple(Illustration(name, captions.get(name), name in details) for name in pictures)
+    return Section(NOTHING, figures)

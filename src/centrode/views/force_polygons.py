@@ -44,6 +44,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
+from centrode.views.force_equations import lever_equation, step_equations
 from centrode.views.force_pages import RIGHT_ANGLE, group_page, lever_page
 from centrode.views.instants import body_text, instant_title, place_number
 from centrode.views.load_names import load_text
@@ -495,7 +496,24 @@ def _chapter(results: ForcePolygonResults) -> Chapter:
         )
         for sample, found in enumerate(results.polygons)
     )
-    return Chapter(Sentence("Force polygons"), (Section(NOTHING, (Paragraph(text),)), *instants))
+    forces = (
+        Section(
+            NOTHING,
+            (
+                _forces(
+                    found,
+                    Sentence(
+                        "Forces of the polygons at {place}",
+                        place=instant_title(results.mechanism, results.motion, sample),
+                    ),
+                ),
+            ),
+            detail=True,
+        )
+        for sample, found in enumerate(results.polygons)
+        if found is not None
+    )
+    return Chapter(Sentence("Force polygons"), (Section(NOTHING, (Paragraph(text),)), *instants, *forces))
 
 
 def _without_forces(results: ForcePolygonResults, sample: int) -> Iterator[Block]:
@@ -518,7 +536,8 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
     for number, group in enumerate(found.groups, start=1):
         title = _group_title(found, group)
         yield Paragraph(Joined((title, NOTHING), "."))
-        yield _steps(found, group)
+        for step in group.steps:
+            yield from step_equations(step, step_text(step))
         yield Illustration(pages[f"group-{number}"], title)
     for page in pages.values():
         if isinstance(page, LeverPage):
@@ -528,7 +547,12 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
                 angle=RIGHT_ANGLE,
             )
             yield Illustration(page, caption)
-    yield _forces(found, Sentence("Forces of the polygons"))
+    for lever in found.levers:
+        greatest = max((abs(one.moment) for one in lever.forces), default=0.0)
+        yield Paragraph(
+            Sentence("Moments about the pole of Zhukovsky's lever of drive {drive}:", drive=Name(lever.drive))
+        )
+        yield lever_equation(lever, NONE * greatest)
     yield _routes(found, Sentence("Balancing moment or force by three routes"))
     yield from _checks(found)
 

@@ -49,7 +49,7 @@ class VariantReport:
                 title=_(mechanism.title) or _("Mechanism"), name=results.row.variant
             )
             made = report(mechanism, ReportOptions(), language=self.language)
-            named = Report(title, made.subtitle, made.language, made.chapters)
+            named = replace(made, title=title)
             write_report(named, folder, self.formats)
             study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
             text = answers_of(study).json_text()
