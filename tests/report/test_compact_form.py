@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections import Counter
 
 import numpy as np
 import pytest
+import typst
+from matplotlib.image import imread
 
 import centrode as ct
 from centrode.analysis.representative_position import representative_sample
 from centrode.errors import InputError, Status
 from centrode.render.document.blocks import CheckBlock, Moving, ParagraphBlock, Picture, Report, TableBlock
 from centrode.report.html.elements import blocks_of
+from centrode.report.pdf_document import STYLE, Source
 
 NAME = "crank-rocker"
 
@@ -86,3 +90,25 @@ def test_the_scheme_stands_far_from_dead_positions(name: str) -> None:
 def test_unknown_chapters_are_still_refused() -> None:
     with pytest.raises(InputError, match="there is no chapter"):
         ct.report(ct.example(NAME), ct.ReportOptions(chapters=("checks",), full=False))
+
+
+def blank_bands(report: Report) -> list[float]:
+    """The greatest blank band of each page, as a part of the height of its text."""
+    source = Source(report)
+    files = {"main": source.text.encode(), "style.typ": STYLE.read_bytes(), **source.files}
+    pages = typst.Compiler(ignore_system_fonts=True).compile(input=files, format="png", ppi=30)
+    bands = []
+    for page in pages if isinstance(pages, list) else [pages]:
+        grey = imread(io.BytesIO(page), format="png")[..., :3].mean(axis=2)
+        height = len(grey)
+        text = grey[int(height * 17 / 297) : int(height * 277 / 297)]
+        inked = np.flatnonzero((text < 0.8).any(axis=1))
+        bands.append(float(np.diff(np.concatenate([[0], inked, [len(text)]])).max()) / len(text))
+    return bands
+
+
+@pytest.mark.drawn
+def test_pages_of_the_compact_form_are_filled(compact: Report, full: Report) -> None:
+    bands = blank_bands(compact)
+    assert len(bands) < len(blank_bands(full))
+    assert all(band <= 0.3 for band in bands[:-1])
