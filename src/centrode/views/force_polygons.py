@@ -489,31 +489,15 @@ def _chapter(results: ForcePolygonResults) -> Chapter:
         "Groups are taken in reverse order: each is freed from its neighbours, moments give the tangential parts of"
         " its outer reactions, the polygon the rest. The drawings are to the scales that they name."
     )
-    instants = (
-        Section(
-            instant_title(results.mechanism, results.motion, sample),
-            tuple(_without_forces(results, sample) if found is None else _instant(found)),
-        )
-        for sample, found in enumerate(results.polygons)
-    )
-    forces = (
-        Section(
-            NOTHING,
-            (
-                _forces(
-                    found,
-                    Sentence(
-                        "Forces of the polygons at {place}",
-                        place=instant_title(results.mechanism, results.motion, sample),
-                    ),
-                ),
-            ),
-            detail=True,
-        )
-        for sample, found in enumerate(results.polygons)
-        if found is not None
-    )
-    return Chapter(Sentence("Force polygons"), (Section(NOTHING, (Paragraph(text),)), *instants, *forces))
+    sections = [Section(NOTHING, (Paragraph(text),))]
+    for sample, found in enumerate(results.polygons):
+        title = instant_title(results.mechanism, results.motion, sample)
+        blocks = _without_forces(results, sample) if found is None else _instant(found)
+        sections.append(Section(title, tuple(blocks)))
+        if found is not None:
+            forces = _forces(found, Sentence("Forces of the polygons at {place}", place=title))
+            sections.append(Section(NOTHING, (forces,), detail=True))
+    return Chapter(Sentence("Force polygons"), tuple(sections))
 
 
 def _without_forces(results: ForcePolygonResults, sample: int) -> Iterator[Block]:
