@@ -8,6 +8,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
+from centrode.dynamics.force_polygons.steps import MomentsOfGroup, MomentsOfLink
 from centrode.locale import speaking
 from centrode.model.examples import example_text
 from centrode.render.document import blocks
