@@ -56,7 +56,7 @@ def test_curves_are_half_a_page_high_and_their_labels_apart(rows: int, label: st
     figure = curves(rows, label)
     picture(figure, "")
     width, height = figure.get_size_inches()
-    assert height <= FLAT * width * (1.0 + np.finfo(float).eps)
+    assert height <= FLAT[rows] * width * (1.0 + np.finfo(float).eps)
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     boxes = [axes.yaxis.label.get_window_extent(canvas.get_renderer()) for axes in figure.axes]

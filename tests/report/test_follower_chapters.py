@@ -219,7 +219,7 @@ def test_every_follower_has_all_chapters(follower: str) -> None:
 @pytest.mark.usefixtures("short_turn")
 @pytest.mark.parametrize("name", [pytest.param("valve-cam", marks=pytest.mark.drawn), "indexing-cam"])
 def test_chapters_of_the_examples(name: str) -> None:
-    report = ct.report(load_cam(name))
+    report = ct.report(load_cam(name), ReportOptions(full=True))
     assert [chapter.name for chapter in report.chapters] == list(NAMES)
     checks = [one for chapter in report.chapters for one in blocks_of(chapter, CheckBlock)]
     assert len(checks) >= 9 and all(one.holds for one in checks)
@@ -293,7 +293,7 @@ def test_an_undercut_profile_is_told() -> None:
     study = study_of(steep)
     failed = [one.text for one in blocks_of(CHAPTERS["profile"].make(study), CheckBlock) if not one.holds]
     assert any("is undercut at" in text for text in failed)
-    refused = ct.report(steep.model_copy(update={"study": cam.study}))
+    refused = ct.report(steep.model_copy(update={"study": cam.study}), ReportOptions(full=True))
     missing = {chapter.name: chapter.missing for chapter in refused.chapters if chapter.missing}
     assert "undercuts the profile" in missing["profile"]
     assert not {"data", "lift", "laws"} & set(missing)
@@ -303,7 +303,7 @@ def test_a_cam_that_no_radius_makes_is_told() -> None:
     """The choice of the base radius says why there is none; what needs a size is left out."""
     text = BODY.replace("TURN", "clockwise").replace("FOLLOWER", FOLLOWERS["roller"]).replace("LIFT", "14 mm")
     text = text.replace('base_radius = "40 mm"\n', "").replace('"cycloidal"', '"uniform"')
-    made = ct.report(ct.parse_cam(text + '[bounds]\npressure_angle = "30 deg"\n'))
+    made = ct.report(ct.parse_cam(text + '[bounds]\npressure_angle = "30 deg"\n'), ReportOptions(full=True))
     assert [chapter.name for chapter in made.chapters if not chapter.missing] == [
         "data",
         "lift",
@@ -349,7 +349,7 @@ def test_cams_without_a_size_tell_their_motion() -> None:
     text += '[[segments]]\nangle = "180 deg"\nto = "5 mm"\ncurve = "harmonic"\n'
     text += '[[segments]]\nangle = "180 deg"\nto = 0\ncurve = "b-spline"\n'
     text += 'through = [["60 deg", "4 mm"], ["90 deg", "3 mm"]]\nat_start = [0, 0]\nat_end = [0, 0]\n'
-    made = ct.report(ct.parse_cam(text))
+    made = ct.report(ct.parse_cam(text), ReportOptions(full=True))
     assert [chapter.name for chapter in made.chapters] == ["data", "lift", "laws"]
     tables = blocks_of(made.chapters[1], TableBlock)
     assert any(table.caption == "Coefficients of segment 2" for table in tables)
@@ -360,7 +360,7 @@ def test_wishes_of_a_cam(valve: ReportStudy) -> None:
     asked = ct.parse_cam(
         ct.cam_text(cam) + '\n[report]\nchapters = ["lift"]\ninstants = ["30 deg", "60 deg"]\ndigits = 7\n'
     )
-    made = ct.report(asked)
+    made = ct.report(asked, ReportOptions(full=True))
     assert [chapter.name for chapter in made.chapters] == ["lift"]
     table = next(
         one for one in blocks_of(made.chapters[0], TableBlock) if one.caption == "At the chosen angles"

@@ -23,7 +23,7 @@ AB, BC = math.pi / 12, math.pi / 4
 
 def study_of(name: str, **wishes: object) -> ReportStudy:
     description = ct.example(name)
-    return ReportStudy(description, settle_options(description, ReportOptions(**wishes), CHAPTERS))  # type: ignore[arg-type]
+    return ReportStudy(description, settle_options(description, ReportOptions(full=True, **wishes), CHAPTERS))  # type: ignore[arg-type]
 
 
 def tables_of(chapter: ChapterBlocks | None) -> list[TableBlock]:

@@ -8,6 +8,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
+from centrode.dynamics.force_polygons.steps import MomentsOfGroup, MomentsOfLink
 from centrode.locale import speaking
 from centrode.model.examples import example_text
 from centrode.render.document import blocks
@@ -98,9 +99,15 @@ def test_a_chapter_has_every_step_and_its_drawings_to_scale() -> None:
     (found,) = results.polygons
     assert found is not None
     parts = chapter_of(results).sections[1].blocks
-    steps = [block for block in parts if isinstance(block, blocks.ItemsBlock)]
-    assert [len(items.texts) for items in steps] == [len(group.steps) for group in found.groups]
-    assert all(items.numbered for items in steps)
+    formulas = [block for block in parts if isinstance(block, blocks.FormulaBlock)]
+    sums = [one for one in formulas if one.lines[0][0].startswith("sum M") and one.lines[0][-1] == "0"]
+    moments = [
+        step
+        for group in found.groups
+        for step in group.steps
+        if isinstance(step, MomentsOfLink | MomentsOfGroup) and getattr(step, "unknown", None) is not None
+    ]
+    assert len(sums) == len(moments) + len(found.levers)
     drawings = [block for block in parts if isinstance(block, blocks.Picture)]
     assert len(drawings) == len(found.groups) + len(found.levers)
     for group, drawing in zip(found.groups, drawings, strict=False):

@@ -65,6 +65,14 @@ _options, _writing = (
     help=mark("Points whose velocities and paths are reported, separated by commas."),
 )
 @click.option("--digits", type=int, metavar=mark("N"), help=mark("Significant digits of numbers."))
+@click.option(
+    "--full/--compact",
+    "full",
+    default=None,
+    help=mark(
+        "Everything there is to show, or the compact form; full for chosen chapters alone if left out."
+    ),
+)
 def report(
     description: str,
     out: Path | None,
@@ -73,6 +81,7 @@ def report(
     instants: tuple[str, ...],
     points: str | None,
     digits: int | None,
+    full: bool | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
     described = library.load_either(description)
@@ -84,6 +93,7 @@ def report(
             tuple(_options().instant(described, text, "--at") for text in instants) or None,
             None if points is None else _names_in(points),
             digits,
+            full,
         )
     with output.output_folder(folder) as draft, Progress() as progress:
         with about(description):

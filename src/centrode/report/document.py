@@ -18,8 +18,11 @@ from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import ChapterText
 from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
+from centrode.render.document.numbering import caption_blocks, number_blocks, refer_to_figures
 from centrode.report.chapters import CHAPTERS, Kind
+from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
+from centrode.report.opening import move_players, opening_of
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
 
@@ -75,9 +78,15 @@ def report(
         study.assemble()
         wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
         chapters = tuple(_chapters(wanted, study, said))
+        opening = opening_of(study, chapters)
+        if not study.wishes.full:
+            opening, chapters = move_players(opening, gather_checks(chapters))
         title = _(description.title) or name or _("Mechanism")
         subtitle = _("Computed by centrode {version}").format(version=__version__)
-        return Report(title, subtitle, chosen_language(), chapters, _description_text(study))
+        made = Report(
+            title, subtitle, chosen_language(), caption_blocks(chapters), opening, _description_text(study)
+        )
+        return refer_to_figures(number_blocks(made))
 
 
 def _description_text(study: ReportStudy) -> DescriptionText:

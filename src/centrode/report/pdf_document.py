@@ -28,6 +28,7 @@ from centrode.render.document.blocks import (
     SystemBlock,
     TableBlock,
 )
+from centrode.render.document.numbering import number_blocks
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
 from centrode.report.texts import parts_of
@@ -60,7 +61,7 @@ class Source:
     def __init__(self, report: Report) -> None:
         self.files: dict[str, bytes] = {}
         self.formulas = 0
-        self.text = "\n".join(self._document(report)) + "\n"
+        self.text = "\n".join(self._document(number_blocks(report))) + "\n"
 
     def _document(self, report: Report) -> Iterator[str]:
         contents = _("Contents")
@@ -68,10 +69,20 @@ class Source:
         yield (
             f"#show: document.with(title: {quote(report.title)}, subtitle: {quote(report.subtitle)},"
             f" language: {quote(report.language)}, contents: {quote(contents)},"
+            f" opening: {self._opening(report.opening)},"
             f" long: {'true' if _lines_of_contents(report) > FIRST_PAGE else 'false'})"
         )
         for chapter in report.chapters:
             yield from self._chapter(chapter)
+
+    def _opening(self, blocks: Sequence[Block]) -> str:
+        """What stands below the title: pictures stay there, all others float; paper plays no motion."""
+        parts = (
+            self._picture(one, floats=False) if isinstance(one, Picture) else self._shown(one)
+            for one in blocks
+            if not isinstance(one, Moving)
+        )
+        return f"[{''.join(parts)}]" if blocks else "none"
 
     def _chapter(self, chapter: ChapterBlocks) -> Iterator[str]:
         yield f"#heading(level: 1, {quote(chapter.title)})"
@@ -129,17 +140,18 @@ class Source:
             _column(head, [row[i] for row in block.rows], numbers[i]) for i, head in enumerate(block.head)
         ]
         rows = [_array([_cell(cell) for cell in row]) for row in block.rows]
-        return f"#data-table({_array(columns)}, {_array(rows)}, {_caption(block.caption)})"
+        return f"#data-table({_array(columns)}, {_array(rows)}, {_caption(block.caption)}, {block.number})"
 
     @_shown.register
-    def _picture(self, block: Picture) -> str:
+    def _picture(self, block: Picture, floats: bool = True) -> str:
         name = f"pictures/{len(self.files) + 1}.svg"
         self.files[name] = block.svg
-        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)})"
+        where = f"{block.number}, floats: {'true' if floats else 'false'}"
+        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {where})"
 
     @_shown.register
     def _moving(self, block: Moving) -> str:
-        return self._picture(replace(block.still, caption=block.caption or block.still.caption))
+        return self._picture(replace(block.still, caption=block.caption, number=block.number))
 
     @_shown.register
     def _check(self, block: CheckBlock) -> str:

@@ -41,6 +41,8 @@ class ReportOptions:
     instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives]
     points : names of points whose velocities and paths are given
     digits : significant digits of numbers
+    full : everything there is to show; otherwise the compact form, with the checks in one table at the end.
+        Chapters that somebody has chosen are full unless this says otherwise
 
     Examples
     --------
@@ -53,6 +55,7 @@ class ReportOptions:
     instants: tuple[float, ...] | None = None
     points: tuple[str, ...] | None = None
     digits: int | None = None
+    full: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,7 @@ class Wishes:
     instants: tuple[float, ...]
     points: tuple[str, ...] | None
     digits: int
+    full: bool
 
 
 def settle_options(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
@@ -73,11 +77,13 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     """
     asked = description.report
     points = asked.points or None if isinstance(asked, ReportWishes) else None
+    chapters = _first(options.chapters, asked.chapters or None)
     found = Wishes(
-        _first(options.chapters, asked.chapters or None),
+        chapters,
         _first(options.instants, asked.instants or description.study.instants) or (),
         _first(options.points, points),
         options.digits if options.digits is not None else asked.digits or DIGITS,
+        chapters is not None if options.full is None else options.full,
     )
     where = "chapters" if options.chapters is not None else "[report] chapters"
     if found.chapters is not None and not found.chapters:

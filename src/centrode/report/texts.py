@@ -45,6 +45,7 @@ def parts_of(marked: str) -> list[TextPart]:
 
 def blocks_of(report: Report) -> Iterator[Block]:
     """All blocks of a report in their order."""
+    yield from report.opening
     for chapter in report.chapters:
         for section in chapter.sections:
             yield from section.blocks

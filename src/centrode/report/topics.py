@@ -35,7 +35,8 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
         return left_out(chapter.name, _(chapter.title), reason)
     if chapter.name not in sheet.chapters:
         return None
-    return replace(document_chapter(chapter.name, sheet, study.numbers), code=chapter.code)
+    made = document_chapter(chapter.name, sheet, study.numbers, full=study.wishes.full)
+    return replace(made, code=chapter.code)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:

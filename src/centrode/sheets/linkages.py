@@ -35,6 +35,23 @@ class MechanismPicture:
 
 
 @dataclass(frozen=True)
+class SchemePicture:
+    """The kinematic scheme of a mechanism with numbers of links, dimensions and the arrow of the drive.
+
+    Attributes
+    ----------
+    title : what it shows, and where
+    mechanism, motion : of which motion, without batch dimensions
+    sample : of the motion, that is drawn
+    """
+
+    title: Sentence
+    mechanism: Mechanism
+    motion: xarray.Dataset
+    sample: int
+
+
+@dataclass(frozen=True)
 class PathsPicture:
     """Paths of the points of a mechanism, with the mechanism faint in its initial position.
 

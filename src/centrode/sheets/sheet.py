@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
@@ -131,10 +131,14 @@ class FactTable:
 
 @dataclass(frozen=True)
 class Illustration:
-    """A picture of the sheet by its name, or one of a document alone, with a caption; its own title if None."""
+    """A picture of the sheet by its name, or one of a document alone, with a caption; its own title if None.
+
+    A `detail` is shown by the full form of a document alone.
+    """
 
     picture: str | Picture
     caption: Text | None = None
+    detail: bool = False
 
 
 @dataclass(frozen=True)
@@ -220,10 +224,11 @@ Block: TypeAlias = (
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and the blocks under it."""
+    """A heading and the blocks under it; a `detail` is shown by the full form of a document alone."""
 
     title: Text
     blocks: tuple[Block, ...]
+    detail: bool = False
 
 
 @dataclass(frozen=True)
@@ -343,7 +348,14 @@ def _merge(mappings: Iterable[Mapping[str, Part]]) -> Mapping[str, Part]:
     return Deferred({name: partial(mapping.__getitem__, name) for mapping in mappings for name in mapping})
 
 
-def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:
-    """The section of the figures of a chapter, each with its own caption or, without one, with its title."""
-    figures = tuple(Illustration(name, captions.get(name)) for name in pictures)
-    return Section(Sentence("Figures"), figures)
+def illustrations(
+    pictures: Iterable[str],
+    captions: Mapping[str, Text] = MappingProxyType({}),
+    details: Collection[str] = (),
+) -> Section:
+    """The figures of a chapter, each with its own caption or, without one, with its title.
+
+    Those among the `details` are shown by the full form of a document alone.
+    """
+    figures = tuple(Illustration(name, captions.get(name), name in details) for name in pictures)
+    return Section(NOTHING, figures)

@@ -92,6 +92,8 @@ CAPTIONS = {
     "shaking-cycle": Sentence("Shaking force, shaking moment and the drive over the cycle, before and after"),
     "shaking-harmonics": Sentence("Harmonics before and after"),
 }
+DETAILS = ("shaking-hodograph", "shaking-harmonics")
+"""Figures that only the full form of a document shows."""
 
 
 def sheet(balance: Balance) -> Sheet:
@@ -527,7 +529,7 @@ def _chapter(results: ShakingResults) -> Chapter:
     facts = (FactTable(greatest),) if greatest else ()
     sections = [Section(NOTHING, (Paragraph(text), formula, *facts))]
     if "force_harmonic_amplitude" in data:
-        sections.append(Section(Sentence("Harmonics"), (_amplitudes(data),)))
+        sections.append(Section(Sentence("Harmonics"), (_amplitudes(data),), detail=True))
     blocks: tuple[Block, ...] = (Paragraph(Name(results.refusal)),)
     if results.balance is not None:
         blocks = tuple(_full_balance(results.balance))
@@ -569,4 +571,4 @@ def _full_balance(balance: Balance) -> Iterator[Block]:
     text = Sentence("With the counterweights {share} of the greatest shaking force remains.")
     yield Check(text, after, before, 1e4 * float(np.finfo(float).eps))
     for name, caption in CAPTIONS.items():
-        yield Illustration(name, caption)
+        yield Illustration(name, caption, detail=name in DETAILS)

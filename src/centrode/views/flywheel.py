@@ -394,7 +394,7 @@ def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapt
         Section(Sentence("Over the cycle"), (course,)),
         Section(Sentence("Inertia and flywheel"), tuple(_needed_inertia(results))),
         Section(Sentence("Summary"), (FactTable(facts),)),
-        illustrations(pictures, captions),
+        illustrations(pictures, captions, details=("works",)),
     )
     return Chapter(Sentence("Flywheel"), sections)
 
@@ -582,7 +582,7 @@ def _real_motion_chapter(results: MachineResults) -> Chapter:
         Section(NOTHING, _speed_relations()),
         *instants,
         Section(Sentence("Over the cycle"), (course,)),
-        illustrations(pictures, captions),
+        illustrations(pictures, captions, details=pictures[1:]),
     )
     return Chapter(Sentence("Real motion"), sections)
 

@@ -44,6 +44,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
+from centrode.views.force_equations import lever_equation, step_equations
 from centrode.views.force_pages import RIGHT_ANGLE, group_page, lever_page
 from centrode.views.instants import body_text, instant_title, place_number
 from centrode.views.load_names import load_text
@@ -490,14 +491,15 @@ def _chapter(results: ForcePolygonResults) -> Chapter:
         "Groups are treated in reverse order: each is isolated, moment equations give the tangential components "
         "of its outer reactions, the force polygon gives the rest. Drawings are to the scales stated."
     )
-    instants = (
-        Section(
-            instant_title(results.mechanism, results.motion, sample),
-            tuple(_without_forces(results, sample) if found is None else _instant(found)),
-        )
-        for sample, found in enumerate(results.polygons)
-    )
-    return Chapter(Sentence("Force polygons"), (Section(NOTHING, (Paragraph(text),)), *instants))
+    sections = [Section(NOTHING, (Paragraph(text),))]
+    for sample, found in enumerate(results.polygons):
+        title = instant_title(results.mechanism, results.motion, sample)
+        blocks = _without_forces(results, sample) if found is None else _instant(found)
+        sections.append(Section(title, tuple(blocks)))
+        if found is not None:
+            forces = _forces(found, Sentence("Forces of the polygons at {place}", place=title))
+            sections.append(Section(NOTHING, (forces,), detail=True))
+    return Chapter(Sentence("Force polygons"), tuple(sections))
 
 
 def _without_forces(results: ForcePolygonResults, sample: int) -> Iterator[Block]:
@@ -520,7 +522,8 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
     for number, group in enumerate(found.groups, start=1):
         title = _group_title(found, group)
         yield Paragraph(Joined((title, NOTHING), "."))
-        yield _steps(found, group)
+        for step in group.steps:
+            yield from step_equations(step, step_text(step))
         yield Illustration(pages[f"group-{number}"], title)
     for page in pages.values():
         if isinstance(page, LeverPage):
@@ -530,7 +533,12 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
                 angle=RIGHT_ANGLE,
             )
             yield Illustration(page, caption)
-    yield _forces(found, Sentence("Forces of the polygons"))
+    for lever in found.levers:
+        greatest = max((abs(one.moment) for one in lever.forces), default=0.0)
+        yield Paragraph(
+            Sentence("Moments about the pole of Zhukovsky's lever of drive {drive}:", drive=Name(lever.drive))
+        )
+        yield lever_equation(lever, NONE * greatest)
     yield _routes(found, Sentence("Balancing moment or force by three routes"))
     yield from _checks(found)
 

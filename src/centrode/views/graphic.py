@@ -390,17 +390,18 @@ def _difference(row: CheckRow, greatest: float) -> Number:
 
 # The chapter
 
+COMPARISON = Sentence("Comparison of the routes: by drawing, by integration of the equations, in closed form")
+
 
 def _chapter(results: GraphicResults) -> Chapter:
     """For each instant the drawing, what was done, and the comparison of three routes."""
-    sections = tuple(
-        Section(
-            instant_title(results.mechanism, results.motion, sample),
-            tuple(_instant(results, sample, check)),
-        )
-        for sample, check in enumerate(results.checks)
-    )
-    return Chapter(Sentence("Graph-analytic check"), sections)
+    sections: list[Section] = []
+    for sample, check in enumerate(results.checks):
+        title = instant_title(results.mechanism, results.motion, sample)
+        sections.append(Section(title, tuple(_instant(results, sample, check))))
+        if isinstance(check, GraphicCheck):
+            sections.append(Section(NOTHING, (_table(check, COMPARISON),), detail=True))
+    return Chapter(Sentence("Graph-analytic check"), tuple(sections))
 
 
 def _instant(
@@ -427,10 +428,6 @@ def _instant(
     ):
         yield from _steps(diagram)
         yield Illustration(pages[name])
-    yield _table(
-        check,
-        Sentence("Comparison of the routes: by drawing, by integration of the equations, in closed form"),
-    )
     yield _agreement(check)
 
 

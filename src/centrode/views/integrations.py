@@ -310,5 +310,9 @@ def _chapter(results: IntegrationResults, facts: tuple[Fact, ...]) -> Chapter:
         AGREE,
     )
     caption = Sentence("Difference of the integrated motion from the closed-form solution")
-    blocks = (FactTable(facts), check, Illustration(ERRORS, caption))
-    return Chapter(Sentence("Integration of the equations"), (Section(NOTHING, blocks),))
+    sections = (
+        Section(NOTHING, (FactTable(facts),), detail=True),
+        Section(NOTHING, (check,)),
+        Section(NOTHING, (Illustration(ERRORS, caption),), detail=True),
+    )
+    return Chapter(Sentence("Integration of the equations"), sections)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -356,6 +357,8 @@ ON_SPHERE = {
     "slides": Sentence("Motion along the circles"),
 }
 """Those that differ on the sphere."""
+DETAILS = ("mechanism", "kinematic-coefficients")
+"""Those that only the full form of a document shows."""
 
 
 def _motion_chapter(results: MotionResults) -> Chapter:
@@ -364,11 +367,31 @@ def _motion_chapter(results: MotionResults) -> Chapter:
     return Chapter(Sentence("Motion"), (Section(NOTHING, (player,)),))
 
 
-def _plots_chapter(mechanism: Mechanism, pictures: Iterable[str]) -> Chapter:
-    """The figures that a run draws."""
+TOGETHER: Mapping[tuple[str, ...], Sentence] = {
+    ("angles", "angular-velocities", "angular-accelerations"): Sentence(
+        "Angles, angular velocities and angular accelerations of the links"
+    ),
+    ("joint-angles", "joint-velocities", "joint-accelerations"): Sentence(
+        "Angles, angular velocities and angular accelerations in the hinges"
+    ),
+}
+"""Figures that a document shows as one where each has one panel."""
+
+
+def _plots_chapter(mechanism: Mechanism, pictures: Mapping[str, Picture]) -> Chapter:
+    """The figures that a run draws, those of the links one below the other."""
     captions = CAPTIONS | (ON_SPHERE if mechanism.space == "sphere" else {})
-    figures = tuple(Illustration(name, captions[name]) for name in pictures)
-    return Chapter(Sentence("Plots of the motion"), (Section(NOTHING, figures),))
+    joined: dict[str, Illustration | None] = {}
+    for names, caption in TOGETHER.items():
+        plots = [plot for name in names if name in pictures and isinstance(plot := pictures[name], Plot)]
+        if len(plots) == len(names) and all(len(plot.rows) == 1 for plot in plots):
+            rows = tuple(row for plot in plots for row in plot.rows)
+            joined |= dict.fromkeys(names) | {
+                names[0]: Illustration(replace(plots[0], title=caption, rows=rows))
+            }
+    figures = (joined.get(name, Illustration(name, captions[name], name in DETAILS)) for name in pictures)
+    blocks = tuple(one for one in figures if one is not None)
+    return Chapter(Sentence("Plots of the motion"), (Section(NOTHING, blocks),))
 
 
 def _tables_chapter(results: MotionResults, shown: xarray.Dataset) -> Chapter:

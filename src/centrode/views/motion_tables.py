@@ -13,7 +13,7 @@ from centrode.kinematics.rigid_body_checks import rigid_body_checks
 from centrode.model.mechanism import FRAME
 from centrode.quantities import QUANTITIES, STATUS_WORDS
 from centrode.sheets.sheet import Block, Chapter, Check, Column, Paragraph, Section, Table
-from centrode.sheets.texts import Counted, Expression, Joined, Name, Number, Sentence, Slanted, Text
+from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Slanted, Text
 from centrode.views.columns import rows_shown
 from centrode.views.instants import instant_title
 
@@ -44,8 +44,7 @@ def tables_chapter(results: MotionResults, shown: xarray.Dataset, head: Sequence
     on_sphere = results.mechanism.space == "sphere"
     rows = rows_shown(results.motion.sizes["sample"], ROWS)
     instants = (
-        Section(instant_title(results.mechanism, shown, sample), tuple(_instant(results, shown, sample)))
-        for sample in range(shown.sizes["sample"])
+        section for sample in range(shown.sizes["sample"]) for section in _at_instant(results, shown, sample)
     )
     whole = [_hinges_over_motion(results, rows)] if on_sphere else _over_motion(results, rows)
     return Chapter(
@@ -54,13 +53,24 @@ def tables_chapter(results: MotionResults, shown: xarray.Dataset, head: Sequence
             Section(Sentence("Range"), tuple(head)),
             *instants,
             Section(Sentence("The whole motion"), tuple(whole)),
-            Section(Sentence("Checks"), tuple(_checks(results, rows))),
+            Section(Sentence("Checks"), tuple(_checks(results))),
+            *([] if on_sphere else [Section(NOTHING, (_rows_shown(results, rows),), detail=True)]),
         ),
     )
 
 
-def _instant(results: MotionResults, shown: xarray.Dataset, sample: int) -> Iterator[Block]:
+def _at_instant(results: MotionResults, shown: xarray.Dataset, sample: int) -> Iterator[Section]:
     """Links, points and guides at one instant, and their kinematic coefficients."""
+    yield Section(instant_title(results.mechanism, shown, sample), tuple(_instant(results, shown, sample)))
+    here = shown.isel(sample=sample)
+    reached = Status(int(here["status"])) == Status.OK
+    if reached and results.mechanism.space == "plane" and "velocity_coefficient" in here:
+        points = _coefficients_of_points(here.sel(point=list(results.mechanism.moving_points)))
+        yield Section(NOTHING, (_coefficients_of_links(here), points), detail=True)
+
+
+def _instant(results: MotionResults, shown: xarray.Dataset, sample: int) -> Iterator[Block]:
+    """Links, points and guides at one instant."""
     status = Status(int(shown["status"][sample]))
     if status != Status.OK:
         text = Sentence(
@@ -81,9 +91,6 @@ def _instant(results: MotionResults, shown: xarray.Dataset, sample: int) -> Iter
     if here.sizes["guide"]:
         caption = Sentence("Displacements along the guides")
         yield _with_rates(here, "guide", ("slide", "slide_velocity", "slide_acceleration"), "s", caption)
-    if "velocity_coefficient" in here:
-        yield _coefficients_of_links(here)
-        yield _coefficients_of_points(here.sel(point=list(points)))
 
 
 def _column(head: Text, values: xarray.DataArray | Array, unit: str, size: float) -> Column:
@@ -338,7 +345,7 @@ def _hinges_over_motion(results: MotionResults, rows: tuple[int, ...]) -> Table:
 # Checks
 
 
-def _checks(results: MotionResults, rows: tuple[int, ...]) -> Iterator[Block]:
+def _checks(results: MotionResults) -> Iterator[Block]:
     """Residuals, and identities of rigid bodies."""
     flat = results.mechanism.space == "plane"
     if flat:
@@ -352,17 +359,20 @@ def _checks(results: MotionResults, rows: tuple[int, ...]) -> Iterator[Block]:
         yield Check(closes, residual, 1.0, CLOSED)
     for check in rigid_body_checks(results.mechanism, results.motion):
         yield Check(_identity(check), check.difference, check.size, check.bound)
-    if flat:
-        yield Paragraph(
-            Counted(
-                "The tables show {rows} row of {samples} samples; {sign} marks unknown values.",
-                "The tables show {rows} rows of {samples} samples; {sign} marks unknown values.",
-                len(rows),
-                rows=Number(len(rows), digits="d"),
-                samples=Number(results.motion.sizes["sample"], digits="d"),
-                sign=Number(np.nan),
-            )
+
+
+def _rows_shown(results: MotionResults, rows: tuple[int, ...]) -> Paragraph:
+    """How many of the samples the tables show."""
+    return Paragraph(
+        Counted(
+            "The tables show {rows} row of {samples} samples; {sign} marks unknown values.",
+            "The tables show {rows} rows of {samples} samples; {sign} marks unknown values.",
+            len(rows),
+            rows=Number(len(rows), digits="d"),
+            samples=Number(results.motion.sizes["sample"], digits="d"),
+            sign=Number(np.nan),
         )
+    )
 
 
 def _identity(check: RigidBodyCheck) -> Sentence:

@@ -525,6 +525,17 @@ def _load_cells(mechanism: Mechanism, load: BearingLoad) -> tuple[Text, ...]:
 # Chapter
 
 
+DETAILS = (
+    "joint-components",
+    "frame-force",
+    "bearing-loads",
+    "journal-loads",
+    "bearing-wear",
+    "force-vectors",
+)
+"""Figures that only the full form of a document shows."""
+
+
 def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
     """Kinetostatics: inertia, the table of joints, reactions at instants, the worst over the motion, checks."""
     mechanism, reactions = results.mechanism, results.reactions
@@ -554,12 +565,12 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
     losses = (Table(table.columns, Sentence("Losses to friction")) for table in _losses(reactions))
     sections = (
         Section(NOTHING, (*_relations(mechanism), FactTable(tuple(_facts(results))))),
-        Section(Sentence("Table of joints"), (Paragraph(meaning), joints)),
+        Section(Sentence("Table of joints"), (Paragraph(meaning), joints), detail=True),
         *(() if results.instants is None else _instants(mechanism, results.instants)),
         # where friction jams every sample nothing is determined
         Section(Sentence("Greatest reactions"), (*((extremes,) if loads else ()), *losses)),
         Section(Sentence("Checks"), tuple(_checks(reactions))),
-        illustrations(captions, captions),
+        illustrations(captions, captions, DETAILS),
     )
     return Chapter(Sentence("Reactions in the joints"), sections)
 

@@ -302,7 +302,7 @@ def _chapter(results: ReductionResults) -> Chapter:
     sections = [Section(NOTHING, (*_meaning(results), FactTable(tuple(_facts(results)))))]
     if "reduced_inertia" in results.reduction:
         sections += [*_sums(results), Section(Sentence("Over the motion"), (_course(results),))]
-    sections.append(Section(Sentence("Extremes and means"), (_extremes(results),)))
+    sections.append(Section(Sentence("Extremes and means"), (_extremes(results),), detail=True))
     return Chapter(Sentence("Reduction to the drive"), (*sections, illustrations(captions, captions)))
 
 

@@ -88,22 +88,28 @@ class TableBlock:
     rows : cells as text, in the language's spelling of numbers
     caption : what the rows are
     numbers : True for columns of numbers, which are set flush right
+    number : of the table in its document, from 1; 0 of a table that has none
     """
 
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
     numbers: tuple[bool, ...] = ()
+    number: int = 0
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as SVG, with its caption and its natural width [inches]; `to_scale` is kept at that width on paper."""
+    """A figure as SVG, with its caption and its natural width [inches]; `to_scale` is kept at that width on paper.
+
+    Its `number` in the document counts from 1; it is 0 of a figure that has none.
+    """
 
     svg: bytes
     caption: str
     width: float
     to_scale: bool = False
+    number: int = 0
 
 
 @dataclass(frozen=True)
@@ -173,6 +179,7 @@ class Moving:
     dots : names of the points of one link alone, where nothing is hinged
     start : the sample shown first
     box : lower left and upper right corner (2, 2) [m] of what is seen; all places if None
+    number : of the figure in its document, from 1; 0 of one that has none
     """
 
     places: Mapping[str, np.ndarray]
@@ -191,6 +198,7 @@ class Moving:
     dots: tuple[str, ...] = ()
     start: int = 0
     box: np.ndarray | None = None
+    number: int = 0
 
 
 Block: TypeAlias = (
@@ -263,6 +271,7 @@ class Report:
     title, subtitle : shown on the first page; the subtitle says what was computed, by which version
     language : "en", "ru" or "uk": hyphenation, and the word for contents
     chapters : in the order of the document
+    opening : blocks below the title, before the contents: the kinematic scheme
     description : what the report is about; None of a sheet about many
     """
 
@@ -270,4 +279,5 @@ class Report:
     subtitle: str
     language: str
     chapters: tuple[ChapterBlocks, ...] = field(default=())
+    opening: tuple[Block, ...] = ()
     description: DescriptionText | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 import numpy as np
@@ -48,12 +49,37 @@ if TYPE_CHECKING:
 
     Pictures: TypeAlias = Mapping[str, Picture]
 
+COMPACT_ROWS = 13
+"""Rows that a table over a motion has at most in a compact document: a turn in steps of 30 degrees."""
 
-def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.ChapterBlocks:
-    """A chapter of a sheet, spelled and with its pictures drawn."""
+
+def document_chapter(name: str, sheet: Sheet, numbers: Numbers, *, full: bool = True) -> blocks.ChapterBlocks:
+    """A chapter of a sheet, spelled and with its pictures drawn; unless `full`, without its details."""
     chapter, spelling = sheet.chapters[name], DocumentSpelling(numbers)
-    sections = tuple(_section(section, sheet.pictures, spelling) for section in chapter.sections)
-    return blocks.ChapterBlocks(name, spelling.text(chapter.title), sections)
+    sections = tuple(
+        _section(section if full else _compact_section(section), sheet.pictures, spelling)
+        for section in chapter.sections
+        if full or not section.detail
+    )
+    kept = tuple(section for section in sections if full or section.blocks)
+    return blocks.ChapterBlocks(name, spelling.text(chapter.title), kept)
+
+
+def _compact_section(section: Section) -> Section:
+    """A section without figures that are details, its tables over a motion at fewer places."""
+    kept = (block for block in section.blocks if not (isinstance(block, Illustration) and block.detail))
+    return replace(section, blocks=tuple(_thinned(one) if isinstance(one, Table) else one for one in kept))
+
+
+def _thinned(table: Table) -> Table:
+    """A table that shows some of its rows, with fewer of them at even steps: the first and the last stay."""
+    if table.rows is None or len(table.rows) <= COMPACT_ROWS:
+        return table
+    last = len(table.rows) - 1
+    step = next(step for step in range(1, last + 1) if last // step < COMPACT_ROWS and last % step == 0)
+    if last // step < COMPACT_ROWS // 2:  # the steps do not divide evenly
+        step = -(-last // (COMPACT_ROWS - 1))
+    return replace(table, rows=tuple(table.rows[k] for k in sorted({*range(0, last, step), last})))
 
 
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.SectionBlocks:
@@ -125,6 +151,13 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.TableBlock(heads, entries, "", (False, True, False))
         case _:
             assert_never(block)
+
+
+def document_picture(drawn: Picture, numbers: Numbers) -> blocks.Picture:
+    """A picture of its own, outside any chapter, under its title."""
+    spelling = DocumentSpelling(numbers)
+    figure = figures_pictures.figure_of(drawn, numbers.display)
+    return picture(figure, spelling.text(drawn.title))
 
 
 def _with_scales(page: GroupPage, name: str) -> str:

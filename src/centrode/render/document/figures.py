@@ -13,19 +13,22 @@ from centrode.render.document.blocks import Picture
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import METADATA, spell_decimals
 
-FLAT = 0.68
-"""Height of curves by their width of which two, with their captions, find room on a page."""
-PANELS = 3
-"""Panels above each other that can still be read at that height."""
+FLAT = {1: 0.40, 2: 0.48, 3: 0.56}
+"""Height of curves by their width, by the number of panels above each other: of one panel three figures with their
+captions find room on a page, of three panels two and some text. More panels could not be read at such a height."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12
 """Inches: a letter of a label, what titles and ticks take of a figure's height, and what is between panels."""
 
 
 def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
-    """A figure as a block, with its caption; one `to_scale` (at most as wide as A4) keeps its size on paper.
+    """A figure as a block, with its caption in place of its own title.
+
+    One `to_scale` (at most as wide as A4) keeps its size on paper.
 
     Curves are drawn no higher than half a page; numbers have the decimal mark of the language.
     """
+    if caption:
+        figure.suptitle("").set_in_layout(False)
     spell_decimals(figure)
     if not to_scale:
         _flatten(figure)
@@ -43,11 +46,11 @@ def _flatten(figure: Figure) -> None:
     """
     axes: list[Any] = figure.axes
     rows = max((one.get_gridspec().nrows for one in axes if one.get_subplotspec() is not None), default=0)
-    if not 0 < rows <= PANELS or figure.get_layout_engine() is None:
+    if rows not in FLAT or figure.get_layout_engine() is None:
         return
     if any(one.get_aspect() != "auto" or one.name != "rectilinear" for one in axes):
         return
-    figure.set_figheight(min(FLAT * figure.get_figwidth(), figure.get_figheight()))
+    figure.set_figheight(min(FLAT[rows] * figure.get_figwidth(), figure.get_figheight()))
     room = int(((figure.get_figheight() - EDGES) / rows - GAP) / LETTER)
     for one in axes:
         label = one.get_ylabel().replace(" = ", "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}")

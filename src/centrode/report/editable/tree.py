@@ -62,7 +62,9 @@ class Tree:
 
     def document(self, report: Report) -> bytes:
         """The whole tree as pandoc reads it."""
-        blocks = [one for chapter in report.chapters for one in self.chapter(chapter)]
+        scheme = [block for block in report.opening if not isinstance(block, Moving)]  # paper plays no motion
+        blocks = [one for block in scheme for one in self.shown(block)]
+        blocks += [one for chapter in report.chapters for one in self.chapter(chapter)]
         details = {
             "title": [_text(report.title)],
             "subtitle": [_text(report.subtitle)],

@@ -49,12 +49,10 @@ def formulas_in(block: Block) -> Iterator[str]:
 
 @dataclass
 class Elements:
-    """Makes the elements of a page, with the numbers of figures, tables and formulas."""
+    """Makes the elements of a page, with the numbers of formulas."""
 
     formulas: Formulas
     drawings: Drawings = field(default_factory=Drawings)
-    figures: int = 0
-    tables: int = 0
     displayed: int = 0
 
     def text(self, marked: str) -> str:
@@ -125,11 +123,10 @@ class Elements:
         )
         caption, name = "", ""
         if block.caption:
-            self.tables += 1
-            number = html.escape(_("Table {number}").format(number=self.tables))
-            name = f' aria-labelledby="t{self.tables}"'
+            number = html.escape(_("Table {number}").format(number=block.number))
+            name = f' aria-labelledby="t{block.number}"'
             caption = (
-                f'<p class="caption" id="t{self.tables}"><b>{number}.</b> {self.text(block.caption)}</p>'
+                f'<p class="caption" id="t{block.number}"><b>{number}.</b> {self.text(block.caption)}</p>'
             )
         drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         return f'{caption}<div class="table">{drawn}</div>'
@@ -143,24 +140,23 @@ class Elements:
     def picture(self, block: Picture) -> str:
         """A figure with its caption."""
         paper = f'<div class="paper" style="width:{block.width:.4g}in">{self.drawing(block)}</div>'
-        return f"<figure>{paper}{self.caption(block.caption)}</figure>"
+        return f"<figure>{paper}{self.caption(block)}</figure>"
 
     def moving(self, block: Moving) -> str:
         """A motion: its first picture, until the script of the page draws it."""
-        return f"<figure>{stage_of(block, self.drawing(block.still))}{self.caption(block.caption)}</figure>"
+        return f"<figure>{stage_of(block, self.drawing(block.still))}{self.caption(block)}</figure>"
 
     def drawing(self, block: Picture) -> str:
         """A figure alone."""
         label = "".join(part.text for part in parts_of(block.caption))
         return self.drawings.embedded(block.svg, label)
 
-    def caption(self, text: str) -> str:
+    def caption(self, block: Picture | Moving) -> str:
         """The number of a figure, and what it shows; nothing where nothing is said."""
-        if not text:
+        if not block.caption:
             return ""
-        self.figures += 1
-        number = html.escape(_("Figure {number}").format(number=self.figures))
-        return f"<figcaption><b>{number}.</b> {self.text(text)}</figcaption>"
+        number = html.escape(_("Figure {number}").format(number=block.number))
+        return f"<figcaption><b>{number}.</b> {self.text(block.caption)}</figcaption>"
 
 
 def _prose(block: ProseBlock) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import ChapterBlocks, Report, SectionBlocks
+from centrode.render.document.numbering import number_blocks
 from centrode.report.html.elements import Elements, formulas_in
 from centrode.report.html.mathematics import formulas_of
 from centrode.report.texts import blocks_of
@@ -39,8 +40,10 @@ def html_page(report: Report) -> bytes:
 
 
 def _page(report: Report) -> str:
+    report = number_blocks(report)
     formulas = formulas_of(one for block in blocks_of(report) for one in formulas_in(block))
     elements = Elements(formulas)
+    opening = "".join(f"{elements.element(block)}\n" for block in report.opening)
     chapters = [_chapter(chapter, k, elements) for k, chapter in enumerate(report.chapters, start=1)]
     scripts = [_script(names) for names in SCRIPTS]
     contents = "".join(_entry(chapter, k) for k, chapter in enumerate(report.chapters, start=1))
@@ -54,7 +57,7 @@ def _page(report: Report) -> str:
         f"<nav><details open><summary>{heading}</summary><ol>{contents}</ol></details></nav>\n"
         f"<main>\n<header><h1>{title}</h1>"
         f'<p class="subtitle">{html.escape(report.subtitle)}</p></header>\n'
-        f"{''.join(chapters)}</main>\n</div>\n"
+        f"{opening}{''.join(chapters)}</main>\n</div>\n"
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
     )
 

@@ -49,7 +49,8 @@ class VariantReport:
                 title=_(mechanism.title) or _("Mechanism"), name=results.row.variant
             )
             made = report(mechanism, ReportOptions(), language=self.language)
-            write_report(replace(made, title=title), folder, self.formats)
+            named = replace(made, title=title)
+            write_report(named, folder, self.formats)
             study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
             text = answers_of(study).json_text()
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")

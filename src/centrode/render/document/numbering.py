@@ -1,0 +1,174 @@
+"""Captions and numbers of tables and figures of a document, and the sentences that refer to figures."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+from typing import TypeAlias
+
+from centrode.locale import _
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    Moving,
+    ParagraphBlock,
+    Picture,
+    Report,
+    SectionBlocks,
+    TableBlock,
+    shown,
+)
+
+Captioned: TypeAlias = TableBlock | Picture | Moving
+
+
+def number_blocks(report: Report) -> Report:
+    """The report with every captioned table and figure numbered from 1 in the order of the document.
+
+    Numbers that blocks have already are given anew, so a report may be numbered more than once.
+    """
+    tables, figures = _counter(), _counter()
+
+    def numbered(block: Block) -> Block:
+        if isinstance(block, TableBlock):
+            return replace(block, number=tables() if block.caption else 0)
+        if isinstance(block, Picture | Moving):
+            return replace(block, number=figures() if block.caption else 0)
+        return block
+
+    opening = tuple(map(numbered, report.opening))
+    return replace(report, opening=opening, chapters=_changed(report.chapters, numbered))
+
+
+def _counter() -> Callable[[], int]:
+    count = 0
+
+    def following() -> int:
+        nonlocal count
+        count += 1
+        return count
+
+    return following
+
+
+def _changed(
+    chapters: Sequence[ChapterBlocks], change: Callable[[Block], Block]
+) -> tuple[ChapterBlocks, ...]:
+    return tuple(
+        replace(
+            chapter,
+            sections=tuple(
+                replace(section, blocks=tuple(map(change, section.blocks))) for section in chapter.sections
+            ),
+        )
+        for chapter in chapters
+    )
+
+
+def caption_blocks(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ...]:
+    """Chapters in which every table and figure has a caption, and no two the same.
+
+    One without is named by its section and chapter. Captions that several blocks have are told apart by the titles of
+    their sections, then of their chapters, then by counting.
+    """
+    named = tuple(
+        replace(
+            chapter,
+            sections=tuple(
+                replace(section, blocks=tuple(_named(block, section, chapter) for block in section.blocks))
+                for section in chapter.sections
+            ),
+        )
+        for chapter in chapters
+    )
+    named = _told_apart(named, lambda section, _chapter: section.title)
+    named = _told_apart(named, lambda _section, chapter: chapter.title)
+    taken: Counter[str] = Counter()
+
+    def counted(block: Block) -> Block:
+        if not isinstance(block, Captioned):
+            return block
+        taken[block.caption] += 1
+        count = taken[block.caption]
+        return block if count == 1 else replace(block, caption=f"{block.caption} ({count})")
+
+    return _changed(named, counted)
+
+
+def _named(block: Block, section: SectionBlocks, chapter: ChapterBlocks) -> Block:
+    if not isinstance(block, Captioned) or block.caption:
+        return block
+    if section.title:
+        title = _("{chapter}: {section}").format(chapter=chapter.title, section=section.title)
+    else:
+        title = _("{chapter}: summary").format(chapter=chapter.title)
+    return replace(block, caption=shown(title))
+
+
+def _told_apart(
+    chapters: Sequence[ChapterBlocks], title: Callable[[SectionBlocks, ChapterBlocks], str]
+) -> tuple[ChapterBlocks, ...]:
+    """Captions that stand more than once, each with a title behind it."""
+    often = Counter(block.caption for block in captioned_blocks(chapters))
+
+    def told(block: Block, behind: str) -> Block:
+        if not isinstance(block, Captioned) or often[block.caption] == 1 or not behind:
+            return block
+        return replace(block, caption=f"{block.caption}; {shown(behind)}")
+
+    return tuple(
+        replace(
+            chapter,
+            sections=tuple(
+                replace(
+                    section, blocks=tuple(told(block, title(section, chapter)) for block in section.blocks)
+                )
+                for section in chapter.sections
+            ),
+        )
+        for chapter in chapters
+    )
+
+
+def captioned_blocks(chapters: Sequence[ChapterBlocks]) -> Iterator[Captioned]:
+    """Tables and figures of chapters in their order."""
+    for chapter in chapters:
+        for section in chapter.sections:
+            yield from (block for block in section.blocks if isinstance(block, Captioned))
+
+
+def refer_to_figures(report: Report) -> Report:
+    """The report with a sentence before each run of figures that names their numbers.
+
+    On paper figures stand where there is room, so the text has to say which belong to it.
+    """
+    chapters = tuple(
+        replace(
+            chapter,
+            sections=tuple(
+                replace(section, blocks=tuple(_with_references(section.blocks)))
+                for section in chapter.sections
+            ),
+        )
+        for chapter in report.chapters
+    )
+    return replace(report, chapters=chapters)
+
+
+def _with_references(blocks: Sequence[Block]) -> Iterator[Block]:
+    for figures, run in groupby(
+        blocks, lambda block: isinstance(block, Picture | Moving) and block.number > 0
+    ):
+        found = list(run)
+        if figures:
+            numbers = [block.number for block in found if isinstance(block, Picture | Moving)]
+            yield ParagraphBlock(_reference(numbers[0], numbers[-1]))
+        yield from found
+
+
+def _reference(first: int, last: int) -> str:
+    if first == last:
+        return _("See figure {number}.").format(number=first)
+    return _("See figures {first} to {last}.").format(first=first, last=last)
