@@ -40,6 +40,8 @@ TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 PAPER_WIDTH = 8.268
 ANNOUNCEMENT = 160
 """Letters of a paragraph that may be there only for the formula, table or picture behind it."""
+LONGEST_WHOLE = 600
+"""Characters from which on a cell may break between pages."""
 FIRST_PAGE, TITLE_LINE = 38, 30
 """Lines of contents that the first page holds below a title, and letters of a line of the title."""
 WIDEST = 8
@@ -140,7 +142,9 @@ class Source:
             _column(head, [row[i] for row in block.rows], numbers[i]) for i, head in enumerate(block.head)
         ]
         rows = [_array([_cell(cell) for cell in row]) for row in block.rows]
-        return f"#data-table({_array(columns)}, {_array(rows)}, {_caption(block.caption)}, {block.number})"
+        # A row that no page could hold has to be torn.
+        whole = "true" if all(len(cell) < LONGEST_WHOLE for row in block.rows for cell in row) else "false"
+        return f"#data-table({_array(columns)}, {_array(rows)}, {_caption(block.caption)}, {block.number}, {whole})"
 
     @_shown.register
     def _picture(self, block: Picture, floats: bool = True) -> str:

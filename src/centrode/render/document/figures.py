@@ -13,7 +13,7 @@ from centrode.render.document.blocks import Picture
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import METADATA, spell_decimals
 
-FLAT = {1: 0.40, 2: 0.48, 3: 0.56}
+FLAT = {1: 0.36, 2: 0.44, 3: 0.52}
 """Height of curves by their width, by the number of panels above each other: of one panel three figures with their
 captions find room on a page, of three panels two and some text. More panels could not be read at such a height."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12

@@ -114,7 +114,7 @@ def _told_apart(
     often = Counter(block.caption for block in captioned_blocks(chapters))
 
     def told(block: Block, behind: str) -> Block:
-        if not isinstance(block, Captioned) or often[block.caption] == 1 or not behind:
+        if not isinstance(block, Captioned) or often[block.caption] == 1 or shown(behind) in block.caption:
             return block
         return replace(block, caption=f"{block.caption}; {shown(behind)}")
 
