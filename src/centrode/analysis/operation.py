@@ -129,18 +129,18 @@ def roles_of(mechanism: Mechanism) -> LinkRoles:
         data = motion(mechanism, SAMPLES)
     except InputError:
         return LinkRoles(mechanism)
-    if not np.isin(data["status"].to_numpy(), (Status.OK, Status.SINGULAR)).all():
+    if not np.isin(data["status"].values, (Status.OK, Status.SINGULAR)).all():
         return LinkRoles(mechanism)
     swings, turned, strokes, ways = {}, {}, {}, {}
     name = "angle" if "angle" in data else "joint_angle"
-    labels = data["link" if name == "angle" else "joint"].to_numpy()
+    labels = data["link" if name == "angle" else "joint"].values
     for column, link in enumerate(labels):
-        angles = data[name].to_numpy()[:, column]
+        angles = data[name].values[:, column]
         swings[str(link)], turned[str(link)] = float(np.ptp(angles)), float(angles[-1] - angles[0])
-    for column, guide in enumerate(data["guide"].to_numpy()):
-        slides = data["slide"].to_numpy()[:, column]
+    for column, guide in enumerate(data["guide"].values):
+        slides = data["slide"].values[:, column]
         strokes[str(guide)], ways[str(guide)] = float(np.ptp(slides)), float(slides[-1] - slides[0])
-    value = data["drive_value"].to_numpy()[:, 0]
+    value = data["drive_value"].values[:, 0]
     one_turn = mechanism.motion_parameter.turns and abs(abs(value[-1] - value[0]) - math.tau) < WHOLE
     return LinkRoles(mechanism, swings, turned, strokes, ways, one_turn)
 

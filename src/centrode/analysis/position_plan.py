@@ -103,7 +103,7 @@ def plan_of_positions(
             _("give 2 to {most}").format(most=MOST),
         )
     path = motion(mechanism, SAMPLES)
-    ok = path["status"].to_numpy() == Status.OK
+    ok = path["status"].values == Status.OK
     by = mechanism.motion_parameter.instants(path)
     closed = bool(ok.all()) and _is_turn(mechanism, by)
     if link is not None:
@@ -148,7 +148,7 @@ def _open_plan(
         raise MotionError(
             "positions", _("no position of the mechanism is reached in its range"), _("see the limits")
         )
-    start = reached[np.argmin(np.abs(path["time"].to_numpy()[reached]))]
+    start = reached[np.argmin(np.abs(path["time"].values[reached]))]
     # from the initial position outwards: what is reached beyond a gap belongs to another stretch of the
     # motion
     first, last = start, start
@@ -218,12 +218,12 @@ def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tupl
 
 def _length(path: xr.Dataset) -> float:
     """Size of a mechanism: the greatest coordinate difference of its points."""
-    places = path["position"].to_numpy()
+    places = path["position"].values
     return float(np.nanmax(places) - np.nanmin(places)) or 1.0
 
 
 def _rate(mechanism: Mechanism, data: xr.Dataset, name: str) -> Array:
     """Velocity coefficients of a link's angle or of a guide's displacement."""
     if name in mechanism.link_names:
-        return np.asarray(data["angular_velocity_coefficient"].sel(link=name).to_numpy())
-    return np.asarray(data["slide_velocity_coefficient"].sel(guide=name).to_numpy())
+        return np.asarray(data["angular_velocity_coefficient"].sel(link=name).values)
+    return np.asarray(data["slide_velocity_coefficient"].sel(guide=name).values)

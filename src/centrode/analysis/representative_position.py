@@ -44,20 +44,20 @@ def representative_sample(mechanism: Mechanism, motion: xarray.Dataset) -> int:
         Among the samples that are reached; of equally good ones the nearest to the initial position, which is also
         taken where neighbouring links meet at no angle that changes.
     """
-    reached = motion["status"].to_numpy() == Status.OK
+    reached = motion["status"].values == Status.OK
     if not reached.any():
-        return int(np.argmin(np.abs(motion["time"].to_numpy())))
+        return int(np.argmin(np.abs(motion["time"].values)))
     shares = [np.where(reached, sine, 0.0) for sine in _sines(mechanism, motion)]
     shares = [share / share.max() for share in shares if share.max() > ALWAYS_IN_LINE]
     least = np.min(shares, axis=0, initial=1.0) if shares else np.ones(len(reached))
     least = np.where(reached, np.round(least, 6), -1.0)
     best = np.flatnonzero(least == least.max())
-    return int(best[np.argmin(np.abs(motion["time"].to_numpy()[best]))])
+    return int(best[np.argmin(np.abs(motion["time"].values[best]))])
 
 
 def _sines(mechanism: Mechanism, motion: xarray.Dataset) -> Iterator[Array]:
     """Sines of the angles between neighbours (sample); zero where one of the lines has no length."""
-    places = {str(name): motion["position"].sel(point=name).to_numpy() for name in motion["point"].to_numpy()}
+    places = {str(name): motion["position"].sel(point=name).values for name in motion["point"].values}
     links = {
         name: [one for one in link.coordinates if one in places] for name, link in mechanism.links.items()
     }
@@ -78,7 +78,7 @@ def _sines_at_guide(
     guide: Guide, places: dict[str, Array], links: dict[str, list[str]], motion: xarray.Dataset
 ) -> Iterator[Array]:
     """Sines of twice the angle between a guide and each link at its point: zero along the guide and square to it."""
-    turn = 0.0 if guide.on == FRAME else motion["angle"].sel(link=guide.on).to_numpy()
+    turn = 0.0 if guide.on == FRAME else motion["angle"].sel(link=guide.on).values
     along = turn + guide.direction_angle
     for name, points in links.items():
         if guide.point not in points or name in (guide.link, guide.on):

@@ -303,14 +303,14 @@ def _directions(data: xr.Dataset, numbers: Dimensions, group: Meet) -> Iterator[
 
 def place(data: xr.Dataset, point: str) -> Lines:
     """Places of a point as complex numbers."""
-    xy = data["position"].sel(point=point).to_numpy()
+    xy = data["position"].sel(point=point).values
     return np.asarray(xy[:, 0] + 1j * xy[:, 1])
 
 
 def _guide_directions(data: xr.Dataset, numbers: Dimensions, link: str, guide: str) -> Lines:
     """Directions of a guide at every sample."""
     # the frame does not turn and is no link of the dataset
-    turn = np.zeros(data.sizes["sample"]) if link == FRAME else data["angle"].sel(link=link).to_numpy()
+    turn = np.zeros(data.sizes["sample"]) if link == FRAME else data["angle"].sel(link=link).values
     return np.asarray(complex(*numbers.direction[guide]) * np.exp(1j * turn))
 
 

@@ -311,7 +311,7 @@ def animate_centrodes(
     said: Said = no_progress,
 ) -> None:
     """Write an animation (GIF or MP4) of one centrode rolling on the other; raises InputError where nothing rolls."""
-    if int((centrodes["centrode_piece"].to_numpy() >= 0).sum()) < 2:
+    if int((centrodes["centrode_piece"].values >= 0).sum()) < 2:
         raise InputError(
             "link", _("there is no centrode in this range"), _("choose another link or another range")
         )

@@ -48,13 +48,13 @@ class CentrodesLayer(MotionLayer):
         super().__init__(film, scene)
         found = centrodes(film.course.motion, link, against) if found is None else found
         self.bodies = (str(found.attrs["against"]), str(found.attrs["link"]))
-        self.pieces = found["centrode_piece"].to_numpy()
+        self.pieces = found["centrode_piece"].values
         if int((self.pieces >= 0).sum()) < 2:
             raise InputError(
                 "link", _("there is no centrode in this range"), _("choose another link or another range")
             )
-        self.curves = [found[f"{name}_centrode"].to_numpy() for name in ("fixed", "moving")]
-        self.contact = centrodes(film.motion, self.bodies[1], self.bodies[0])["fixed_centrode"].to_numpy()
+        self.curves = [found[f"{name}_centrode"].values for name in ("fixed", "moving")]
+        self.contact = centrodes(film.motion, self.bodies[1], self.bodies[0])["fixed_centrode"].values
 
     def reach(self) -> Array:
         """What of both curves comes not too far out."""
@@ -149,8 +149,8 @@ class CentresLayer(MotionLayer):
         if pairs is None and len(self.bodies) > FULL:
             pairs = [(name, FRAME) for name in self.bodies[1:]]
         found = instant_centres(film.motion, pairs)
-        self.pairs = [str(label).split(",") for label in found["pair"].to_numpy()]
-        self.places = found["centre"].transpose("sample", "pair", "axis").to_numpy()
+        self.pairs = [str(label).split(",") for label in found["pair"].values]
+        self.places = found["centre"].transpose("sample", "pair", "axis").values
         if isinstance(scene, Globe):
             # of the two ends of an axis the one that is seen
             seen = scene.in_front(np.nan_to_num(self.places))

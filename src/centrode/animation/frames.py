@@ -71,7 +71,7 @@ class Course:
     @property
     def seconds(self) -> float:
         """How long the motion takes until it begins again [s]."""
-        time = self.motion["time"].to_numpy()
+        time = self.motion["time"].values
         return float(abs(time[-1] - time[0])) * (1.0 if self.loop == "round" else 2.0)
 
 
@@ -111,7 +111,7 @@ def course_from(
     whole = usable(found)
     if not whole.any():
         raise InputError("", _("no sample has every point in place"), _("choose another range"))
-    first, last = _part(whole, np.abs(found["time"].to_numpy()))
+    first, last = _part(whole, np.abs(found["time"].values))
     part = found.isel(sample=slice(first, last + 1))
     places = mechanism.motion_parameter.instants(part)
     if places[0] == places[-1]:
@@ -124,27 +124,27 @@ def course_from(
 
 def usable(found: xr.Dataset) -> npt.NDArray[np.bool_]:
     """Samples with a position that the drive reaches."""
-    placed = np.isfinite(found["position"].transpose("sample", "point", "axis").to_numpy()).all(axis=(1, 2))
-    return np.asarray(np.isin(found["status"].to_numpy(), USABLE) & placed)
+    placed = np.isfinite(found["position"].transpose("sample", "point", "axis").values).all(axis=(1, 2))
+    return np.asarray(np.isin(found["status"].values, USABLE) & placed)
 
 
 def closes(found: xr.Dataset) -> bool:
     """Whether the last position is the first: every point in its place, every link turned as it was."""
-    places = found["position"].transpose("sample", "point", "axis").to_numpy()
+    places = found["position"].transpose("sample", "point", "axis").values
     known = places[np.isfinite(places).all(axis=(1, 2))]
     extent = float(np.ptp(known, axis=(0, 1)).max()) if len(known) else 0.0
     if not np.abs(places[-1] - places[0]).max() <= CLOSED * extent:
         return False
     if "angle" not in found:
         return True
-    turned = found["angle"].isel(sample=-1).to_numpy() - found["angle"].isel(sample=0).to_numpy()
+    turned = found["angle"].isel(sample=-1).values - found["angle"].isel(sample=0).values
     turned = turned[np.isfinite(turned)]
     return bool((np.abs(np.remainder(turned + math.pi, math.tau) - math.pi) <= math.tau * CLOSED).all())
 
 
 def _cams_close(mechanism: Mechanism, found: xr.Dataset) -> bool:
     """Whether every cam that drives has turned fully: in a rest of its follower nothing else tells."""
-    time = found["time"].to_numpy()
+    time = found["time"].values
     turned = [(drive.turning or 0.0) * float(time[-1] - time[0]) for drive in mechanism.drives]
     return all(abs(math.remainder(angle, math.tau)) <= math.tau * CLOSED for angle in turned)
 
@@ -177,7 +177,7 @@ def _swing(prepared: Ready, found: xr.Dataset) -> xr.Dataset:
 
 def _several_turns(mechanism: Mechanism, found: xr.Dataset) -> tuple[xr.Dataset, int]:
     """The same over as many turns as bring everything back; over one if no such number is found."""
-    values = found["drive_value"].to_numpy()[:, 0]
+    values = found["drive_value"].values[:, 0]
     first, turn = float(values[0]), float(values[-1] - values[0])
     trial = motion(mechanism, at=first + turn * np.arange(MOST_TURNS + 1))
     if not usable(trial).all():
@@ -284,7 +284,7 @@ class LoadForce:
 def joint_forces(mechanism: Mechanism, places: Array) -> xr.Dataset:
     """`reactions` at given places, without those on the frame: each link with the forces of its own pins."""
     found = reactions(mechanism, at=places)
-    return found.isel(side=np.flatnonzero(found["side_link"].to_numpy() != FRAME))
+    return found.isel(side=np.flatnonzero(found["side_link"].values != FRAME))
 
 
 def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:

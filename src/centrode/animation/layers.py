@@ -131,7 +131,7 @@ def scene_of_film(film: Film) -> LinkageScene | Globe:
 
 def statuses_of(film: Film) -> dict[str, int]:
     """How many positions of the frames have which status, of those that are not in order; by its word."""
-    codes, counts = np.unique(film.motion["status"].to_numpy(), return_counts=True)
+    codes, counts = np.unique(film.motion["status"].values, return_counts=True)
     return {status_word(int(code)): int(count) for code, count in zip(codes, counts, strict=True) if code}
 
 
@@ -153,7 +153,7 @@ def instant_captions(film: Film) -> list[str]:
     label = spelled_unit(unit)
     # plain text: mathematical text is laid out for every frame anew, at many times the cost
     texts = [f"{symbol} = {with_unit(_plain(value, decimals), label)}" for value in values]
-    for k, status in enumerate(film.motion["status"].to_numpy().tolist()):
+    for k, status in enumerate(film.motion["status"].values.tolist()):
         if status != Status.OK:
             texts[k] += f" ({status_word(status)})"
     return [texts[sample] for sample in film.order]

@@ -159,7 +159,7 @@ def point_vectors(
     """The layer of a vector that the motion has for each point: "velocity" or "acceleration"."""
     found = film.motion[variable]
     factor, unit = shown_as(str(found.attrs.get("units", "")), film.mechanism.display)
-    values = factor * found.sel(point=list(points)).transpose("sample", "point", "axis").to_numpy()
+    values = factor * found.sel(point=list(points)).transpose("sample", "point", "axis").values
     places = np.stack([scene.tracks[name][: len(film.places)] for name in points], axis=1)
     title = {"velocity": _("velocity"), "acceleration": _("acceleration")}[variable]
     colour = COLOURS[variable]
@@ -176,14 +176,14 @@ def joint_layer(film: Film, scene: LinkageScene | Globe) -> VectorLayer:
     """Forces of the pins on the links, each in the colour of its link, and of guides on what slides in them."""
     found = joint_forces(film.mechanism, film.places)
     colours = {name: pen.colour for name, pen in pens(film.mechanism.link_names).items()}
-    values = found["joint_force"].transpose("sample", "side", "axis").to_numpy()
-    points = found["side_point"].to_numpy().tolist()
-    drawn = [colours.get(str(name), INK) for name in found["side_link"].to_numpy()]
+    values = found["joint_force"].transpose("sample", "side", "axis").values
+    points = found["side_point"].values.tolist()
+    drawn = [colours.get(str(name), INK) for name in found["side_link"].values]
     if "guide_force" in found:
         guides = {guide.id: guide.point for guide in film.mechanism.guides}
-        names = found["guide"].to_numpy().tolist()
+        names = found["guide"].values.tolist()
         values = np.concatenate(
-            [values, found["guide_force"].transpose("sample", "guide", "axis").to_numpy()], axis=1
+            [values, found["guide_force"].transpose("sample", "guide", "axis").values], axis=1
         )
         points += [guides[name] for name in names]
         drawn += [INK] * len(names)

@@ -333,7 +333,7 @@ class RollerPathResults:
     @property
     def drawn_difference(self) -> float:
         """Greatest share by which the curvature of circles through three samples differs from the law's; NaN of two."""
-        law, drawn = (self.dataset[name].to_numpy() for name in ("law_curvature", "drawn_curvature"))
+        law, drawn = (self.dataset[name].values for name in ("law_curvature", "drawn_curvature"))
         with np.errstate(all="ignore"):
             return _greatest(drawn / law - 1.0)
 
@@ -341,8 +341,8 @@ class RollerPathResults:
     def equation_residual(self) -> tuple[float, float]:
         """What is left of the differential equation of the sine along the path, and its greatest term [1/m]."""
         names = ("pressure_sine", "pressure_sine_slope", "pressure_sine_second", "pressure_cosine")
-        eta, slope, second, cosine = (self.dataset[name].to_numpy() for name in names)
-        bend, bent = (self.dataset[name].to_numpy() for name in ("law_curvature", "law_curvature_slope"))
+        eta, slope, second, cosine = (self.dataset[name].values for name in names)
+        bend, bent = (self.dataset[name].values for name in ("law_curvature", "law_curvature_slope"))
         terms = np.array([bend * second, -bent * slope, bend * eta, bent * cosine])
         known = terms[:, np.isfinite(terms).all(axis=0)]
         return float(np.abs(known.sum(axis=0)).max(initial=0.0)), float(np.abs(known).max(initial=0.0))
@@ -427,31 +427,31 @@ class PathRoutesResults:
     @property
     def series_error(self) -> float:
         """Greatest error of the radius [m] by the series; NaN where it gives no sample."""
-        return _greatest(self.dataset["series_error"].to_numpy())
+        return _greatest(self.dataset["series_error"].values)
 
     @property
     def parting(self) -> float:
         """Greatest difference [m] of the radius by formulas (16) and (15); NaN where the curvature is constant."""
-        return _greatest(self.dataset["parting"].to_numpy())
+        return _greatest(self.dataset["parting"].values)
 
     @property
     def without_series(self) -> int:
         """Number of samples of the path at which the series gives none: its sine is no sine there."""
-        radii = self.dataset["path_radius"].to_numpy()
-        sine = np.abs(self.dataset["pressure_sine"].to_numpy()[0])
+        radii = self.dataset["path_radius"].values
+        sine = np.abs(self.dataset["pressure_sine"].values[0])
         return int(np.count_nonzero((sine > 1.0) & np.isnan(radii[0]) & np.isfinite(radii[1])))
 
     @property
     def flat(self) -> tuple[float, ...]:
         """Angles [rad] at which the slope of the curvature vanishes, and formula (16) has no meaning."""
-        reached = np.isfinite(self.dataset["path_radius"].to_numpy()[0])
-        flat = np.isnan(self.dataset["parting"].to_numpy()) & reached
-        return tuple(self.dataset["carrier_angle"].to_numpy()[flat].tolist())
+        reached = np.isfinite(self.dataset["path_radius"].values[0])
+        flat = np.isnan(self.dataset["parting"].values) & reached
+        return tuple(self.dataset["carrier_angle"].values[flat].tolist())
 
     @property
     def leaves_the_series(self) -> bool:
         """Whether the range goes beyond the first break of the law, where the series is no longer that of the path."""
-        phi = np.abs(self.dataset["carrier_angle"].to_numpy())
+        phi = np.abs(self.dataset["carrier_angle"].values)
         facts = self.dataset.attrs
         return bool(phi.max() > max(-facts["series_from"], facts["series_to"]) * (1 + 1e-12))
 

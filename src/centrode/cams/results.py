@@ -367,12 +367,12 @@ class CamContactResults:
     @property
     def missing(self) -> int:
         """Number of samples at which roller and cam do not touch: the cam is undercut there."""
-        return int(np.isnan(self.dataset["contact_stress"].to_numpy()).sum())
+        return int(np.isnan(self.dataset["contact_stress"].values).sum())
 
     @property
     def worst(self) -> int:
         """Number of the sample with the greatest stress."""
-        return int(np.nanargmax(self.dataset["contact_stress"].to_numpy()))
+        return int(np.nanargmax(self.dataset["contact_stress"].values))
 
 
 def cam_contact_results(cam: AnyCam, samples: int | None = None) -> CamContactResults:

@@ -84,10 +84,10 @@ def _working_instant(topic: Topic, mechanism: Mechanism, arguments: Mapping[str,
 def _clear_places(mechanism: Mechanism, course: xr.Dataset) -> list[float]:
     """Instants of the samples that are reached, those first that are farthest from limits and change points."""
     places = mechanism.motion_parameter.instants(course).tolist()
-    reached = [status == Status.OK for status in course["status"].to_numpy().tolist()]
+    reached = [status == Status.OK for status in course["status"].values.tolist()]
     bounds = [place for place, ok in zip(places, reached, strict=True) if not ok]
     if mechanism.motion_parameter.states_instants:
-        bounds += course["event_value"].to_numpy().tolist()
+        bounds += course["event_value"].values.tolist()
 
     def clearance(place: float) -> float:
         return min((abs(place - bound) for bound in bounds), default=0.0)

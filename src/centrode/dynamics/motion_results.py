@@ -73,7 +73,7 @@ class MotionResults:
     @property
     def unreached(self) -> int:
         """How many samples the mechanism does not reach."""
-        return int(np.isin(self.motion["status"].to_numpy(), STATUSES_NOT_REACHED).sum())
+        return int(np.isin(self.motion["status"].values, STATUSES_NOT_REACHED).sum())
 
     @property
     def parts(self) -> Mapping[str, Any]:

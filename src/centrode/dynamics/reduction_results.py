@@ -110,7 +110,7 @@ def reduction_results(
 
 def results_of_reduction(mechanism: Mechanism, reduction: xr.Dataset) -> ReductionResults:
     """A dataset of `reduce` with the extremes of each part, and with the limits where it has some."""
-    bounds = limits_met(mechanism, reduction["status"].to_numpy())
+    bounds = limits_met(mechanism, reduction["status"].values)
     return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), None, (), bounds)
 
 
@@ -119,9 +119,9 @@ def _extremes(reduction: xr.Dataset) -> Iterator[PartExtremes]:
     for variable, dimension in (("reduced_inertia", "link"), ("reduced_moment", "load")):
         if variable in reduction:
             unit, parts = str(reduction[variable].attrs["units"]), reduction[f"{variable}_part"]
-            yield PartExtremes(variable, unit, "", (), *_over(reduction[variable].to_numpy(), along))
-            for label in map(str, reduction[dimension].to_numpy()):
-                values = parts.sel({dimension: label}).to_numpy()
+            yield PartExtremes(variable, unit, "", (), *_over(reduction[variable].values, along))
+            for label in map(str, reduction[dimension].values):
+                values = parts.sel({dimension: label}).values
                 yield PartExtremes(variable, unit, label, (), *_over(values, along))
     for variable in ("inertia_matrix", "generalised_force"):
         if variable in reduction:
@@ -130,8 +130,8 @@ def _extremes(reduction: xr.Dataset) -> Iterator[PartExtremes]:
 
 def _by_drives(reduction: xr.Dataset, variable: str, along: Array) -> Iterator[PartExtremes]:
     """Elements of a matrix, each pair once, or of a vector."""
-    drives = [str(name) for name in reduction["drive"].to_numpy()]
-    values = reduction[variable].to_numpy().reshape(reduction.sizes["sample"], -1)
+    drives = [str(name) for name in reduction["drive"].values]
+    values = reduction[variable].values.reshape(reduction.sizes["sample"], -1)
     is_matrix = "drive_2" in reduction[variable].dims
     pairs = [(i, j) for i in range(len(drives)) for j in range(len(drives) if is_matrix else 1)]
     units = str(reduction[variable].attrs["units"]).split(", ")
@@ -144,7 +144,7 @@ def _by_drives(reduction: xr.Dataset, variable: str, along: Array) -> Iterator[P
 
 def _along(reduction: xr.Dataset) -> Array:
     """Abscissa of means (n): the value of the only drive where it runs one way, else time [s]."""
-    values, time = (np.asarray(reduction[name].to_numpy()) for name in ("drive_value", "time"))
+    values, time = (np.asarray(reduction[name].values) for name in ("drive_value", "time"))
     steps = np.diff(values[:, 0])
     # over time where the drive comes back: over its value the way forth and back would cancel
     one_way = "reduced_inertia" in reduction and bool((steps > 0.0).all() or (steps < 0.0).all())

@@ -65,7 +65,7 @@ class NumericValues:
         return 0.0 if link == FRAME else float(self.motion["angle"].sel(link=link)[self.sample])
 
     def _at(self, point: str) -> complex:
-        return complex(*self.motion["position"].sel(point=point).to_numpy()[self.sample])
+        return complex(*self.motion["position"].sel(point=point).values[self.sample])
 
     def _world(self, body: str, local: tuple[float, float]) -> complex:
         if body == FRAME:
@@ -333,7 +333,7 @@ def equation_results(
     places = motion(mechanism, at=list(instants))
     numbers = tuple(
         _numbers(found, places, sample, length) if status == Status.OK else None
-        for sample, status in enumerate(places["status"].to_numpy().tolist())
+        for sample, status in enumerate(places["status"].values.tolist())
     )
     return NumberedEquations(**own, check=_check(found), motion=places, numbers=numbers)
 
@@ -349,7 +349,7 @@ def _check(found: Equations) -> ConstraintCheck | None:
     if not conditions:
         return None
     dataset = motion(found.mechanism)
-    reached = np.flatnonzero(dataset["status"].to_numpy() == Status.OK)
+    reached = np.flatnonzero(dataset["status"].values == Status.OK)
     if not reached.size:
         return None
     chosen = np.unique(reached[np.linspace(0, reached.size - 1, TESTED).astype(int)])

@@ -432,12 +432,12 @@ def motion_of_solution(
     prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: CauchySolution
 ) -> IntegratedMotion:
     """Everything a state tells; names and their order are those of the motion in closed form."""
-    times = closed["time"].to_numpy()
+    times = closed["time"].values
     angles, spins = (
-        _link_angles(prepared.mechanism, form, columns, closed[name].to_numpy())
+        _link_angles(prepared.mechanism, form, columns, closed[name].values)
         for name, columns in (("angle", found.state), ("angular_velocity", found.rates))
     )
-    names = [str(name) for name in closed["point"].to_numpy()]
+    names = [str(name) for name in closed["point"].values]
     places = _places(form, names, prepared.kinematics.numbers)
     reached = np.isfinite(found.state).all(axis=1)
     points, velocities = np.full((2, len(times), len(names), 2), np.nan)
@@ -739,8 +739,8 @@ def _dataset(
     drift = np.full((len(status), len(form.constraint_names)), np.nan)
     rows = status == Status.OK
     drift[rows] = scaled.constraints(times[rows], found.state[rows])
-    off = course.angles - closed["angle"].to_numpy()
-    apart = np.linalg.norm(course.points - closed["position"].to_numpy(), axis=-1)
+    off = course.angles - closed["angle"].values
+    apart = np.linalg.norm(course.points - closed["position"].values, axis=-1)
     judged = judgements_of(solved, ())["status"]
     variables = {
         "angle": vocabulary_variable("angle", ("sample", "link"), course.angles),
@@ -763,9 +763,7 @@ def _dataset(
         "stop_time": _or_nan(found.stop),
         "lost_time": _or_nan(found.lost),
         "return_difference": _apart(course.angles, course.points, scaled.scale),
-        "closed_return_difference": _apart(
-            closed["angle"].to_numpy(), closed["position"].to_numpy(), scaled.scale
-        ),
+        "closed_return_difference": _apart(closed["angle"].values, closed["position"].values, scaled.scale),
     }
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 

@@ -41,13 +41,13 @@ class RigidBodyCheck:
 
 def rigid_body_checks(mechanism: Mechanism, motion: xr.Dataset) -> tuple[RigidBodyCheck, ...]:
     """Identities on the velocities and accelerations of a motion; none where no sample is reached."""
-    reached = motion["status"].to_numpy() == Status.OK
+    reached = motion["status"].values == Status.OK
     if not reached.any():
         return ()
     data = motion.isel(sample=np.flatnonzero(reached))
     if mechanism.space == "sphere":
         return _on_sphere(mechanism, data)
-    interpolated = bool(motion["event_kind"].to_numpy().any())
+    interpolated = bool(motion["event_kind"].values.any())
     return tuple(_in_plane(mechanism, data, interpolated))
 
 
@@ -71,8 +71,7 @@ def rotation_error(
     for link, described in mechanism.links.items():
         points = list(described.coordinates)
         turn, second = (
-            data[f"angular_{word}"].sel(link=link).to_numpy()[:, None]
-            for word in ("velocity", "acceleration")
+            data[f"angular_{word}"].sel(link=link).values[:, None] for word in ("velocity", "acceleration")
         )
         for point in points[1:]:
             arm = _of(data, "position", point) - _of(data, "position", points[0])
@@ -87,13 +86,13 @@ def rotation_error(
 
 
 def _of(data: xr.Dataset, name: str, point: str) -> Array:
-    return np.asarray(data[name].sel(point=point).to_numpy(), dtype=np.float64)
+    return np.asarray(data[name].sel(point=point).values, dtype=np.float64)
 
 
 def _on_sphere(mechanism: Mechanism, data: xr.Dataset) -> tuple[RigidBodyCheck, ...]:
     """Arcs that stay what they are, and v = omega x r."""
-    place, rate, turning = (data[name].to_numpy() for name in ("position", "velocity", "angular_velocity"))
-    names, links = data["point"].to_numpy().tolist(), data["link"].to_numpy().tolist()
+    place, rate, turning = (data[name].values for name in ("position", "velocity", "angular_velocity"))
+    names, links = data["point"].values.tolist(), data["link"].values.tolist()
     stretch, slip = 0.0, 0.0
     for number, (link, body) in enumerate(mechanism.links.items()):
         points = [names.index(name) for name in body.coordinates]

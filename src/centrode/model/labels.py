@@ -57,7 +57,7 @@ def place_words(
     mechanism: Mechanism, motion: xr.Dataset, sample: int, unit_name: Callable[[str], str] = terminal_unit
 ) -> str:
     """Where a sample is: values of the drives with their units, and its status where it is not ok."""
-    values = motion["drive_value"].to_numpy()[sample].tolist()
+    values = motion["drive_value"].values[sample].tolist()
     texts = []
     for drive, value in zip(mechanism.drives, values, strict=True):
         unit = mechanism.motion_parameter.drive(drive.id).unit

@@ -226,7 +226,7 @@ def parameter_values(motion: Any) -> Any:
 
 def _values(motion: Any, variable: MotionVariable) -> Any:
     values = motion["time"] if variable is TIME else motion["drive_value"].isel(drive=0)
-    return values.to_numpy()
+    return values.values
 
 
 UNDRIVEN = MotionParameter((drive_coordinate("", "angle", "plane", 0.0),), by_time=False)

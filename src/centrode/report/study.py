@@ -273,7 +273,7 @@ def _moments(study: ReportStudy) -> list[Moment]:
 
 def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
     numbers = study.numbers
-    values = data["drive_value"].to_numpy()[sample]
+    values = data["drive_value"].values[sample]
     told = [
         f"{drive.id} = {drive_value_text(float(value), study.mechanism.motion_parameter.drive(drive.id).unit, numbers)}"
         for drive, value in zip(study.mechanism.drives, values, strict=True)

@@ -163,12 +163,12 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> LinkageScene:
         name: np.tile(factor * np.asarray(place, dtype=float), (samples, 1))
         for name, place in mechanism.frame.coordinates.items()
     }
-    for name in dataset["point"].to_numpy().tolist():
+    for name in dataset["point"].values.tolist():
         if name not in tracks:
-            tracks[name] = factor * dataset["position"].sel(point=name).to_numpy()
-    turns = {name: dataset["angle"].sel(link=name).to_numpy() for name in dataset["link"].to_numpy().tolist()}
+            tracks[name] = factor * dataset["position"].sel(point=name).values
+    turns = {name: dataset["angle"].sel(link=name).values for name in dataset["link"].values.tolist()}
     travels = {
-        guide.id: factor * span(dataset["slide"].sel(guide=guide.id).to_numpy()) for guide in mechanism.guides
+        guide.id: factor * span(dataset["slide"].sel(guide=guide.id).values) for guide in mechanism.guides
     }
     low, high = box(list(tracks.values()))
     scene = LinkageScene(

@@ -85,8 +85,8 @@ def great_arc(start: Array, end: Array) -> Array:
 
 def globe_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Globe:
     """Read a spherical motion for drawing: seen so that most of it lies in front."""
-    names = dataset["point"].to_numpy().tolist()
-    tracks = {name: dataset["position"].sel(point=name).to_numpy() for name in names}
+    names = dataset["point"].values.tolist()
+    tracks = {name: dataset["position"].sel(point=name).values for name in names}
     samples = dataset.sizes["sample"]
     for name, place in mechanism.frame.coordinates.items():
         tracks[name] = np.tile(unit_vector(place), (samples, 1))

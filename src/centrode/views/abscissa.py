@@ -32,13 +32,13 @@ def motion_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
 def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     """The value of the only drive."""
     coordinate = mechanism.motion_parameter.drives[0]
-    values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
+    values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).values)
     return Abscissa(
         drive_label(coordinate),
         values,
         order,
         limits_between(dataset, values),
-        dataset["status"].to_numpy() == Status.CUT_OFF,
+        dataset["status"].values == Status.CUT_OFF,
         _events(within(values, events(dataset))),
     )
 
@@ -62,14 +62,14 @@ def text_of_drive(coordinate: DriveCoordinate) -> Text:
 
 def over_time(dataset: xarray.Dataset) -> Abscissa:
     """Time; events stand where the only drive passes them, with several drives at their own times."""
-    times, order = in_time(dataset, dataset["time"].to_numpy())
+    times, order = in_time(dataset, dataset["time"].values)
     if dataset.sizes["drive"] == 1:
-        values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
+        values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).values)
         breaks = limits_between(dataset, values)
         marks = [(time, kind) for value, kind in events(dataset) for time in passings(times, values, value)]
     else:
         breaks, marks = limits_between(dataset, times), events(dataset)
-    cut = dataset["status"].to_numpy() == Status.CUT_OFF
+    cut = dataset["status"].values == Status.CUT_OFF
     quantity = QUANTITIES["time"]
     label = AxisLabel(Sentence(quantity.long_name), Symbol(quantity.symbol), quantity.unit)
     return Abscissa(label, times, order, breaks, cut, _events(within(times, marks)))
@@ -81,7 +81,7 @@ def _events(marks: list[tuple[float, int]]) -> tuple[tuple[float, EventKind], ..
 
 def in_time(dataset: xarray.Dataset, values: Array) -> tuple[Array, NDArray[np.intp]]:
     """Values in the order of time, and that order."""
-    order = np.argsort(dataset["time"].to_numpy(), kind="stable")
+    order = np.argsort(dataset["time"].values, kind="stable")
     return values[order], order
 
 
@@ -90,9 +90,7 @@ def events(dataset: xarray.Dataset) -> list[tuple[float, int]]:
     if "event_value" not in dataset:
         return []
     return list(
-        zip(
-            dataset["event_value"].to_numpy().tolist(), dataset["event_kind"].to_numpy().tolist(), strict=True
-        )
+        zip(dataset["event_value"].values.tolist(), dataset["event_kind"].values.tolist(), strict=True)
     )
 
 

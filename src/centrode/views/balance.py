@@ -168,7 +168,7 @@ def _weights(weights: tuple[float, ...]) -> Text:
 
 
 def _speed(data: xr.Dataset) -> Text:
-    rates, unit = data["drive_rate"].to_numpy(), str(data["drive_rate"].attrs["units"])
+    rates, unit = data["drive_rate"].values, str(data["drive_rate"].attrs["units"])
     low, high = (Number(float(rate), unit, unit_fixed=True) for rate in (np.min(rates), np.max(rates)))
     if data.attrs["speed"] == "steady":
         return Sentence("{first} to {last}, of steady motion", first=low, last=high)
@@ -381,30 +381,28 @@ def _table(balance: Balance) -> Table:
     """Effects of the inertia before and after, one row a sample."""
     before = balance.before
     drives = (
-        Column(
-            f"drive_{name}", before["drive_value"].isel(drive=number).to_numpy(), drive_units(before)[number]
-        )
-        for number, name in enumerate(before["drive"].to_numpy())
+        Column(f"drive_{name}", before["drive_value"].isel(drive=number).values, drive_units(before)[number])
+        for number, name in enumerate(before["drive"].values)
     )
     curves = (
-        Column(f"{word}_{header}", values.to_numpy(), unit)
+        Column(f"{word}_{header}", values.values, unit)
         for word, data in (("before", before), ("after", balance.after))
         for variable in CURVES
         for header, unit, values in columns_of(data[variable], variable)
     )
-    time = Column("time", before["time"].to_numpy(), unit_of(before["time"]))
+    time = Column("time", before["time"].values, unit_of(before["time"]))
     return Table((time, *drives, *curves, status_column(before["status"])))
 
 
 def _harmonics_table(balance: Balance) -> Table:
     """Harmonics before and after in SI, one row an order; counterweights can shorten the cycle, then it has fewer."""
-    orders = balance.before["order"].to_numpy()
+    orders = balance.before["order"].values
     columns = []
     for word, data in (("before", balance.before), ("after", balance.after)):
         for variable in HARMONICS:
             for header, unit, values in _by_axis(data[variable], variable):
                 padded = np.full(len(orders), np.nan)
-                padded[: len(values)] = values.to_numpy()
+                padded[: len(values)] = values.values
                 columns.append(Column(f"{word}_{header}", padded, unit, unit_fixed=True))
     return Table((Column("order", orders), *columns))
 
@@ -414,7 +412,7 @@ def _by_axis(values: xr.DataArray, variable: str) -> Iterator[tuple[str, str, xr
     if "axis" not in values.dims:
         yield variable, unit_of(values), values
         return
-    for axis in values["axis"].to_numpy().tolist():
+    for axis in values["axis"].values.tolist():
         yield f"{variable}_{axis}", unit_of(values), values.sel(axis=axis)
 
 
@@ -440,7 +438,7 @@ def _hodograph(balance: Balance) -> Hodograph:
     symbol = QUANTITIES["shaking_force"].symbol
     x, y = (AxisLabel(symbol=Symbol(symbol, axis, slanted=True), unit="N") for axis in ("x", "y"))
     curves = tuple(
-        HodographCurve(name, data["shaking_force"].to_numpy(), place, compared)
+        HodographCurve(name, data["shaking_force"].values, place, compared)
         for name, data, place, compared in _pairs(balance)
     )
     title = Sentence("Shaking force on the frame; the large dot marks its start")
@@ -457,8 +455,7 @@ def _cycle(balance: Balance) -> Plot:
             unit_fixed=True,
         )
         curves = tuple(
-            Curve(text, data[name].to_numpy(), place, compared)
-            for text, data, place, compared in _pairs(balance)
+            Curve(text, data[name].values, place, compared) for text, data, place, compared in _pairs(balance)
         )
         scale = max(float(np.nanmax(np.abs(curve.values))) for curve in curves)
         rows.append((CurvePanel(label, curves, scale, legend=number == 0),))
@@ -478,7 +475,7 @@ def _harmonics(balance: Balance) -> BarChart:
         ("moment_harmonic_amplitude", Sentence("amplitude of the moment")),
     ):
         bars = tuple(
-            Bars(word, data["order"].to_numpy()[1:], data[name].to_numpy()[1:], place)
+            Bars(word, data["order"].values[1:], data[name].values[1:], place)
             for word, data, place, _compared in _pairs(balance)
         )
         label = AxisLabel(text, unit=str(balance.before[name].attrs["units"]), unit_fixed=True)
@@ -539,11 +536,9 @@ def _chapter(results: ShakingResults) -> Chapter:
 
 def _amplitudes(data: xr.Dataset) -> Table:
     """Amplitudes by orders; what rounding has left of zero beside the greatest is zero."""
-    force, moment = (
-        data[name].to_numpy() for name in ("force_harmonic_amplitude", "moment_harmonic_amplitude")
-    )
-    greatest = data["force_harmonic_greatest"].to_numpy()
-    orders = tuple(Number(float(order), digits="") for order in data["order"].to_numpy())
+    force, moment = (data[name].values for name in ("force_harmonic_amplitude", "moment_harmonic_amplitude"))
+    greatest = data["force_harmonic_greatest"].values
+    orders = tuple(Number(float(order), digits="") for order in data["order"].values)
     return Table(
         (
             Column("order", orders, head=Sentence("order")),

@@ -141,14 +141,14 @@ def _plot(results: CamContactResults) -> Plot:
         "contact_depth": Sentence("depth of the greatest shear stress"),
     }
     upper = [
-        Curve(name, MEGA * data[variable].to_numpy(), place, approximate=variable.endswith("source"))
+        Curve(name, MEGA * data[variable].values, place, approximate=variable.endswith("source"))
         for place, (variable, name) in enumerate(stresses.items())
     ]
     if "admissible_stress" in facts:
         level = np.full(data.sizes["sample"], MEGA * facts["admissible_stress"])
         upper.append(Curve(ADMISSIBLE, level, len(upper), role=CurveRole.LEVEL))
     lower = [
-        Curve(name, MILLI * data[variable].to_numpy(), len(stresses) + 1 + place)
+        Curve(name, MILLI * data[variable].values, len(stresses) + 1 + place)
         for place, (variable, name) in enumerate(strip.items())
     ]
     dots = []

@@ -163,11 +163,11 @@ def _step(construction: Construction | None, pair: Pair) -> KennedyStep | None:
 def _place(centre: xr.Dataset) -> Text:
     """Coordinates of a centre, or the direction in which it lies at infinity; a dash where there is none."""
     if "centre_direction" not in centre:
-        return place_text(centre["centre"].to_numpy(), "1")
-    direction = centre["centre_direction"].to_numpy()
+        return place_text(centre["centre"].values, "1")
+    direction = centre["centre_direction"].values
     if np.isfinite(direction).all():
         return Sentence("at infinity, {angle}", angle=Number(line_direction(direction.tolist()), "deg"))
-    return place_text(centre["centre"].to_numpy())
+    return place_text(centre["centre"].values)
 
 
 def _speed(speed: float) -> Text:
@@ -227,15 +227,15 @@ def _file(results: CentreResults) -> Table:
     labels = [str(label).split(",") for label in centres["pair"].values]
     count, samples = len(labels), centres.sizes["sample"]
     axes = "xyz" if spherical else "xy"
-    flat = centres["centre"].to_numpy().reshape(-1, len(axes))
+    flat = centres["centre"].values.reshape(-1, len(axes))
     places = [
         Column(f"centre_{axis}", flat[:, number], "1" if spherical else "m")
         for number, axis in enumerate(axes)
     ]
     if spherical:
-        beside = [Column("relative_speed", centres["relative_speed"].to_numpy().ravel(), "rad/s")]
+        beside = [Column("relative_speed", centres["relative_speed"].values.ravel(), "rad/s")]
     else:
-        directions = centres["centre_direction"].to_numpy().reshape(-1, 2)
+        directions = centres["centre_direction"].values.reshape(-1, 2)
         beside = [
             Column(f"centre_direction_{axis}", directions[:, number]) for number, axis in enumerate("xy")
         ]
@@ -251,7 +251,7 @@ def _file(results: CentreResults) -> Table:
             *beside,
             Column(
                 "case",
-                tuple(Name(Case(int(case)).word) for case in centres["centre_case"].to_numpy().ravel()),
+                tuple(Name(Case(int(case)).word) for case in centres["centre_case"].values.ravel()),
             ),
             Column("constructed", tuple(map(Name, how))),
             Column("mismatch", np.array(mismatch)),
@@ -431,7 +431,7 @@ def _instant(results: CentreResults, sample: int) -> Iterator[Block]:
 
 def _axes_chapter(results: CentreResults) -> dict[str, Chapter]:
     """Instantaneous axes of the links against the frame at the instants; no chapter where none of them is reached."""
-    statuses = results.motion["status"].to_numpy()
+    statuses = results.motion["status"].values
     reached = [sample for sample, status in enumerate(statuses) if status == Status.OK]
     if not reached:
         return {}
@@ -453,7 +453,7 @@ def _axes(results: CentreResults, sample: int) -> Table:
     links = results.mechanism.links.items()
     names = [name for name, link in links if len(link.coordinates) > 1 and f"{name},{FRAME}" in given]
     found = results.centres.isel(sample=sample).sel(pair=[f"{name},{FRAME}" for name in names])
-    ends, speeds = _without_rounding(found["centre"].to_numpy()), np.abs(found["relative_speed"].to_numpy())
+    ends, speeds = _without_rounding(found["centre"].values), np.abs(found["relative_speed"].values)
     return Table(
         (
             Column("link", tuple(map(Name, names)), head=Sentence("link")),

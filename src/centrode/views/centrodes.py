@@ -53,8 +53,8 @@ def sheet(results: CentrodeResults) -> Sheet:
 def _rolling_facts(results: CentrodeResults) -> Iterator[Fact]:
     """Bodies, pieces, arcs rolled and what they differ by."""
     mechanism, found = results.mechanism, results.centrodes
-    pieces = found["centrode_piece"].to_numpy()
-    arcs = [found[name].to_numpy() for name in ("fixed_arc", "moving_arc")]
+    pieces = found["centrode_piece"].values
+    arcs = [found[name].values for name in ("fixed_arc", "moving_arc")]
     rolled = [sum(_last(arc[pieces == piece]) for piece in np.unique(pieces[pieces >= 0])) for arc in arcs]
     if _goes_to_infinity(results):
         rolled = [math.inf, math.inf]
@@ -77,7 +77,7 @@ def _goes_to_infinity(results: CentrodeResults) -> bool:
     if results.mechanism.space != "plane":
         return False
     found = results.centrodes
-    pieces, status = found["centrode_piece"].to_numpy(), found["status"].to_numpy()
+    pieces, status = found["centrode_piece"].values, found["status"].values
     turns_back = (pieces[1:] != pieces[:-1]) & (pieces[1:] >= 0) & (pieces[:-1] >= 0)
     absent = (pieces < 0) & np.isin(status, (Status.OK, Status.CUT_OFF))
     return bool(turns_back.any() or absent.any())
@@ -99,11 +99,11 @@ def _bent(results: CentrodeResults, sample: int) -> Iterator[Fact]:
     assert results.curvature is not None
     here = results.curvature.isel(sample=sample)
     yield Fact(Sentence("place"), instant_place(results.mechanism, results.curvature, sample))
-    yield Fact(Sentence("pole"), place_text(here["pole"].to_numpy()))
-    yield Fact(Sentence("inflection pole"), place_text(here["inflection_pole"].to_numpy()))
+    yield Fact(Sentence("pole"), place_text(here["pole"].values))
+    yield Fact(Sentence("inflection pole"), place_text(here["inflection_pole"].values))
     yield Fact(Sentence("diameter of the inflection circle"), _length(float(here["inflection_diameter"])))
-    yield Fact(Sentence("Ball's point"), place_text(here["ball_point"].to_numpy()))
-    bends, centres = here["path_curvature"].to_numpy(), here["curvature_centre"].to_numpy()
+    yield Fact(Sentence("Ball's point"), place_text(here["ball_point"].values))
+    bends, centres = here["path_curvature"].values, here["curvature_centre"].values
     for name, bend, centre in zip(here["point"].values, bends, centres, strict=True):
         # on the inflection circle the curvature is rounding, and its centre is not given
         straight = np.isfinite(bend) and not np.isfinite(centre).all()
@@ -115,18 +115,18 @@ def _file(results: CentrodeResults) -> Table:
     """Both curves, one row a sample."""
     found, spherical = results.centrodes, results.mechanism.space == "sphere"
     unit, arc = ("1", "rad") if spherical else ("m", "m")
-    pieces = found["centrode_piece"].to_numpy()
-    words = tuple(Name(Status(int(code)).word) for code in found["status"].to_numpy())
+    pieces = found["centrode_piece"].values
+    words = tuple(Name(Status(int(code)).word) for code in found["status"].values)
     return Table(
         (
             *instant_columns(found, np.arange(len(pieces))),
             *(
-                Column(f"{name}_{axis}", found[name].to_numpy()[:, number], unit)
+                Column(f"{name}_{axis}", found[name].values[:, number], unit)
                 for name in ("fixed_centrode", "moving_centrode")
                 for number, axis in enumerate("xyz" if spherical else "xy")
             ),
             Column("piece", np.where(pieces >= 0, pieces, np.nan), whole=True),
-            *(Column(name, found[name].to_numpy(), arc) for name in ("fixed_arc", "moving_arc")),
+            *(Column(name, found[name].values, arc) for name in ("fixed_arc", "moving_arc")),
             Column("status", words),
         )
     )
@@ -138,7 +138,7 @@ def _pictures(results: CentrodeResults) -> Iterator[tuple[str, Scene]]:
     if results.instants is None:
         return
     count = results.instants.sizes["sample"]
-    for sample, status in enumerate(results.instants["status"].to_numpy()):
+    for sample, status in enumerate(results.instants["status"].values):
         if status in (Status.OK, Status.CUT_OFF):
             name = "curvature" if count == 1 else f"curvature-{sample + 1}"
             yield name, _curvature_scene(results, sample)
@@ -147,7 +147,7 @@ def _pictures(results: CentrodeResults) -> Iterator[tuple[str, Scene]]:
 def _rolling_scene(results: CentrodeResults) -> Scene:
     """Both centrodes with the linkage, where one touches the other."""
     mechanism, found = results.mechanism, results.centrodes
-    pieces = found["centrode_piece"].to_numpy().astype(np.intp)
+    pieces = found["centrode_piece"].values.astype(np.intp)
     against, link = body_text(mechanism, results.against), body_text(mechanism, results.link)
     spherical = mechanism.space == "sphere"
     legend: tuple[Text, ...] = (
@@ -166,7 +166,7 @@ def _rolling_scene(results: CentrodeResults) -> Scene:
         Title(mechanism.title),
         Linkage(mechanism, results.motion),
         curves=tuple(
-            CarriedCurve(kind, body, found[name].to_numpy(), pieces)
+            CarriedCurve(kind, body, found[name].values, pieces)
             for kind, (body, name) in zip(kinds, bodies, strict=True)
         ),
         legend=tuple(zip(kinds, legend, strict=True)),
@@ -186,7 +186,7 @@ def _curvature_scene(results: CentrodeResults, sample: int) -> Scene:
         "inflection_pole": Symbol("W"),
         "ball_point": Symbol("U"),
     }
-    places = {name: here[name].to_numpy() for name in names}
+    places = {name: here[name].values for name in names}
     circle, cubic = _circle(places["pole"], places["inflection_pole"]), _cubic(here)
     return Scene(
         Sentence("Curvature of the paths of {link}", link=Name(results.link)),
@@ -221,7 +221,7 @@ def _circle(pole: Array, end: Array) -> Array:
 
 def _cubic(here: xr.Dataset) -> Array:
     """(x^2 + y^2)(a x + b y) = x y in the pole's axes, by the direction from the pole."""
-    a, b = here["stationary_cubic"].to_numpy()
+    a, b = here["stationary_cubic"].values
     tangent = float(here["pole_tangent"])
     turns = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 4 * STEPS)
     slope = a * np.cos(turns) + b * np.sin(turns)
@@ -231,19 +231,19 @@ def _cubic(here: xr.Dataset) -> Array:
     radius[beyond] = np.nan  # it goes to infinity along its asymptote
     angle = turns + tangent
     return np.asarray(
-        here["pole"].to_numpy() + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        here["pole"].values + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     )
 
 
 def _radii(results: CentrodeResults, here: xr.Dataset, sample: int) -> Iterator[StraightLine]:
     """From points to the centres of curvature of their paths."""
     assert results.instants is not None
-    fixed, moving = results.mechanism.frame.coordinates, results.instants["point"].to_numpy().tolist()
-    for name, centre in zip(here["point"].values.tolist(), here["curvature_centre"].to_numpy(), strict=True):
+    fixed, moving = results.mechanism.frame.coordinates, results.instants["point"].values.tolist()
+    for name, centre in zip(here["point"].values.tolist(), here["curvature_centre"].values, strict=True):
         place = (
             np.asarray(fixed[name], dtype=float)
             if name in fixed
-            else results.instants["position"].sel(point=name).to_numpy()[sample]
+            else results.instants["position"].sel(point=name).values[sample]
             if name in moving
             else np.full(2, np.nan)
         )

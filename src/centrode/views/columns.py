@@ -128,15 +128,15 @@ def motion_table(dataset: xarray.Dataset, points: Sequence[str] | None = None) -
     if extra := set(dataset["status"].dims) - {"sample"}:
         raise ValueError(f"a table shows one motion: select along {sorted(map(str, extra))} first")
     selected = dataset if points is None else dataset.sel(point=list(points))
-    columns = [Column(name, values.to_numpy(), unit) for name, unit, values in numeric_columns(selected)]
-    residual = Column("residual", dataset["residual"].to_numpy())
+    columns = [Column(name, values.values, unit) for name, unit, values in numeric_columns(selected)]
+    residual = Column("residual", dataset["residual"].values)
     return Table((*columns, status_column(dataset["status"]), residual))
 
 
 def coefficients_table(dataset: xarray.Dataset, points: Sequence[str]) -> Table:
     """The table of kinematic coefficients by each drive, one row a sample; of the points named."""
     chosen = dataset.sel(point=list(points))
-    columns = [Column(name, values.to_numpy(), unit) for name, unit, values in _coefficient_columns(chosen)]
+    columns = [Column(name, values.values, unit) for name, unit, values in _coefficient_columns(chosen)]
     return Table((*columns, status_column(dataset["status"])))
 
 
@@ -173,7 +173,7 @@ def _units_by_drive(values: xarray.DataArray, count: int) -> list[str]:
 
 def status_column(status: xarray.DataArray) -> Column:
     """What each sample is worth, in the words of files."""
-    return Column("status", tuple(Name(Status(code).word) for code in status.to_numpy().tolist()))
+    return Column("status", tuple(Name(Status(code).word) for code in status.values.tolist()))
 
 
 def rows_shown(count: int, most: int = SHOWN_ROWS) -> tuple[int, ...]:
@@ -200,7 +200,7 @@ def counted_statuses(status: NDArray[np.int8]) -> Text:
 
 def instant_columns(dataset: xarray.Dataset, samples: NDArray[np.intp]) -> Iterator[Column]:
     """Time and values of the drives of some samples, which may come more than once."""
-    yield Column("time", dataset["time"].to_numpy()[samples], "s")
-    values = dataset["drive_value"].to_numpy()[samples]
+    yield Column("time", dataset["time"].values[samples], "s")
+    values = dataset["drive_value"].values[samples]
     for number, (name, unit) in enumerate(zip(dataset["drive"].values, drive_units(dataset), strict=True)):
         yield Column(f"drive_{name}", values[:, number], unit)

@@ -45,7 +45,7 @@ def stress(value: float) -> Number:
 
 def over_carrier(dataset: xr.Dataset) -> Abscissa:
     """The angle of the carrier as an abscissa."""
-    phi, quantity = dataset["carrier_angle"].to_numpy(), QUANTITIES["carrier_angle"]
+    phi, quantity = dataset["carrier_angle"].values, QUANTITIES["carrier_angle"]
     order = np.argsort(phi, kind="stable")
     label = AxisLabel(Sentence(quantity.long_name), Symbol(quantity.symbol), "rad")
     return Abscissa(label, phi[order], order)
@@ -54,12 +54,12 @@ def over_carrier(dataset: xr.Dataset) -> Abscissa:
 def carrier_table(dataset: xr.Dataset, variables: Sequence[str]) -> Table:
     """Variables over the angle of the carrier, one row a sample, with their status where it is known."""
     columns = [
-        _column(header, unit, values.to_numpy())
+        _column(header, unit, values.values)
         for variable in ("carrier_angle", *variables)
         for header, unit, values in columns_of(dataset[variable], variable)
     ]
     if "status" in dataset:
-        words = tuple(Name(Status(code).word) for code in dataset["status"].to_numpy().tolist())
+        words = tuple(Name(Status(code).word) for code in dataset["status"].values.tolist())
         columns.append(Column("status", words))
     return Table(tuple(columns))
 
@@ -73,9 +73,9 @@ def _column(header: str, unit: str, values: np.ndarray) -> Column:
 
 def course(dataset: xr.Dataset, variables: Sequence[tuple[str, str]], caption: Sentence) -> Table:
     """Variables at even steps of the carrier under their letters, stresses in megapascals."""
-    columns = [Column("carrier_angle", dataset["carrier_angle"].to_numpy(), "rad", Expression("phi"))]
+    columns = [Column("carrier_angle", dataset["carrier_angle"].values, "rad", Expression("phi"))]
     for name, letter in variables:
-        unit, values = unit_of(dataset[name]) or "1", dataset[name].to_numpy()
+        unit, values = unit_of(dataset[name]) or "1", dataset[name].values
         scale, shown = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
         columns.append(Column(name, scale * values, shown, Expression(letter)))
     return Table(tuple(columns), caption, rows_shown(dataset.sizes["sample"]))

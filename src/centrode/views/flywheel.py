@@ -270,7 +270,7 @@ def _size(wheel: Wheel) -> Text:
 def _pictures(results: MachineResults) -> Iterator[tuple[str, Picture]]:
     """Figures by name; those without a curve are left out."""
     mechanism, steady = results.mechanism, results.steady
-    motion, turned = PlottedMotion(mechanism, steady), steady["turned"].to_numpy()
+    motion, turned = PlottedMotion(mechanism, steady), steady["turned"].values
     abscissa, title = over_samples(quantity_label("turned"), turned), Title(mechanism.title)
     plots = {
         "moments": (
@@ -326,8 +326,8 @@ def _pictures(results: MachineResults) -> Iterator[tuple[str, Picture]]:
 
 def _wittenbauer(steady: xr.Dataset, mechanism: Title) -> CurveDiagram:
     """Work over the inertia of the links, with the tangents of the least and the greatest speed."""
-    inertia = steady["inertia_of_links"].to_numpy()
-    work = (steady["energy_change"] + steady["energy_of_links"]).to_numpy()
+    inertia = steady["inertia_of_links"].values
+    work = (steady["energy_change"] + steady["energy_of_links"]).values
     reach = np.array([0.0, 1.08 * float(inertia.max())])
     slopes, starts = steady.attrs["tangent_slopes"], steady.attrs["tangent_intercepts"]
     names = (Sentence("tangent of the least speed"), Sentence("tangent of the greatest speed"))
@@ -370,7 +370,7 @@ def _wittenbauer(steady: xr.Dataset, mechanism: Title) -> CurveDiagram:
 
 def _touching(steady: xr.Dataset, at: float, slope: float, start: float) -> np.ndarray:
     """Where a tangent touches the diagram: its place at the nearest sample, on the line."""
-    inertia = float(np.interp(at, steady["turned"].to_numpy(), steady["inertia_of_links"].to_numpy()))
+    inertia = float(np.interp(at, steady["turned"].values, steady["inertia_of_links"].values))
     return np.array([[inertia, start + slope * inertia]])
 
 
@@ -449,7 +449,7 @@ def _over_cycle(steady: xr.Dataset, columns: tuple[tuple[str, str], ...], captio
     """Variables at even steps of the cycle, under their letters."""
     return Table(
         tuple(
-            Column(name, steady[name].to_numpy(), str(steady[name].attrs["units"]), Expression(letter))
+            Column(name, steady[name].values, str(steady[name].attrs["units"]), Expression(letter))
             for name, letter in columns
         ),
         caption,
@@ -545,7 +545,7 @@ def _energy_check(results: MachineResults) -> Check:
     """Kinetic energy at the real speed less the works has to stay what it is over the cycle."""
     steady = results.steady
     kinetic = 0.5 * (steady.attrs["inertia"] + steady["inertia_of_links"]) * steady["drive_speed"] ** 2
-    energy, size = (kinetic - steady["work"]).to_numpy(), float(kinetic.max())
+    energy, size = (kinetic - steady["work"]).values, float(kinetic.max())
     return Check(
         Sentence(
             "Kinetic energy at the real speed minus the work of all forces is constant over the cycle within {share}."
@@ -638,7 +638,7 @@ def _at(results: MachineResults, here: xr.Dataset) -> Iterator[Block]:
     if mechanism.space == "plane":
         names = tuple(mechanism.links)
         turning = (
-            Column(variable, here[variable].sel(link=list(names)).to_numpy(), unit, Expression(letter))
+            Column(variable, here[variable].sel(link=list(names)).values, unit, Expression(letter))
             for variable, letter, unit in (
                 ("angular_velocity", "omega", "rad/s"),
                 ("angular_acceleration", "epsilon", "rad/s^2"),
@@ -649,12 +649,12 @@ def _at(results: MachineResults, here: xr.Dataset) -> Iterator[Block]:
     moving = (
         Column(
             f"{variable}_{axis}",
-            here[variable].sel(point=list(points), axis=axis).to_numpy(),
+            here[variable].sel(point=list(points), axis=axis).values,
             str(here[variable].attrs["units"]),
             Expression(f"{letter}_{axis}"),
         )
         for variable, letter in (("velocity", "v"), ("acceleration", "a"))
-        for axis in here["axis"].to_numpy().tolist()
+        for axis in here["axis"].values.tolist()
     )
     yield Table((_names("point", Sentence("point"), points), *moving), Sentence("Points"))
 

@@ -241,10 +241,10 @@ def _plot(results: FollowerForceResults) -> Plot:
     for name in PANELS:
         if name in dataset:
             quantity = QUANTITIES[name]
-            values, unit = in_megapascals(dataset[name].to_numpy(), quantity.unit)
+            values, unit = in_megapascals(dataset[name].values, quantity.unit)
             curve = Curve(Sentence(quantity.long_name), values, 0)
             rows.append((CurvePanel(AxisLabel(symbol=Symbol(quantity.symbol), unit=unit), (curve,)),))
-    abscissa = over_samples(quantity_label("cam_angle"), dataset["cam_angle"].to_numpy())
+    abscissa = over_samples(quantity_label("cam_angle"), dataset["cam_angle"].values)
     return Plot(
         Sentence("Forces on the cam and the follower"), Title(results.cam.title), abscissa, tuple(rows)
     )

@@ -257,7 +257,7 @@ def _plot(results: FollowerMotionResults) -> SpanPlot:
     dataset, speed = results.dataset, results.motion.speed
     by_angle, in_time = motion_names(results.motion.swings)
     names = by_angle[:4] if speed is None else (by_angle[0], *in_time)
-    drawn = dataset["drawn_motion"].to_numpy()
+    drawn = dataset["drawn_motion"].values
     ends = (0.0, *(joint.angle for joint in results.joints))
     panels = []
     for order, name in enumerate(names):
@@ -271,7 +271,7 @@ def _plot(results: FollowerMotionResults) -> SpanPlot:
         Sentence("Motion of the follower"),
         Title(results.cam.title),
         AxisLabel(Sentence("angle of the cam"), Symbol("φ"), "rad"),
-        dataset["drawn_angle"].to_numpy(),
+        dataset["drawn_angle"].values,
         ends,
         tuple(curve_name(segment.curve) for segment in results.cam.segments),
         tuple(panels),

@@ -253,7 +253,7 @@ def _table(dataset: xr.Dataset) -> Table:
     """All variables of a dataset, one column for each axis of places, one row a sample."""
     return Table(
         tuple(
-            Column(header, _texts(values) if values.dtype.kind == "U" else values.to_numpy(), unit)
+            Column(header, _texts(values) if values.dtype.kind == "U" else values.values, unit)
             for name, variable in dataset.data_vars.items()
             for header, unit, values in columns_of(variable, str(name))
         )
@@ -261,7 +261,7 @@ def _table(dataset: xr.Dataset) -> Table:
 
 
 def _texts(values: xr.DataArray) -> tuple[Text, ...]:
-    return tuple(map(Name, values.to_numpy().tolist()))
+    return tuple(map(Name, values.values.tolist()))
 
 
 # Figures
@@ -282,7 +282,7 @@ def _curves(results: FollowerProfileResults) -> SpanPlot:
         Sentence("Pressure angle and curvature of the cam"),
         Title(cam.title),
         AxisLabel(Sentence("angle of the cam"), Symbol("φ"), "rad"),
-        dataset["cam_angle"].to_numpy(),
+        dataset["cam_angle"].values,
         tuple(ends),
         (),
         tuple(panels),
@@ -290,7 +290,7 @@ def _curves(results: FollowerProfileResults) -> SpanPlot:
 
 
 def _panel(dataset: xr.Dataset, name: str, *bounds: float | None) -> SpanPanel:
-    quantity, values = QUANTITIES[name], dataset[name].to_numpy()
+    quantity, values = QUANTITIES[name], dataset[name].values
     if name == "profile_bend":
         # beyond is a gap, as between opposite signs of a radius that passes infinity
         values = np.where(np.abs(values) <= MOST_BENT * dataset.attrs["base_radius"], values, math.nan)

@@ -88,11 +88,11 @@ def turn_table(dataset: xr.Dataset) -> Table:
     """All variables over a turn of the cam, one row a sample."""
     names = [str(name) for name, one in dataset.data_vars.items() if one.dims == ("sample",)]
     columns = (
-        Column(name, dataset[name].to_numpy(), unit_of(dataset[name]))
+        Column(name, dataset[name].values, unit_of(dataset[name]))
         for name in ("cam_angle", *names)
         if name != "status"
     )
-    words = tuple(Name(Status(code).word) for code in dataset["status"].to_numpy().tolist())
+    words = tuple(Name(Status(code).word) for code in dataset["status"].values.tolist())
     return Table((*columns, Column("status", words)))
 
 
@@ -103,9 +103,9 @@ def course(
 
     A `brief` table has of rows that are alike, but for the angle, only the first and the last.
     """
-    columns = [Column("cam_angle", dataset["cam_angle"].to_numpy(), "rad", Expression("phi"))]
+    columns = [Column("cam_angle", dataset["cam_angle"].values, "rad", Expression("phi"))]
     for name, letter in variables:
-        values, unit = in_megapascals(dataset[name].to_numpy(), str(dataset[name].attrs["units"]))
+        values, unit = in_megapascals(dataset[name].values, str(dataset[name].attrs["units"]))
         columns.append(Column(name, values, unit, Expression(letter)))
     rows = rows_shown(dataset.sizes["sample"], ROWS)
     if brief:

@@ -470,7 +470,7 @@ def _sizes(check: GraphicCheck) -> Mapping[str, float]:
     """The greatest number of each kind in the motion; of accelerations also that of their normal parts."""
     course = check.diagrams.course
     kinds = ("angular_velocity", "velocity", "angular_acceleration", "acceleration")
-    greatest = {kind: float(np.nanmax(np.abs(course[kind].to_numpy()), initial=0.0)) for kind in kinds}
+    greatest = {kind: float(np.nanmax(np.abs(course[kind].values), initial=0.0)) for kind in kinds}
     spin = greatest["angular_velocity"]
     greatest["angular_acceleration"] = max(greatest["angular_acceleration"], spin**2)
     greatest["acceleration"] = max(greatest["acceleration"], spin * greatest["velocity"])

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def instant_title(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text:
     """The values of the drives at a sample, behind the time where they do not follow from a constant speed."""
-    values = motion["drive_value"].to_numpy()[sample].tolist()
+    values = motion["drive_value"].values[sample].tolist()
     return place_title(mechanism, values, float(motion["time"][sample]))
 
 
@@ -40,7 +40,7 @@ def place_number(value: float, unit: str) -> Number:
 
 def instant_place(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text:
     """Where a sample is: the values of the drives, and its status where it is not ok."""
-    values = motion["drive_value"].to_numpy()[sample]
+    values = motion["drive_value"].values[sample]
     parts = [
         Joined((Name(drive.name), Number(float(value), drive.unit, ".9g", degrees_too=True)), " ")
         for drive, value in zip(mechanism.motion_parameter.drives, values, strict=True)

@@ -69,7 +69,7 @@ def sheet(results: IntegrationResults) -> Sheet:
 def _facts(results: IntegrationResults) -> Iterator[Fact]:
     """Method, range, rows, where it stopped, greatest drift and differences, whether the last row repeats the first."""
     integration = results.integration
-    status, times = integration["status"].to_numpy(), integration["time"].to_numpy()
+    status, times = integration["status"].values, integration["time"].values
     first, last = (place_number(float(times[end]) + 0.0, "s") for end in (0, -1))
     stops = Joined(list(_stops(results)), "; ")
     yield Fact(Sentence("method"), _method(results))
@@ -83,7 +83,7 @@ def _facts(results: IntegrationResults) -> Iterator[Fact]:
 
 
 def _method(results: IntegrationResults) -> Text:
-    attributes, times = results.integration.attrs, results.integration["time"].to_numpy()
+    attributes, times = results.integration.attrs, results.integration["time"].values
     taken = int(attributes["steps_taken"])
     if attributes["method"] == "rk4":
         step = abs(float(times[-1] - times[0])) / max(taken, 1)
@@ -157,14 +157,14 @@ def _events(results: IntegrationResults) -> Text:
 
 
 def _drift(results: IntegrationResults) -> Text:
-    drift = np.abs(results.integration["drift"].to_numpy())
+    drift = np.abs(results.integration["drift"].values)
     if not np.isfinite(drift).any():
         return Sentence("none")
     _row, column = np.unravel_index(int(np.nanargmax(drift)), drift.shape)
     return Sentence(
         "{value} of the greatest length ({constraint})",
         value=Number(float(np.nanmax(drift)), digits=".1e"),
-        constraint=_constraint(str(results.integration["constraint"].to_numpy()[column])),
+        constraint=_constraint(str(results.integration["constraint"].values[column])),
     )
 
 
@@ -187,12 +187,12 @@ def _difference(results: IntegrationResults) -> Text:
     found: list[Text] = []
     for name, dimension in (("angle_difference", "link"), ("position_difference", "point")):
         variable = results.integration[name]
-        values = np.abs(variable.to_numpy())
+        values = np.abs(variable.values)
         if not np.isfinite(values).any():
             continue
         _row, column = np.unravel_index(int(np.nanargmax(values)), values.shape)
         worst = _small(float(np.nanmax(values)), str(variable.attrs["units"]))
-        where = Name(str(results.integration[dimension].to_numpy()[column]))
+        where = Name(str(results.integration[dimension].values[column]))
         found.append(Sentence("{value} ({remark})", value=worst, remark=where) if worst.value else worst)
     return Joined(found) if found else Sentence("none")
 
@@ -220,8 +220,8 @@ def _table(results: IntegrationResults) -> Table:
     """What a motion's table has of it, then drift and differences, and the status."""
     chosen = results.integration.sel(point=list(results.mechanism.moving_points))
     found = [*numeric_columns(chosen), *(one for name in BEHIND for one in columns_of(chosen[name], name))]
-    columns = [Column(name, values.to_numpy(), unit) for name, unit, values in found]
-    words = tuple(Name(Status(code).word) for code in chosen["status"].to_numpy().tolist())
+    columns = [Column(name, values.values, unit) for name, unit, values in found]
+    words = tuple(Name(Status(code).word) for code in chosen["status"].values.tolist())
     return Table((*columns, Column("status", words)))
 
 
@@ -245,7 +245,7 @@ def _pictures(results: IntegrationResults) -> Iterator[tuple[str, Plot]]:
         if any(panel.curves for row in below for panel in row):
             overlay = Overlay(Sentence("integrated"), over, above)
             yield name, Plot(title, Title(mechanism.title), under, below, overlay)
-    shown = (results.integration[name].to_numpy() for name in ("drift", "angle_difference"))
+    shown = (results.integration[name].values for name in ("drift", "angle_difference"))
     if any((np.abs(values) > ROUNDING).any() for values in shown):
         yield ERRORS, _errors(results)
 
@@ -270,14 +270,14 @@ def _errors(results: IntegrationResults) -> Plot:
     drift = CurvePanel(
         AxisLabel(Sentence("drift, greatest length = {one}", one=Number(1, digits="d"))),
         tuple(
-            Curve(_constraint(name), integration["drift"].sel(constraint=name).to_numpy(), place)
-            for place, name in enumerate(integration["constraint"].to_numpy().tolist())
+            Curve(_constraint(name), integration["drift"].sel(constraint=name).values, place)
+            for place, name in enumerate(integration["constraint"].values.tolist())
         ),
     )
     angles = CurvePanel(
         AxisLabel(symbol=Symbol("|Δφ|"), unit="rad"),
         tuple(
-            Curve(Name(name), difference.sel(link=name).to_numpy(), place)
+            Curve(Name(name), difference.sel(link=name).values, place)
             for place, name in enumerate(mechanism.link_names)
             if difference.sel(link=name).any()
         ),
@@ -297,7 +297,7 @@ def _errors(results: IntegrationResults) -> Plot:
 def _chapter(results: IntegrationResults, facts: tuple[Fact, ...]) -> Chapter:
     """The second route: the equations in Cauchy form integrated, beside the closed forms."""
     integration = results.integration
-    worst = float(np.nanmax(np.abs(integration["angle_difference"].to_numpy()), initial=0.0))
+    worst = float(np.nanmax(np.abs(integration["angle_difference"].values), initial=0.0))
     check = Check(
         Sentence(
             "Where the equations can be integrated, they give the angles of the closed-form solution: the "

@@ -72,7 +72,7 @@ def unreached_failure(
 
     `single` places were asked for, not a range.
     """
-    missing = int(np.isin(status.to_numpy(), STATUSES_NOT_REACHED).sum())
+    missing = int(np.isin(status.values, STATUSES_NOT_REACHED).sum())
     if not missing:
         return None
     text: Text = Counted(

@@ -88,7 +88,7 @@ def sheet(results: MotionResults) -> Sheet:
 
 def _facts(results: MotionResults) -> Iterator[Fact]:
     """Range, events, statuses and worst residual."""
-    status = results.motion["status"].to_numpy()
+    status = results.motion["status"].values
     yield Fact(Sentence("range"), _range(results))
     yield Fact(Sentence("limits"), _events(results, LIMIT))
     yield Fact(Sentence("change points"), _events(results, CHANGE_POINT))
@@ -131,13 +131,13 @@ def _range(results: MotionResults) -> Text:
 
 
 def _ends(results: MotionResults, variable: str) -> tuple[float, float]:
-    values = results.motion[variable].to_numpy()
+    values = results.motion[variable].values
     return float(values[0]), float(values[-1])
 
 
 def _extremes(results: MotionResults) -> Iterator[tuple[str, str, float, float]]:
     """Name, unit, least and greatest value of each drive among the samples."""
-    values = results.motion["drive_value"].to_numpy()
+    values = results.motion["drive_value"].values
     for drive, one in zip(results.mechanism.motion_parameter.drives, values.T, strict=True):
         yield drive.name, drive.unit, float(np.min(one)), float(np.max(one))
 
@@ -191,7 +191,7 @@ def _reason(refusal: CentrodeError) -> Name:
 def _scalars(results: MotionResults) -> Iterator[tuple[str, Scalar]]:
     """Numbers of structure and motion, as `summary.json` holds them."""
     data, parameter = results.motion, results.mechanism.motion_parameter
-    unit, values, status = parameter.variable.unit, parameter.values(data), data["status"].to_numpy()
+    unit, values, status = parameter.variable.unit, parameter.values(data), data["status"].values
     yield from _scalars_of_structure(results.check)
     yield "samples", Scalar(len(status), "1")
     yield "first_value", Scalar(float(values[0]), unit)

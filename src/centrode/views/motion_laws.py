@@ -91,17 +91,15 @@ def _names(results: MotionLawResults) -> Column:
 def _coefficients(results: MotionLawResults, caption: Sentence) -> Table:
     """Peak coefficients of each law; a derivative above one that jumps has no bound there."""
     dataset = results.dataset
-    peaks, jumps = dataset["peak_coefficient"], dataset["first_jump"].to_numpy().tolist()
+    peaks, jumps = dataset["peak_coefficient"], dataset["first_jump"].values.tolist()
     columns = [_names(results)]
     for order, letter in zip(ORDERS, LETTERS[1:], strict=True):
-        values = peaks.sel(derivative=order).to_numpy().tolist()
+        values = peaks.sel(derivative=order).values.tolist()
         cells = tuple(
             _peak(value, unbounded=0 < jump < order) for value, jump in zip(values, jumps, strict=True)
         )
         columns.append(Column(f"C_{letter}", cells, head=Expression(f"C_{letter}")))
-    torques = tuple(
-        Number(value, digits=".5g") for value in dataset["torque_coefficient"].to_numpy().tolist()
-    )
+    torques = tuple(Number(value, digits=".5g") for value in dataset["torque_coefficient"].values.tolist())
     ends = tuple(JUMPS[jump] for jump in jumps)
     columns.append(Column("C_T", torques, head=Expression("C_T")))
     columns.append(Column("jumps", ends, head=Sentence("jumps at the ends or inside")))
@@ -122,7 +120,7 @@ def _sizes(results: MotionLawResults) -> Table:
     columns = [_names(results)]
     for order, name, head in zip(ORDERS, names, symbols_of(names), strict=True):
         scale, unit = abs(facts["rise"]) * ((speed or 1.0) / facts["angle"]) ** order, QUANTITIES[name].unit
-        values = (peaks.sel(derivative=order).to_numpy() * scale).tolist()
+        values = (peaks.sel(derivative=order).values * scale).tolist()
         cells = tuple(Number(value, unit, unit_hidden=True) for value in values)
         columns.append(Column(name, cells, unit, head))
     return Table(tuple(columns), Sentence("Greatest magnitudes in this rise"))
@@ -132,11 +130,11 @@ def _shares(results: MotionLawResults) -> Table:
     """Lift and derivatives of each law over the share of the angle, in shares of the rise."""
     shares = results.dataset["rise_share"]
     columns = (
-        Column(f"{letter} {name}", shares.sel(law=name, derivative=order).to_numpy())
+        Column(f"{letter} {name}", shares.sel(law=name, derivative=order).values)
         for name in results.names
         for order, letter in enumerate(LETTERS)
     )
-    return Table((Column("share", results.dataset["share"].to_numpy()), *columns))
+    return Table((Column("share", results.dataset["share"].values), *columns))
 
 
 def _plot(results: MotionLawResults) -> SpanPlot:
@@ -146,7 +144,7 @@ def _plot(results: MotionLawResults) -> SpanPlot:
         SpanPanel(
             AxisLabel(symbol=Symbol(axis)),
             tuple(
-                Curve(curve_name(name), shares.sel(law=name, derivative=order).to_numpy(), place)
+                Curve(curve_name(name), shares.sel(law=name, derivative=order).values, place)
                 for place, name in enumerate(results.names)
             ),
         )
@@ -156,7 +154,7 @@ def _plot(results: MotionLawResults) -> SpanPlot:
         Sentence("Laws of motion for one rise"),
         Title(results.cam.title),
         AxisLabel(Sentence("share of the angle"), Symbol("φ/β")),
-        results.dataset["share"].to_numpy(),
+        results.dataset["share"].values,
         (0.0, 1.0),
         (),
         tuple(panels),

@@ -70,12 +70,12 @@ class PlottedMotion:
     @property
     def components(self) -> tuple[str, ...]:
         """Names of the components of a place."""
-        return tuple(self.dataset["axis"].to_numpy().tolist())
+        return tuple(self.dataset["axis"].values.tolist())
 
     @property
     def joints(self) -> list[str]:
         """Links whose angle is measured from a reference arc."""
-        return self.dataset["joint"].to_numpy().tolist() if "joint" in self.dataset.dims else []
+        return self.dataset["joint"].values.tolist() if "joint" in self.dataset.dims else []
 
 
 def panels_of_links(motion: PlottedMotion, variable: str) -> Rows:
@@ -163,7 +163,7 @@ def quantities_panel(
 ) -> CurvePanel:
     """Curves of several variables of one unit, by their titles; those in `approximate` beside the exact ones."""
     curves = tuple(
-        Curve(Sentence(QUANTITIES[name].long_name), dataset[name].to_numpy(), place, name in approximate)
+        Curve(Sentence(QUANTITIES[name].long_name), dataset[name].values, place, name in approximate)
         for place, name in enumerate(variables)
     )
     scale = max(float(np.max(np.abs(curve.values), initial=0.0)) for curve in curves)
@@ -205,18 +205,18 @@ def _slopes(motion: PlottedMotion, variable: str, kind: str, name: str, part: st
         return None
     derivative = motion.dataset[rate].sel({kind: name})
     if part != MAGNITUDE:
-        return np.asarray((derivative.sel(axis=part) if part else derivative).to_numpy()) / pace
+        return np.asarray((derivative.sel(axis=part) if part else derivative).values) / pace
     vector = motion.dataset[variable].sel({kind: name})
     with np.errstate(divide="ignore", invalid="ignore"):
-        growth = (vector * derivative).sum("axis", skipna=False).to_numpy() / component(vector, MAGNITUDE)
+        growth = (vector * derivative).sum("axis", skipna=False).values / component(vector, MAGNITUDE)
     return np.asarray(np.where(np.isfinite(growth), growth, np.nan) / pace)
 
 
 def component(values: xarray.DataArray, part: str) -> Array:
     """A curve of a scalar, or of a vector's component or magnitude."""
     if part == MAGNITUDE:
-        return np.asarray(functools.reduce(np.hypot, values.transpose("axis", ...).to_numpy()))
-    return np.asarray((values.sel(axis=part) if part else values).to_numpy())
+        return np.asarray(functools.reduce(np.hypot, values.transpose("axis", ...).values))
+    return np.asarray((values.sel(axis=part) if part else values).values)
 
 
 def great_value(dataset: xarray.Dataset, variable: str) -> float:
@@ -232,6 +232,6 @@ def great_value(dataset: xarray.Dataset, variable: str) -> float:
 
 def _peak(dataset: xarray.Dataset, variable: str) -> float:
     """The greatest magnitude of a variable; 0 if it has no value."""
-    values = dataset[variable].to_numpy()
+    values = dataset[variable].values
     known = np.abs(values[np.isfinite(values)])
     return float(known.max()) if known.size else 0.0

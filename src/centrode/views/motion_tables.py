@@ -104,7 +104,7 @@ def _greatest(values: xarray.DataArray | Array) -> float:
 
 
 def _names(labels: xarray.DataArray, head: Sentence) -> Column:
-    return Column("", tuple(map(Name, labels.to_numpy().tolist())), head=head)
+    return Column("", tuple(map(Name, labels.values.tolist())), head=head)
 
 
 def _unit(values: xarray.DataArray) -> str:
@@ -129,7 +129,7 @@ def _points(here: xarray.Dataset) -> Table:
     """Places, then velocities and accelerations by components and size."""
     columns = [_names(here["point"], Sentence("point"))]
     for name, letter in (("position", ""), *RATES):
-        values, size, unit = here[name].to_numpy(), _greatest(here[name]), _unit(here[name])
+        values, size, unit = here[name].values, _greatest(here[name]), _unit(here[name])
         for k, axis in enumerate("xy"):
             head = Expression(f"{letter}_{axis}" if letter else axis)
             columns.append(_column(head, values[:, k], unit, size))
@@ -194,9 +194,9 @@ def _rotations(here: xarray.Dataset) -> Table:
     """Angular velocities and accelerations as vectors in the axes of the frame, with their sizes."""
     columns = [_names(here["link"], Sentence("link"))]
     for name, letter in TURNING[1:]:
-        values = here[name].to_numpy()
+        values = here[name].values
         size, unit = _greatest(values), _unit(here[name])
-        for k, axis in enumerate(here["axis"].to_numpy().tolist()):
+        for k, axis in enumerate(here["axis"].values.tolist()):
             columns.append(_column(Expression(f"{letter}_{axis}"), values[:, k], unit, size))
         columns.append(_column(Expression(letter), np.linalg.norm(values, axis=1), unit, size))
     return Table(tuple(columns), Sentence("Angular velocities and accelerations in the axes of the frame"))
@@ -205,8 +205,8 @@ def _rotations(here: xarray.Dataset) -> Table:
 def _points_on_sphere(here: xarray.Dataset) -> Table:
     columns = [_names(here["point"], Sentence("point"))]
     for name, letter in (("position", ""), *RATES):
-        values, size, unit = here[name].to_numpy(), _greatest(here[name]), _unit(here[name])
-        for k, axis in enumerate(here["axis"].to_numpy().tolist()):
+        values, size, unit = here[name].values, _greatest(here[name]), _unit(here[name])
+        for k, axis in enumerate(here["axis"].values.tolist()):
             head = Expression(f"{letter}_{axis}" if letter else axis)
             columns.append(_column(head, values[:, k], unit, size))
     caption = Sentence("Positions, velocities and accelerations of the points on the unit sphere")
@@ -227,7 +227,7 @@ class _Course(NamedTuple):
 def _over_motion(results: MotionResults, rows: tuple[int, ...]) -> Iterator[Block]:
     """Angles and rates of the links, then places and rates of the points that are asked for."""
     data = results.motion
-    links = data["link"].to_numpy().tolist()
+    links = data["link"].values.tolist()
     groups = [
         [
             _course(data, name, Expression(f"{letter}_({{k}})", k=Number(k, digits="d")), link=link)
@@ -295,8 +295,8 @@ def _front(results: MotionResults) -> list[Column]:
         if drive.link is not None and drive.relative_to == FRAME:
             continue  # its angle stands among those of the links
         unit = mechanism.motion_parameter.drive(drive.id).unit
-        columns.append(Column("", data["drive_value"].to_numpy()[:, k], unit, Name(drive.id)))
-    status = data["status"].to_numpy()
+        columns.append(Column("", data["drive_value"].values[:, k], unit, Name(drive.id)))
+    status = data["status"].values
     if (status != Status.OK).any():
         words = tuple(Sentence(STATUS_WORDS[Status(code)]) for code in status.tolist())
         columns.append(Column("", words, head=Sentence("status")))
@@ -304,7 +304,7 @@ def _front(results: MotionResults) -> list[Column]:
 
 
 def _time(data: xarray.Dataset) -> Column:
-    return Column("", data["time"].to_numpy(), "s", Expression("t"))
+    return Column("", data["time"].values, "s", Expression("t"))
 
 
 def _pages(front: Sequence[Column], groups: Sequence[Sequence[Column]]) -> Iterator[list[Column]]:
@@ -334,11 +334,11 @@ def _hinges_over_motion(results: MotionResults, rows: tuple[int, ...]) -> Table:
         ("joint", "joint_angle", "joint_velocity", "psi"),
         ("guide", "slide", "slide_velocity", "s"),
     ):
-        for name in data[kind].to_numpy().tolist()[:MOST]:
+        for name in data[kind].values.tolist()[:MOST]:
             one = data.sel({kind: name})
             for variable, notation in ((value, letter), (rate, f"dot({letter})")):
                 below = Expression(f"{notation}_({{name}})", name=Name(name))
-                columns.append(Column("", one[variable].to_numpy(), _unit(one[variable]), below))
+                columns.append(Column("", one[variable].values, _unit(one[variable]), below))
     return Table(tuple(columns), Sentence("The motion at equal steps"), rows)
 
 

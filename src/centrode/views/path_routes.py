@@ -201,11 +201,11 @@ def _table(results: PathRoutesResults) -> Table:
     """The routes at the chosen angles, otherwise at a few of the samples, both ends among them."""
     shown = _few(results.dataset) if results.at_instants is None else results.at_instants
     radius, sine, slope = (
-        shown[name].to_numpy().tolist() for name in ("path_radius", "pressure_sine", "pressure_sine_slope")
+        shown[name].values.tolist() for name in ("path_radius", "pressure_sine", "pressure_sine_slope")
     )
     series, steps, rho = Name("(a)"), Name("(b)"), Symbol("ρ")
     columns = (
-        Column("phi", _cells(shown["carrier_angle"].to_numpy().tolist(), "rad", ".6g"), "rad", Symbol("φ")),
+        Column("phi", _cells(shown["carrier_angle"].values.tolist(), "rad", ".6g"), "rad", Symbol("φ")),
         Column("rho_a", _cells(radius[0], "m", ".3f"), "m", Joined((series, rho), " ")),
         Column("rho_b", _cells(radius[1], "m", ".3f"), "m", Joined((steps, rho), " ")),
         Column("eta", _cells(sine[1], "1", ".6f"), head=Joined((steps, Symbol("η")), " ")),
@@ -241,7 +241,7 @@ def _difference(shown: xr.Dataset, name: str, head: Text) -> Column:
     """A small difference of the radius: its size alone matters, nothing is nothing."""
     cells = (
         Number(value, "m", ".1e" if value else ".6g", unit_hidden=True)
-        for value in shown[name].to_numpy().tolist()
+        for value in shown[name].values.tolist()
     )
     return Column(name, tuple(cells), head=head)
 
@@ -250,7 +250,7 @@ def _plot(results: PathRoutesResults) -> Plot:
     """What parts the routes, on a logarithmic scale, with the circle of convergence."""
     curves = []
     for place, (name, text) in enumerate(DIFFERENCES.items()):
-        values = results.dataset[name].to_numpy()
+        values = results.dataset[name].values
         curves.append(Curve(text, np.where(np.abs(values) > LEAST_DRAWN, values, np.nan), place))
     facts = results.dataset.attrs
     radius, circle = facts["radius_of_convergence"], Sentence("circle of convergence")

@@ -38,7 +38,7 @@ def _facts(plan: PositionPlan) -> list[Fact]:
     def shown(value: float) -> Number:
         return place_number(value, parameter.instant.unit)
 
-    reached = int((plan.positions["status"].to_numpy() == Status.OK).sum())
+    reached = int((plan.positions["status"].values == Status.OK).sum())
     counts = {"count": Number(len(values), digits="d"), "reached": Number(reached, digits="d")}
     first = Sentence("position {number}", number=Number(0, digits="d"))
     facts = [Fact(Sentence("positions"), Sentence("{count}, {reached} of them reached", **counts))]
@@ -94,17 +94,17 @@ def _table(plan: PositionPlan) -> Table:
     data = plan.positions
     drive = plan.mechanism.motion_parameter.drives[0]
     count = data.sizes["sample"]
-    ok = data["status"].to_numpy() == Status.OK
+    ok = data["status"].values == Status.OK
     columns = [
         Column(
             "position",
             tuple(Number(number, digits="d") for number in range(count)),
             head=Sentence("position"),
         ),
-        Column(f"drive_{drive.name}", data["drive_value"].to_numpy()[:, 0], drive.unit, Name(drive.name)),
+        Column(f"drive_{drive.name}", data["drive_value"].values[:, 0], drive.unit, Name(drive.name)),
     ]
     for point in plan.points:
-        place = np.where(ok[:, None], data["position"].sel(point=point).to_numpy(), np.nan)
+        place = np.where(ok[:, None], data["position"].sel(point=point).values, np.nan)
         columns += [
             Column(f"{axis}_{point}", place[:, number], "m", Symbol(axis, point))
             for number, axis in enumerate("xy")

@@ -85,7 +85,7 @@ def pictures(results: ReactionResults) -> Iterator[tuple[str, Picture]]:
 
 def _hinges(reactions: xarray.Dataset) -> list[CurvePanel]:
     """Magnitudes at the hinges: one curve of a hinge whose sides are alike, else one of each side."""
-    points, labels = reactions["side_point"].to_numpy(), reactions["side"].to_numpy()
+    points, labels = reactions["side_point"].values, reactions["side"].values
     sizes = _magnitude(reactions["joint_force"])
     curves: Curves = {}
     for point in dict.fromkeys(points.tolist()):
@@ -103,12 +103,12 @@ def _components(reactions: xarray.Dataset) -> list[CurvePanel]:
     """On the sphere: components of the force on the first link of each hinge, a panel for each axis."""
     if "centre_force" not in reactions:
         return []
-    points, labels = reactions["side_point"].to_numpy().tolist(), reactions["side"].to_numpy().tolist()
+    points, labels = reactions["side_point"].values.tolist(), reactions["side"].values.tolist()
     first = [labels[points.index(point)] for point in dict.fromkeys(points)]
     panels = []
-    for axis in reactions["axis"].to_numpy().tolist():
+    for axis in reactions["axis"].values.tolist():
         values = reactions["joint_force"].sel(axis=axis)
-        curves = {side: (side_text(side), values.sel(side=side).to_numpy()) for side in first}
+        curves = {side: (side_text(side), values.sel(side=side).values) for side in first}
         panels += _panels("joint_force", curves, split=True, along=axis)
     return panels
 
@@ -119,7 +119,7 @@ def _centre(reactions: xarray.Dataset) -> list[CurvePanel]:
         return []
     sizes = _magnitude(reactions["centre_force"])
     least = ALIKE * np.nanmax(_magnitude(reactions["joint_force"]), initial=0.0)
-    names = reactions["held"].to_numpy().tolist()
+    names = reactions["held"].values.tolist()
     curves = {
         name: (Name(name), sizes[:, k])
         for k, name in enumerate(names)
@@ -145,7 +145,7 @@ def _others(reactions: xarray.Dataset) -> list[CurvePanel]:
         panels += _panels("guide_moment", {name: one for name, one in moments.items() if np.any(one[1])})
     if "tooth_force" in reactions:
         teeth = reactions["tooth_force"]
-        names = teeth["gear"].to_numpy().tolist()
+        names = teeth["gear"].values.tolist()
         sizes = zip(names, _magnitude(teeth).T, strict=True)
         panels += _panels("tooth_force", {name: (Name(name), size) for name, size in sizes})
     return panels
@@ -156,9 +156,9 @@ def _by_label(values: xarray.DataArray, dimension: str, word: Sentence | None = 
     return {
         f"{name} {word.message if word else ''}".rstrip(): (
             Name(name) if word is None else Joined((Name(name), word), " "),
-            values.sel({dimension: name}).to_numpy(),
+            values.sel({dimension: name}).values,
         )
-        for name in values[dimension].to_numpy().tolist()
+        for name in values[dimension].values.tolist()
     }
 
 
@@ -166,11 +166,11 @@ def _drives(results: ReactionResults) -> list[CurvePanel]:
     """What the drives give, a panel for each unit; beside a single curve its mean over time."""
     given, means = results.reactions["balancing"], {load.key: load.mean for load in results.loads or ()}
     units = str(given.attrs["units"]).split(", ")
-    names = given["drive"].to_numpy().tolist()
+    names = given["drive"].values.tolist()
     panels = []
     for unit in dict.fromkeys(units):
         of_unit = [name for k, name in enumerate(names) if units[k % len(units)] == unit]
-        curves = {name: (Name(name), given.sel(drive=name).to_numpy()) for name in of_unit}
+        curves = {name: (Name(name), given.sel(drive=name).values) for name in of_unit}
         for panel in _panels("balancing", curves, unit):
             if len(panel.curves) == 1:
                 (curve,), mean = panel.curves, means[f"balancing_{of_unit[0]}"]
@@ -186,9 +186,9 @@ def _friction(reactions: xarray.Dataset) -> list[CurvePanel]:
     if "friction_power" not in reactions:
         return []
     power = reactions["friction_power"]
-    labels = power["friction"].to_numpy().tolist()
-    powers = {label: (contact_text(label), power.sel(friction=label).to_numpy()) for label in labels}
-    efficiency = {"efficiency": (Sentence("efficiency"), reactions["efficiency"].to_numpy())}
+    labels = power["friction"].values.tolist()
+    powers = {label: (contact_text(label), power.sel(friction=label).values) for label in labels}
+    efficiency = {"efficiency": (Sentence("efficiency"), reactions["efficiency"].values)}
     return [*_panels("friction_power", powers), *_panels("efficiency", efficiency)]
 
 
@@ -229,11 +229,11 @@ def _panels(
 
 def _size(moment: xarray.DataArray) -> Array:
     """A moment of the plane with its sign, one of the sphere by its magnitude."""
-    return _magnitude(moment) if "axis" in moment.dims else moment.to_numpy()
+    return _magnitude(moment) if "axis" in moment.dims else moment.values
 
 
 def _magnitude(values: xarray.DataArray) -> Array:
-    return np.asarray(np.hypot.reduce(values.transpose(..., "axis").to_numpy(), axis=-1))
+    return np.asarray(np.hypot.reduce(values.transpose(..., "axis").values, axis=-1))
 
 
 # Bearings
@@ -256,7 +256,7 @@ def _hodographs(mechanism: Mechanism, bearings: xarray.Dataset, variable: str) -
     abscissa, symbol = motion_abscissa(mechanism, bearings), QUANTITIES[variable].symbol
     x, y = (AxisLabel(symbol=Symbol(symbol, axis, slanted=True), unit="N") for axis in ("x", "y"))
     for bearing in _each_bearing(bearings):
-        force = bearing[variable].transpose("sample", "axis").to_numpy()
+        force = bearing[variable].transpose("sample", "axis").values
         places = ((value, _between(force, *at)) for value, at in marks)
         known = tuple((value, (float(at[0]), float(at[1]))) for value, at in places if np.isfinite(at).all())
         yield HodographPanel(_bearing_name(bearing), x, y, force, abscissa.order, abscissa.breaks, known)
@@ -304,8 +304,8 @@ def _round_step(reach: float) -> float:
 
 def _wear(bearing: xarray.Dataset) -> SectorRings:
     """Wear of the journal inside and of the bush outside, with the greatest share of each in one sector."""
-    journal, bush = bearing["wear"].transpose("surface", "sector").to_numpy()
-    middles = bearing["sector"].to_numpy()
+    journal, bush = bearing["wear"].transpose("surface", "sector").values
+    middles = bearing["sector"].values
     text = Sentence(
         "greatest in {wide}\njournal {journal}\nbush {bush}",
         wide=Number(360.0 / len(middles), "deg", ".3g", unit_fixed=True),
@@ -341,11 +341,11 @@ def _forces_to_scale(
 
 def _side_forces(here: xarray.Dataset) -> Iterator[VectorOnBody]:
     """The force of the pin on each body at each hinge."""
-    forces = here["joint_force"].transpose("side", "axis").to_numpy().tolist()
+    forces = here["joint_force"].transpose("side", "axis").values.tolist()
     for label, point, body, (x, y) in zip(
-        here["side"].to_numpy().tolist(),
-        here["side_point"].to_numpy().tolist(),
-        here["side_link"].to_numpy().tolist(),
+        here["side"].values.tolist(),
+        here["side_point"].values.tolist(),
+        here["side_link"].values.tolist(),
         forces,
         strict=True,
     ):
@@ -355,7 +355,7 @@ def _side_forces(here: xarray.Dataset) -> Iterator[VectorOnBody]:
 def _guide_forces(mechanism: Mechanism, here: xarray.Dataset) -> Iterator[VectorOnBody]:
     if "guide_force" in here:
         for guide in mechanism.guides:
-            x, y = here["guide_force"].sel(guide=guide.id).to_numpy().tolist()
+            x, y = here["guide_force"].sel(guide=guide.id).values.tolist()
             yield VectorOnBody(Sentence("guide {name}", name=Name(guide.id)), guide.point, (x, y))
 
 
@@ -379,6 +379,6 @@ def _line(vector: VectorOnBody) -> Text:
 
 def _drive_lines(here: xarray.Dataset) -> Iterator[Text]:
     units = str(here["balancing"].attrs["units"]).split(", ")
-    for k, name in enumerate(here["drive"].to_numpy().tolist()):
-        value = Number(float(here["balancing"].to_numpy()[k]), units[k % len(units)], ".5g")
+    for k, name in enumerate(here["drive"].values.tolist()):
+        value = Number(float(here["balancing"].values[k]), units[k % len(units)], ".5g")
         yield Joined((Sentence("balancing moment or force of drive {name}", name=Name(name)), value), " ")

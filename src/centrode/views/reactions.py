@@ -170,13 +170,13 @@ def scalars(results: ReactionResults) -> Iterator[tuple[str, Scalar]]:
 def _greatest_joint_force(results: ReactionResults) -> tuple[Fact, ...]:
     """The joint force that is greatest over the samples; nothing where none is determined."""
     reactions = results.reactions
-    size = np.hypot.reduce(reactions["joint_force"].to_numpy(), axis=-1)
+    size = np.hypot.reduce(reactions["joint_force"].values, axis=-1)
     if not np.isfinite(size).any():
         return ()
     sample, side = (int(k) for k in np.unravel_index(np.nanargmax(size), size.shape))
     text = Sentence(
         "{side}: {force} at {place}",
-        side=side_text(str(reactions["side"].to_numpy()[side])),
+        side=side_text(str(reactions["side"].values[side])),
         force=Number(float(size[sample, side]), "N"),
         place=_place(results.mechanism, reactions, sample),
     )
@@ -189,13 +189,13 @@ def _greatest_joint_force(results: ReactionResults) -> tuple[Fact, ...]:
 def _facts(results: ReactionResults) -> Iterator[Fact]:
     """What acts and how fast, statuses, what is not determined, friction."""
     mechanism, reactions = results.mechanism, results.reactions
-    links, massless = reactions["link"].to_numpy().tolist(), massless_links(mechanism)
-    yield Fact(Sentence("drives"), enumerate_names(reactions["drive"].to_numpy().tolist()))
+    links, massless = reactions["link"].values.tolist(), massless_links(mechanism)
+    yield Fact(Sentence("drives"), enumerate_names(reactions["drive"].values.tolist()))
     yield Fact(Sentence("links with mass"), enumerate_names(links) if links else Sentence("none"))
     yield Fact(Sentence("massless links"), enumerate_names(massless) if massless else Sentence("none"))
     if "drive_rate" in reactions:
         yield Fact(Sentence("speed of the drive"), _speed(mechanism, reactions))
-    status = reactions["reaction_status"].to_numpy()
+    status = reactions["reaction_status"].values
     counts = tuple(
         Joined((STATUSES[Status(code)], Number(int(np.sum(status == code)))), " ")
         for code in np.unique(status).tolist()
@@ -204,9 +204,9 @@ def _facts(results: ReactionResults) -> Iterator[Fact]:
     if reactions.attrs["undetermined"]:
         yield Fact(Sentence("not determined"), contacts_text(reactions.attrs["undetermined"]))
     if "tooth_force" in reactions:
-        absent = np.isnan(reactions["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
-        gears = reactions["gear"].to_numpy()[absent].tolist()
-        if gears and np.isfinite(reactions["gear_moment"].to_numpy()).any():
+        absent = np.isnan(reactions["tooth_force"].sel(axis="x").values).all(axis=0)
+        gears = reactions["gear"].values[absent].tolist()
+        if gears and np.isfinite(reactions["gear_moment"].values).any():
             text = Sentence("{gears}: the radii are not defined", gears=enumerate_names(gears))
             yield Fact(Sentence("no tooth force"), text)
     if "friction" in reactions.dims:
@@ -216,7 +216,7 @@ def _facts(results: ReactionResults) -> Iterator[Fact]:
 def _speed(mechanism: Mechanism, reactions: xarray.Dataset) -> Text:
     """The speed of the drive, or from where to where it changes, and whose it is."""
     unit = mechanism.motion_parameter.drives[0].speed_unit
-    rates = reactions["drive_rate"].to_numpy()
+    rates = reactions["drive_rate"].values
     low, high = (Number(float(rate), unit, unit_fixed=True) for rate in (np.min(rates), np.max(rates)))
     alike = f"{low.value:.6g}" == f"{high.value:.6g}"
     speed: Text = low if alike else Sentence("{first} to {last}", first=low, last=high)
@@ -284,7 +284,7 @@ def _residuals(reactions: xarray.Dataset) -> tuple[Fact, ...]:
 def _reactions_table(reactions: xarray.Dataset) -> Table:
     """All variables, one row a sample; what does not exist or is not determined is an empty field."""
     columns = (
-        Column(name, values.to_numpy(), unit) for name, unit, values in force_columns(reactions, VARIABLES)
+        Column(name, values.values, unit) for name, unit, values in force_columns(reactions, VARIABLES)
     )
     return Table((*columns, status_column(reactions["reaction_status"])))
 
@@ -390,13 +390,13 @@ def _losses(reactions: xarray.Dataset) -> Iterator[Table]:
     """Greatest power and work of friction at each contact, and its share of the work; nothing without friction."""
     if "friction" not in reactions.dims:
         return
-    works = reactions["friction_work"].to_numpy()
+    works = reactions["friction_work"].values
     shares = np.full(works.shape, np.nan)
     if np.isfinite(works).all() and works.sum() != 0.0:
         shares = 100.0 * works / works.sum()
-    powers = reactions["friction_power"].to_numpy()
+    powers = reactions["friction_power"].values
     greatest = np.fmax.reduce(powers, axis=0)
-    contacts = tuple(map(contact_text, reactions["friction"].to_numpy().tolist()))
+    contacts = tuple(map(contact_text, reactions["friction"].values.tolist()))
     yield Table(
         (
             Column("friction", contacts, head=Sentence("friction at")),
@@ -414,10 +414,10 @@ def _numbers(values: Array, digits: str) -> tuple[Text, ...]:
 
 def _instant_table(mechanism: Mechanism, reactions: xarray.Dataset, sample: int, caption: Sentence) -> Table:
     """All reactions at one sample: components and magnitude, or the one number; in the plane directions."""
-    axes = reactions["axis"].to_numpy().tolist()
+    axes = reactions["axis"].values.tolist()
     series = list(reaction_series(mechanism, reactions))
     noises = _noises(series)
-    status = Status(int(reactions["reaction_status"].to_numpy()[sample]))
+    status = Status(int(reactions["reaction_status"].values[sample]))
     missing = NOT_DETERMINED if status in (Status.OK, Status.CUT_OFF) else STATUSES[status]
     rows = [_at_sample(one.values[sample], len(axes), noises[one.unit], missing) for one in series]
     *components, magnitudes, directions = zip(*rows, strict=True)
@@ -600,7 +600,7 @@ def _instants(mechanism: Mechanism, instants: ReactionsAtInstants) -> Iterator[S
     """At each instant inertia forces, all reactions, the balancing moment by virtual work."""
     for k in range(instants.reactions.sizes["sample"]):
         title = instant_title(mechanism, instants.motion, k)
-        if not np.isfinite(instants.reactions["frame_force"].to_numpy()[k]).all():
+        if not np.isfinite(instants.reactions["frame_force"].values[k]).all():
             missing = Sentence("The mechanism does not reach this position: there are no values.")
             yield Section(title, (Paragraph(missing),))
             continue
@@ -621,14 +621,14 @@ def _inertia(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -> Ite
     The table is in SI: products of the columns are to be found in it.
     """
     here, flat = instants.reactions.isel(sample=k), mechanism.space == "plane"
-    names = tuple(map(Name, here["link"].to_numpy().tolist()))
+    names = tuple(map(Name, here["link"].values.tolist()))
     if not names:
         return
     columns = [Column("link", names, head=Sentence("link"))]
     if flat and mechanism.motion_parameter.is_uniform and "drive_rate" in here:
         columns += _accelerations(mechanism, instants.motion.isel(sample=k), float(here["drive_rate"]))
-    force, moment = here["inertia_force"].to_numpy(), here["inertia_moment"].to_numpy()
-    axes = here["axis"].to_numpy().tolist()
+    force, moment = here["inertia_force"].values, here["inertia_moment"].values
+    axes = here["axis"].values.tolist()
     if np.isfinite(force).all() and force.any():
         columns += [_in_si(f"Phi_{axis}", force[:, n], "N") for n, axis in enumerate(axes)]
     if moment.ndim == 1:
@@ -674,7 +674,7 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
     symbol = "M_upright(b)" if unit == "N m" else "F_upright(b)"
     yield Paragraph(Sentence("By virtual work, at the constant speed of the drive:"))
     yield Formula(((symbol, "1/2 J' dot(q)^2 - M", with_numbers, Number(work, unit, unit_fixed=True)),))
-    balancing = float(reactions["balancing"].to_numpy().flat[0])
+    balancing = float(reactions["balancing"].values.flat[0])
     if np.isfinite(balancing):
         yield Check(
             Sentence("The reactions give the same within {share} of its terms."),
@@ -686,7 +686,7 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
 
 def _checks(reactions: xarray.Dataset) -> Iterator[Check]:
     """Three sums that are not used to find the reactions; allowed is what rounding can make wrong of them."""
-    loss = reactions["reaction_loss"].to_numpy()
+    loss = reactions["reaction_loss"].values
     allowed = float(np.max(loss, where=np.isfinite(loss) & (loss < 1.0), initial=0.0))
     for text, name in (
         (

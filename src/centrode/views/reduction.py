@@ -103,9 +103,7 @@ def sheet(results: ReductionResults) -> Sheet:
 
 def reduction_table(dataset: xr.Dataset) -> Table:
     """One row a sample, each quantity with its parts; inertias and moments in SI."""
-    columns = (
-        Column(name, values.to_numpy(), unit) for name, unit, values in force_columns(dataset, VARIABLES)
-    )
+    columns = (Column(name, values.values, unit) for name, unit, values in force_columns(dataset, VARIABLES))
     return Table((*columns, status_column(dataset["status"])))
 
 
@@ -151,15 +149,15 @@ def _label(mechanism: Mechanism, one: PartExtremes) -> Text:
 def _facts(results: ReductionResults) -> Iterator[Fact]:
     """Masses, loads, speed of the drive, jumps and statuses."""
     mechanism, reduction = results.mechanism, results.reduction
-    loads = tuple(load_text(mechanism, str(label)) for label in reduction["load"].to_numpy())
-    yield Fact(Sentence("drives"), names_text(reduction["drive"].to_numpy()))
-    yield Fact(Sentence("links with mass"), names_text(reduction["link"].to_numpy()))
+    loads = tuple(load_text(mechanism, str(label)) for label in reduction["load"].values)
+    yield Fact(Sentence("drives"), names_text(reduction["drive"].values))
+    yield Fact(Sentence("links with mass"), names_text(reduction["link"].values))
     yield Fact(Sentence("massless links"), names_text(massless_links(mechanism)))
     yield Fact(Sentence("loads"), Joined(loads) if loads else Sentence("none"))
     if "drive_rate" in reduction:
         yield Fact(Sentence("speed of the drive"), _speed(results))
         yield Fact(Sentence("jumps and kinks of the loads at"), _jumps(results))
-    status = reduction["status"].to_numpy()
+    status = reduction["status"].values
     counts = tuple(
         Joined((Sentence(STATUS_WORDS[Status(code)]), Number(int(np.sum(status == code)), digits="d")), " ")
         for code in np.unique(status)
@@ -174,7 +172,7 @@ def names_text(names: Sequence[str] | NDArray[np.str_]) -> Text:
 
 def _speed(results: ReductionResults) -> Text:
     reduction, unit = results.reduction, results.mechanism.motion_parameter.drives[0].speed_unit
-    rates = reduction["drive_rate"].to_numpy()
+    rates = reduction["drive_rate"].values
     low, high = (Number(float(rate), unit, unit_fixed=True) for rate in (np.min(rates), np.max(rates)))
     # a rate that is computed at each sample may differ in its last digits only
     constant = format(low.value, low.digits) == format(high.value, high.digits)
@@ -185,7 +183,7 @@ def _speed(results: ReductionResults) -> Text:
 
 
 def _jumps(results: ReductionResults) -> Text:
-    jumps, unit = results.reduction["jumps"].to_numpy(), results.mechanism.motion_parameter.drives[0].unit
+    jumps, unit = results.reduction["jumps"].values, results.mechanism.motion_parameter.drives[0].unit
     texts: list[Text] = [Number(float(at), unit, ".9g", degrees_too=True) for at in jumps[:JUMPS_SHOWN]]
     if len(jumps) > JUMPS_SHOWN:
         texts.append(Sentence("and {n} more", n=Number(len(jumps) - JUMPS_SHOWN, digits="d")))
@@ -220,31 +218,31 @@ def _of_one_drive(mechanism: Mechanism, dataset: xr.Dataset) -> dict[str, tuple[
 def _parts(mechanism: Mechanism, dataset: xr.Dataset, name: str, dimension: str) -> CurvePanel:
     """The parts of a quantity along links or loads, and their sum."""
     parts = dataset[f"{name}_part"]
-    curves = {str(label): parts.sel({dimension: label}).to_numpy() for label in parts[dimension].to_numpy()}
+    curves = {str(label): parts.sel({dimension: label}).values for label in parts[dimension].values}
     texts: dict[str, Text] = {
         label: load_text(mechanism, label) if dimension == "load" else Name(label) for label in curves
     }
     axis = AxisLabel(symbol=Symbol(QUANTITIES[name].symbol), unit=str(parts.attrs["units"]), unit_fixed=True)
-    return _panel(axis, curves, texts, dataset[name].to_numpy())
+    return _panel(axis, curves, texts, dataset[name].values)
 
 
 def _of_several(mechanism: Mechanism, dataset: xr.Dataset) -> dict[str, tuple[Sentence, list[CurvePanel]]]:
-    drives = [str(name) for name in dataset["drive"].to_numpy()]
+    drives = [str(name) for name in dataset["drive"].values]
     forces, matrix = dataset["generalised_force_part"], dataset["inertia_matrix"]
     units = str(forces.attrs["units"]).split(", ")
-    labels = [str(label) for label in forces["load"].to_numpy()]
+    labels = [str(label) for label in forces["load"].values]
     texts = {label: load_text(mechanism, label) for label in labels}
     panels = []
     for number, drive in enumerate(drives):
         chosen = forces.isel(drive=number)
-        curves = {label: chosen.sel(load=label).to_numpy() for label in labels}
+        curves = {label: chosen.sel(load=label).values for label in labels}
         # a drive may have any name, so it stands beside the letter and not below it
         text = Joined((Symbol(QUANTITIES["generalised_force"].symbol), Name(drive)), " ")
         axis = AxisLabel(text, unit=units[number % len(units)], unit_fixed=True)
-        panels.append(_panel(axis, curves, texts, dataset["generalised_force"].isel(drive=number).to_numpy()))
+        panels.append(_panel(axis, curves, texts, dataset["generalised_force"].isel(drive=number).values))
     pairs = [(i, j) for i in range(len(drives)) for j in range(i, len(drives))]
     elements = tuple(
-        Curve(Joined((Name(drives[i]), Name(drives[j]))), matrix.isel(drive=i, drive_2=j).to_numpy(), place)
+        Curve(Joined((Name(drives[i]), Name(drives[j]))), matrix.isel(drive=i, drive_2=j).values, place)
         for place, (i, j) in enumerate(pairs)
     )
     unit = str(matrix.attrs["units"])
@@ -343,7 +341,7 @@ def _course(results: ReductionResults) -> Table:
     parameter, data = results.mechanism.motion_parameter, results.reduction
     head = Name(parameter.drives[0].name) if parameter.is_uniform else Expression(parameter.instant.symbol)
     quantities = (
-        Column(name, data[name].to_numpy(), str(data[name].attrs["units"]), Expression(letter))
+        Column(name, data[name].values, str(data[name].attrs["units"]), Expression(letter))
         for name, letter in IN_TABLE
     )
     return Table(
@@ -435,7 +433,7 @@ def _shares(links: Sequence[LinkMotion]) -> Iterator[tuple[Leaf, ...]]:
 
 def _totals(here: xr.Dataset) -> Iterator[tuple[Leaf, ...]]:
     for name, symbol in IN_TABLE:
-        shares, unit = here[f"{name}_part"].to_numpy().tolist(), str(here[name].attrs["units"])
+        shares, unit = here[f"{name}_part"].values.tolist(), str(here[name].attrs["units"])
         total = Number(float(here[name]), unit, unit_fixed=True)
         if len(shares) > 1:
             yield symbol, sum_of(shares), total
@@ -444,9 +442,9 @@ def _totals(here: xr.Dataset) -> Iterator[tuple[Leaf, ...]]:
 
 
 def _table_of_loads(mechanism: Mechanism, here: xr.Dataset) -> Table:
-    names = tuple(load_text(mechanism, str(name)) for name in here["load"].to_numpy())
+    names = tuple(load_text(mechanism, str(name)) for name in here["load"].values)
     unit = str(here["reduced_moment"].attrs["units"])
-    shares = Column("share", here["reduced_moment_part"].to_numpy(), unit, Expression("M"))
+    shares = Column("share", here["reduced_moment_part"].values, unit, Expression("M"))
     return Table((Column("load", names, head=Sentence("load")), shares), Sentence("Share of each load"))
 
 

@@ -41,21 +41,21 @@ def sheet(results: RegionResults) -> Sheet:
 def _facts(region: xarray.Dataset) -> Iterator[Fact]:
     """Ranges of both drives, how much of the grid is reached, and how many limits bound it."""
     for number, dimension in enumerate(DIMENSIONS):
-        values, unit = region[dimension].to_numpy(), _unit(region, dimension)
+        values, unit = region[dimension].values, _unit(region, dimension)
         ends = Sentence(
             "{first} to {last}",
             first=place_number(float(values[0]), unit),
             last=place_number(float(values[-1]), unit),
         )
-        yield Fact(Sentence("drive {name}", name=Name(str(region["drive"].to_numpy()[number]))), ends)
-    status = region["status"].to_numpy()
+        yield Fact(Sentence("drive {name}", name=Name(str(region["drive"].values[number]))), ends)
+    status = region["status"].values
     yield Fact(
         Sentence("grid nodes"), Joined((Number(status.size, digits="d"), counted_statuses(status)), ": ")
     )
     around = Sentence(
         "{n}, {bounds} of them around the region",
         n=Number(region.sizes["border"], digits="d"),
-        bounds=Number(int(region["border_reached"].to_numpy().sum()), digits="d"),
+        bounds=Number(int(region["border_reached"].values.sum()), digits="d"),
     )
     yield Fact(Sentence("limits on grid lines"), around)
 
@@ -66,23 +66,23 @@ def _unit(region: xarray.Dataset, dimension: str) -> str:
 
 def _nodes(region: xarray.Dataset) -> Table:
     """One row a grid node."""
-    grid = np.meshgrid(*(region[dimension].to_numpy() for dimension in DIMENSIONS), indexing="ij")
-    words = tuple(Name(Status(code).word) for code in region["status"].to_numpy().ravel().tolist())
-    margin = Column("margin", region["margin"].to_numpy().ravel())
+    grid = np.meshgrid(*(region[dimension].values for dimension in DIMENSIONS), indexing="ij")
+    words = tuple(Name(Status(code).word) for code in region["status"].values.ravel().tolist())
+    margin = Column("margin", region["margin"].values.ravel())
     return Table((*_drives(region, [values.ravel() for values in grid]), Column("status", words), margin))
 
 
 def _border(region: xarray.Dataset) -> Table:
     """One row a limit on a grid line."""
-    groups = tuple(map(Name, map(str, region["border_group"].to_numpy())))
-    bounds = tuple(Name("yes" if one else "no") for one in region["border_reached"].to_numpy())
-    values = region["border_value"].to_numpy()
+    groups = tuple(map(Name, map(str, region["border_group"].values)))
+    bounds = tuple(Name("yes" if one else "no") for one in region["border_reached"].values)
+    values = region["border_value"].values
     drives = _drives(region, [values[:, number] for number in range(len(DIMENSIONS))])
     return Table((*drives, Column("group", groups), Column("bounds the region", bounds)))
 
 
 def _drives(region: xarray.Dataset, values: list[Array]) -> Iterator[Column]:
-    for name, dimension, column in zip(region["drive"].to_numpy(), DIMENSIONS, values, strict=True):
+    for name, dimension, column in zip(region["drive"].values, DIMENSIONS, values, strict=True):
         yield Column(f"drive_{name}", column, _unit(region, dimension))
 
 
@@ -90,8 +90,8 @@ def _diagram(results: RegionResults) -> AreaDiagram:
     """What is reached and what is cut off, the path that the drives take in time, and the initial position."""
     region, mechanism = results.region, results.mechanism
     x, y = (_label(results, number) for number in range(len(DIMENSIONS)))
-    across, up = (region[dimension].to_numpy() for dimension in DIMENSIONS)
-    start = region["initial_value"].to_numpy()
+    across, up = (region[dimension].values for dimension in DIMENSIONS)
+    start = region["initial_value"].values
     return AreaDiagram(
         Sentence("Reachable region of two drives"),
         Title(mechanism.title),
@@ -106,12 +106,12 @@ def _diagram(results: RegionResults) -> AreaDiagram:
 
 
 def _label(results: RegionResults, number: int) -> AxisLabel:
-    name = str(results.region["drive"].to_numpy()[number])
+    name = str(results.region["drive"].values[number])
     return drive_label(results.mechanism.motion_parameter.drive(name))
 
 
 def _areas(region: xarray.Dataset) -> Iterator[Area]:
-    status, margin = region["status"].to_numpy(), region["margin"].to_numpy()
+    status, margin = region["status"].values, region["margin"].values
     for kind, name, drawn in (
         (Status.OK, Sentence("reached"), AreaKind.MAIN),
         (Status.CUT_OFF, Sentence("closes, but cut off"), AreaKind.BESIDE),
@@ -132,7 +132,7 @@ def _paths(results: RegionResults) -> Iterator[AreaPath]:
     if motion is None:
         return
     values = [_wrap(results, number, motion) for number in range(len(DIMENSIONS))]
-    ok = motion["status"].to_numpy() == Status.OK
+    ok = motion["status"].values == Status.OK
     jumps = np.flatnonzero(np.any([np.abs(np.diff(one)) > 0.5 * TURN for one in values], axis=0))
     for regular, name, drawn in (
         (ok, Sentence("path of the drives in time"), AreaKind.MAIN),
@@ -145,9 +145,9 @@ def _paths(results: RegionResults) -> Iterator[AreaPath]:
 
 def _wrap(results: RegionResults, number: int, motion: xarray.Dataset) -> Array:
     """Values of a drive over the motion; whole turns are taken out where the region is a turn wide."""
-    name = str(results.region["drive"].to_numpy()[number])
-    first, last = results.region[DIMENSIONS[number]].to_numpy()[[0, -1]]
-    values: Array = motion["drive_value"].sel(drive=name).to_numpy()
+    name = str(results.region["drive"].values[number])
+    first, last = results.region[DIMENSIONS[number]].values[[0, -1]]
+    values: Array = motion["drive_value"].sel(drive=name).values
     if results.mechanism.motion_parameter.drive(name).turns and last - first >= TURN * (1 - 1e-9):
         values = values - TURN * np.floor((values - first) / TURN)
     return values

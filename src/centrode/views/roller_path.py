@@ -269,7 +269,7 @@ def _plot(results: RollerPathResults) -> Plot:
     rows = []
     for name in DRAWN:
         quantity = QUANTITIES[name]
-        curve = Curve(Sentence(quantity.long_name), results.dataset[name].to_numpy(), 0)
+        curve = Curve(Sentence(quantity.long_name), results.dataset[name].values, 0)
         label = AxisLabel(symbol=Symbol(quantity.symbol), unit=quantity.unit)
         rows.append((CurvePanel(label, (curve,), legend=False),))
     stall = results.path.stall
@@ -287,7 +287,7 @@ def _drawing(results: RollerPathResults) -> PathDrawing:
     return PathDrawing(
         Sentence("Path of the roller's centre, and its normals"),
         Title(results.cam.title),
-        results.dataset["roller_centre"].to_numpy(),
+        results.dataset["roller_centre"].values,
         Sentence("path of the roller's centre"),
         tuple(_rays(results)),
         Sentence("ray from the cam's centre"),
@@ -298,7 +298,7 @@ def _drawing(results: RollerPathResults) -> PathDrawing:
 def _rays(results: RollerPathResults) -> Iterator[Ray]:
     """Rays at round angles, of a turn and more each once, with the normals of the samples nearest to them."""
     names = ("carrier_angle", "path_radius", "cam_pressure_angle")
-    phi, radius, gamma = (results.dataset[name].to_numpy() for name in names)
+    phi, radius, gamma = (results.dataset[name].values for name in names)
     known = np.isfinite(radius)
     if not known.any():
         return

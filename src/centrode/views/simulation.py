@@ -119,12 +119,12 @@ def sheet(results: SimulationResults) -> Sheet:
 def _facts(results: SimulationResults) -> Iterator[Fact]:
     """What moved, how it ended, speeds, works and energies."""
     run = results.simulation
-    speed, unit = run["drive_speed"].to_numpy(), str(run["drive_speed"].attrs["units"])
+    speed, unit = run["drive_speed"].values, str(run["drive_speed"].attrs["units"])
     least, greatest, last = (
         Number(float(value), unit, unit_fixed=True) for value in (speed.min(), speed.max(), speed[-1])
     )
     turns = results.mechanism.drives[0].kind == "angle"
-    yield Fact(Sentence("drives"), Joined(tuple(Name(str(name)) for name in run["drive"].to_numpy())))
+    yield Fact(Sentence("drives"), Joined(tuple(Name(str(name)) for name in run["drive"].values)))
     yield Fact(Sentence("driven by"), _driven_by(run))
     yield Fact(Sentence("scheme"), _scheme(run))
     yield Fact(Sentence("ended"), _ending(run))
@@ -157,7 +157,7 @@ def _scheme(run: xr.Dataset) -> Text:
 
 
 def _ending(run: xr.Dataset) -> Text:
-    time = Number(float(run["time"].to_numpy()[-1]), "s")
+    time = Number(float(run["time"].values[-1]), "s")
     return {
         "duration": Sentence("after {time}", time=time),
         "turns": Sentence("after the given number of turns, in {time}", time=time),
@@ -169,7 +169,7 @@ def _ending(run: xr.Dataset) -> Text:
 
 
 def _turns(run: xr.Dataset) -> Text:
-    turned, unit = float(run["turned"].to_numpy()[-1]), str(run["turned"].attrs["units"])
+    turned, unit = float(run["turned"].values[-1]), str(run["turned"].attrs["units"])
     value = _value(turned, unit)
     return (
         Sentence("{value}, {turns} turns", value=value, turns=Number(turned / tau))
@@ -185,7 +185,7 @@ def _value(value: float, unit: str) -> Number:
 
 def _works(run: xr.Dataset) -> Text:
     drive, friction, others = (
-        Number(float(run[name].to_numpy()[-1]), "J")
+        Number(float(run[name].values[-1]), "J")
         for name in ("work_of_drive", "work_of_friction", "work_of_other_loads")
     )
     return Sentence(
@@ -197,8 +197,8 @@ def _works(run: xr.Dataset) -> Text:
 
 
 def _energies(run: xr.Dataset) -> Text:
-    kinetic, potential = (run[name].to_numpy() for name in ("kinetic_energy", "potential_energy"))
-    residual = float(np.max(np.abs(run["energy_residual"].to_numpy())))
+    kinetic, potential = (run[name].values for name in ("kinetic_energy", "potential_energy"))
+    residual = float(np.max(np.abs(run["energy_residual"].values)))
     return Sentence(
         "kinetic {kinetic} at the end, potential {potential}, residual {residual}",
         kinetic=Number(float(kinetic[-1]), "J"),
@@ -210,9 +210,9 @@ def _energies(run: xr.Dataset) -> Text:
 def _occasions(run: xr.Dataset) -> Iterator[Fact]:
     """When and where it turned back, stuck, came to a limit."""
     names = str(run["occasion_kind"].attrs["flag_meanings"]).split()
-    kinds = [names[k] for k in run["occasion_kind"].to_numpy().tolist()]
+    kinds = [names[k] for k in run["occasion_kind"].values.tolist()]
     unit = str(run["occasion_value"].attrs["units"])
-    times, values = (run[name].to_numpy().tolist() for name in ("occasion_time", "occasion_value"))
+    times, values = (run[name].values.tolist() for name in ("occasion_time", "occasion_value"))
     for kind, time, value in islice(zip(kinds, times, values, strict=True), SHOWN):
         place = Sentence("at {time}, drive at {value}", time=Number(time, "s"), value=_value(value, unit))
         yield Fact(OCCASIONS[kind], place)
@@ -273,7 +273,7 @@ def _stability(regime: Regime) -> Text:
 def _pictures(results: SimulationResults) -> Iterator[tuple[str, Plot]]:
     """Speed and moments over time, the speed over the value of the drive, energies and works over time."""
     run, title = results.simulation, Title(results.mechanism.title)
-    time = over_samples(quantity_label("time"), run["time"].to_numpy())
+    time = over_samples(quantity_label("time"), run["time"].values)
     for name, panels in PANELS.items():
         rows = tuple((_panel(run, variables),) for variables in panels)
         abscissa = _phase(results) if name == "simulation-phase" else time
@@ -282,7 +282,7 @@ def _pictures(results: SimulationResults) -> Iterator[tuple[str, Plot]]:
 
 def _phase(results: SimulationResults) -> Abscissa:
     """The drive's value; of one that turns on and on within one turn, with gaps where a new one begins."""
-    parameter, values = results.mechanism.motion_parameter, results.simulation["drive_value"].to_numpy()[:, 0]
+    parameter, values = results.mechanism.motion_parameter, results.simulation["drive_value"].values[:, 0]
     abscissa = over_samples(replace(quantity_label("drive_value"), unit=parameter.drives[0].unit), values)
     if not parameter.turns or np.ptp(values) <= tau:
         return abscissa
@@ -322,7 +322,7 @@ def _course(run: xr.Dataset) -> Table:
     columns = tuple(
         Column(
             name,
-            run[name].to_numpy(),
+            run[name].values,
             "s" if name == "time" else str(run[name].attrs["units"]),
             Expression(letter),
         )
@@ -338,14 +338,14 @@ def _energy_check(results: SimulationResults) -> Iterator[Check]:
     if run.attrs["scheme"] == "runge-kutta-4":
         return
     works = [
-        np.abs(run[name].to_numpy()).max() for name in ("work_of_drive", "work_of_friction", "kinetic_energy")
+        np.abs(run[name].values).max() for name in ("work_of_drive", "work_of_friction", "kinetic_energy")
     ]
     steps = int(run.attrs["evaluations"]) / EVALUATIONS
     yield Check(
         Sentence(
             "Residual of the energy balance over the whole motion: {share} of the greatest work or energy."
         ),
-        float(np.abs(run["energy_residual"].to_numpy()).max()),
+        float(np.abs(run["energy_residual"].values).max()),
         float(max(works)),
         steps * results.settings.tolerance,
     )

@@ -118,9 +118,9 @@ def _table(data: xr.Dataset) -> Table:
     for name, coordinate in data.coords.items():
         if len(coordinate.dims) == 1 and coordinate.dims[0] in mechanisms.dims:
             along = mechanisms.dims.index(coordinate.dims[0])
-            columns.append(_column(str(name), coordinate, coordinate.to_numpy()[places[along]]))
+            columns.append(_column(str(name), coordinate, coordinate.values[places[along]]))
     for name, variable in data.data_vars.items():
-        numbers = variable.to_numpy().reshape(mechanisms.size, -1).T
+        numbers = variable.values.reshape(mechanisms.size, -1).T
         for labels, values in zip(_labels(data, variable), numbers, strict=True):
             columns.append(_column("_".join((str(name).replace(".", "_"), *labels)), variable, values))
     return Table(tuple(columns))

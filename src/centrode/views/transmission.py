@@ -46,10 +46,10 @@ def extremes_table(results: TransmissionResults, caption: Text = NOTHING) -> Tab
     """Each group with the exact extremes of its acute angles over what is reached, in degrees for every reader."""
     angles = results.angles
     least, greatest = (
-        np.degrees(angles[name].to_numpy())
+        np.degrees(angles[name].values)
         for name in ("least_transmission_angle", "greatest_transmission_angle")
     )
-    names = tuple(map(Name, angles["group"].to_numpy().tolist()))
+    names = tuple(map(Name, angles["group"].values.tolist()))
     return Table(
         (
             Column("group", names, head=Sentence("group")),
@@ -70,30 +70,30 @@ def _degrees(name: str, head: Sentence, values: Array) -> Column:
 def _over_motion(results: TransmissionResults) -> Table:
     """The angles in SI, one row a sample."""
     angles = results.angles
-    columns = [Column("time", angles["time"].to_numpy(), "s")]
+    columns = [Column("time", angles["time"].values, "s")]
     columns += [
-        Column(f"drive_{name}", angles["drive_value"].to_numpy()[:, number])
-        for number, name in enumerate(angles["drive"].to_numpy().tolist())
+        Column(f"drive_{name}", angles["drive_value"].values[:, number])
+        for number, name in enumerate(angles["drive"].values.tolist())
     ]
     columns += [
-        Column(f"{variable}_{name}", angles[variable].sel(group=name).to_numpy(), "rad", unit_fixed=True)
+        Column(f"{variable}_{name}", angles[variable].sel(group=name).values, "rad", unit_fixed=True)
         for variable in VARIABLES
-        for name in angles["group"].to_numpy().tolist()
+        for name in angles["group"].values.tolist()
     ]
-    words = tuple(Name(Status(code).word) for code in angles["status"].to_numpy().tolist())
+    words = tuple(Name(Status(code).word) for code in angles["status"].values.tolist())
     return Table((*columns, Column("status", words)))
 
 
 def _plot(results: TransmissionResults) -> Plot:
     """Both angles of every group over the motion, in degrees for every reader."""
     angles, mechanism = results.angles, results.mechanism
-    names = angles["group"].to_numpy().tolist()
+    names = angles["group"].values.tolist()
     rows = tuple(
         (
             CurvePanel(
                 AxisLabel(symbol=Symbol(QUANTITIES[variable].symbol), unit="deg"),
                 tuple(
-                    Curve(Name(name), np.degrees(angles[variable].sel(group=name).to_numpy()), place)
+                    Curve(Name(name), np.degrees(angles[variable].sel(group=name).values), place)
                     for place, name in enumerate(names)
                 ),
                 scale=90.0,

@@ -43,7 +43,7 @@ def integrated_rates(mechanism: Mechanism, exact: xr.Dataset) -> Mapping[tuple[s
         for name in mechanism.link_names
     }
     for name in mechanism.moving_points:
-        rates["velocity", name] = float(np.hypot(*last["velocity"].sel(point=name).to_numpy()))
+        rates["velocity", name] = float(np.hypot(*last["velocity"].sel(point=name).values))
     return rates
 
 
@@ -125,7 +125,7 @@ def _rows(
     # a step on paper [m] in millimetres, times what a millimetre stands for
     grain = 1e3 * (found.board.paper_step or 0.0) * diagram.scale
     for point in found.mechanism.moving_points:
-        exact = float(np.hypot(*found.exact[moving].sel(point=point).to_numpy()[0]))
+        exact = float(np.hypot(*found.exact[moving].sel(point=point).values[0]))
         length = abs(diagram.images[point])
         read = grain * round(length / grain) if grain else length
         yield CheckRow(moving, point, diagram.unit, read, integrated.get((moving, point)), exact)

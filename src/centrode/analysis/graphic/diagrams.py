@@ -99,10 +99,10 @@ def positions_at(prepared: Ready, exact: xr.Dataset) -> Positions:
     """The mechanism as it is drawn: places and poses at the only sample."""
     numbers = prepared.kinematics.numbers
     at = Positions.of_frame(numbers, {}, ARRAYS)
-    for name in exact["point"].to_numpy().tolist():
-        x, y = exact["position"].sel(point=name).to_numpy()[0].tolist()
+    for name in exact["point"].values.tolist():
+        x, y = exact["position"].sel(point=name).values[0].tolist()
         at.points[name] = (x, y)
-    for name in exact["link"].to_numpy().tolist():
+    for name in exact["link"].values.tolist():
         angle = float(exact["angle"].sel(link=name)[0])
         point, local = next(iter(numbers.local[name].items()))
         at.poses[name] = pose_with_point(local, at.points[point], (np.cos(angle), np.sin(angle)))

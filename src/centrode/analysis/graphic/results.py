@@ -76,7 +76,7 @@ def graphic_analysis(
         return GraphicResults(mechanism, motion(mechanism, at=places), checks)
     course = motion(mechanism, at=places)
     found: list[GraphicCheck | CentrodeError | None] = []
-    for at, status in zip(places, course["status"].to_numpy().tolist(), strict=True):
+    for at, status in zip(places, course["status"].values.tolist(), strict=True):
         try:
             found.append(check(at) if status == Status.OK else None)
         except CentrodeError as failure:

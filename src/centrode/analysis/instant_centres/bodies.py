@@ -173,7 +173,7 @@ def _variables(motion: xr.Dataset) -> tuple[str, ...]:
 
 
 def _column(motion: xr.Dataset, variable: str) -> Array | Places:
-    values = np.asarray(motion[variable].to_numpy(), dtype=np.float64)
+    values = np.asarray(motion[variable].values, dtype=np.float64)
     return np.asarray(values[..., 0] + 1j * values[..., 1]) if "axis" in motion[variable].dims else values
 
 
@@ -275,7 +275,7 @@ def _of_one(motion: xr.Dataset) -> TurningBodies:
     sliders = sliders_of(mechanism)
     names = (FRAME, *mechanism.link_names, *sliders)
     samples = motion.sizes["sample"]
-    points = {str(name): motion["position"].sel(point=name).to_numpy() for name in motion["point"].values}
+    points = {str(name): motion["position"].sel(point=name).values for name in motion["point"].values}
     axes = np.tile(np.eye(3), (samples, len(names), 1, 1))
     for number, name in enumerate(mechanism.link_names, start=1):
         axes[:, number] = _attitudes(mechanism, name, points, samples)
@@ -287,7 +287,7 @@ def _of_one(motion: xr.Dataset) -> TurningBodies:
         base = names.index(guide.on)
         # displacements are arcs of a small circle of radius sin(arc): over it they are the slider's angle
         # about the pole
-        slides = [motion[v].sel(guide=guide.id).to_numpy() / math.sin(guide.arc) for v in _slides(orders)]
+        slides = [motion[v].sel(guide=guide.id).values / math.sin(guide.arc) for v in _slides(orders)]
         pole = axes[:, base] @ np.array(unit_vector(pole_of(mechanism, guide)))
         axes[:, number] = _rotations_about(pole, slides[0]) @ axes[:, base]
         spin[:, number] = spin[:, base] + slides[1][:, None] * pole
@@ -307,7 +307,7 @@ def _slides(orders: tuple[str, str]) -> tuple[str, ...]:
 
 def _angular(motion: xr.Dataset, variable: str, count: int) -> Array:
     """A vector of every link, with zeros for the frame and room for the sliders."""
-    values = motion[variable].to_numpy()
+    values = motion[variable].values
     rates = np.zeros((len(values), count, 3))
     rates[:, 1 : 1 + values.shape[1]] = values
     return rates

@@ -114,7 +114,7 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
     """
     spherical = is_spherical(motion)
     polodes = _on_sphere(motion, link, against) if spherical else _in_plane(motion, link, against)
-    pieces = _pieces(polodes, motion["status"].to_numpy() == Status.OK)
+    pieces = _pieces(polodes, motion["status"].values == Status.OK)
     step = _steps(motion)
     arcs = [
         _arc(curve, rate * step[:, None], pieces)

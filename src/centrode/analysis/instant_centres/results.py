@@ -103,7 +103,7 @@ def centre_results(
 def results_of_centres(mechanism: Mechanism, centres: xr.Dataset) -> CentreResults:
     """A dataset of `instant_centres` with the motion at its samples, and the construction of all centres there."""
     course = motion(mechanism, at=mechanism.motion_parameter.instants(centres))
-    labels = [tuple(str(label).split(",")) for label in centres["pair"].to_numpy()]
+    labels = [tuple(str(label).split(",")) for label in centres["pair"].values]
     pairs = tuple((first, second) for first, second in labels)
     return CentreResults(mechanism, pairs, course, centres, _constructions(mechanism, course))
 

@@ -178,7 +178,7 @@ class MotionLawResults:
     @property
     def names(self) -> list[str]:
         """Names of the laws."""
-        return list(map(str, self.dataset["law"].to_numpy().tolist()))
+        return list(map(str, self.dataset["law"].values.tolist()))
 
     @property
     def closed_forms_difference(self) -> float:
@@ -187,7 +187,7 @@ class MotionLawResults:
         for name in self.names:
             if name in PEAKS:
                 closed = np.array(PEAKS[name][1])
-                found = self.dataset["peak_coefficient"].sel(law=name).to_numpy()[1:]
+                found = self.dataset["peak_coefficient"].sel(law=name).values[1:]
                 worst = max(worst, float(np.max(np.abs(found - closed) / np.where(closed > 0, closed, 1.0))))
         return worst
 

@@ -36,7 +36,7 @@ class ShakingResults:
     @property
     def is_shaken(self) -> bool:
         """Whether anything with mass moves."""
-        return bool(self.shaking["shaking_force"].to_numpy().any())
+        return bool(self.shaking["shaking_force"].values.any())
 
 
 def shaking_results(mechanism: Mechanism, samples: int | None = None) -> ShakingResults:
@@ -49,7 +49,7 @@ def shaking_results(mechanism: Mechanism, samples: int | None = None) -> Shaking
 
 def results_of_shaking(mechanism: Mechanism, data: xr.Dataset) -> ShakingResults:
     """A dataset of `shaking` with the full balance where there is one."""
-    if not data["shaking_force"].to_numpy().any():
+    if not data["shaking_force"].values.any():
         return ShakingResults(mechanism, data, None, "")
     try:
         return ShakingResults(mechanism, data, balance(mechanism, samples=data.sizes["sample"]), "")

@@ -83,7 +83,7 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
     of samples, values of smooth curves to its square times their curvature, beside a jump to it times their slope. An
     extreme that no sample is near is missed. Means are by the trapezoid rule over time, of what is reached.
     """
-    places, time = mechanism.motion_parameter.instants(reactions), reactions["time"].to_numpy()
+    places, time = mechanism.motion_parameter.instants(reactions), reactions["time"].values
     curves = [one for one in reaction_series(mechanism, reactions) if np.isfinite(one.values).any()]
     tops = [
         top

@@ -101,21 +101,21 @@ def reaction_series(
     if "friction" in reactions.dims:
         yield from _friction(reactions)
     for kind, unit in ((ReactionKind.FRAME_FORCE, "N"), (ReactionKind.FRAME_MOMENT, "N m")):
-        yield ReactionSeries(kind, (), kind.value, unit, reactions[kind.value].to_numpy())
+        yield ReactionSeries(kind, (), kind.value, unit, reactions[kind.value].values)
 
 
 def _friction(reactions: xr.Dataset) -> Iterator[ReactionSeries]:
     """Moments and forces of friction, and the efficiency."""
-    for label in reactions["friction"].to_numpy().tolist():
+    for label in reactions["friction"].values.tolist():
         guide = label.removeprefix("guide ")
         kind, name, unit = ReactionKind.FRICTION_FORCE, guide, "N"
         values = reactions["friction_force"].sel(guide=guide) if label != guide else None
         if values is None:
             kind, name, unit = ReactionKind.FRICTION_MOMENT, label, "N m"
             values = reactions["friction_moment"].sel(bearing=label)
-        yield ReactionSeries(kind, (name,), f"{kind.value}_{name}", unit, values.to_numpy())
+        yield ReactionSeries(kind, (name,), f"{kind.value}_{name}", unit, values.values)
     kind = ReactionKind.EFFICIENCY
-    yield ReactionSeries(kind, (), kind.value, "", reactions[kind.value].to_numpy())
+    yield ReactionSeries(kind, (), kind.value, "", reactions[kind.value].values)
 
 
 def _along(
@@ -124,22 +124,22 @@ def _along(
     """One series for each label of a dimension, for each body of a gear; vectors that nothing determines are none."""
     # of units there is one for all, or one for each of the drives
     units = str(values.attrs["units"]).split(", ")
-    for number, name in enumerate(values[dimension].to_numpy().tolist()):
+    for number, name in enumerate(values[dimension].values.tolist()):
         one, unit = values.sel({dimension: name}), units[number % len(units)]
         key = f"{values.name}_{name}"
         if "gear_body" in values.dims:
-            for body in values["gear_body"].to_numpy().tolist():
+            for body in values["gear_body"].values.tolist():
                 yield ReactionSeries(
-                    kind, (name, body), f"{key}_{body}", unit, one.sel(gear_body=body).to_numpy()
+                    kind, (name, body), f"{key}_{body}", unit, one.sel(gear_body=body).values
                 )
-        elif "axis" not in one.dims or not np.isnan(like.sel({dimension: name}).to_numpy()).all():
-            yield ReactionSeries(kind, (name,), key, unit, one.to_numpy())
+        elif "axis" not in one.dims or not np.isnan(like.sel({dimension: name}).values).all():
+            yield ReactionSeries(kind, (name,), key, unit, one.values)
 
 
 def _hinges(reactions: xr.Dataset, like: xr.Dataset) -> Iterator[ReactionSeries]:
     """Sides of hinges; of two that are action and reaction one, with the names of both bodies."""
-    points, bodies = reactions["side_point"].to_numpy(), reactions["side_link"].to_numpy()
-    values, known = reactions["joint_force"].to_numpy(), like["joint_force"].to_numpy()
+    points, bodies = reactions["side_point"].values, reactions["side_link"].values
+    values, known = reactions["joint_force"].values, like["joint_force"].values
     for point in dict.fromkeys(points.tolist()):
         sides = np.flatnonzero(points == point)
         names = [str(bodies[k]) for k in sides]

@@ -109,7 +109,7 @@ def results_of_reactions(mechanism: Mechanism, found: xr.Dataset) -> ReactionRes
 
 def _with_limits(results: ReactionResults) -> ReactionResults:
     """Results with what bounds the motion where samples are not reached."""
-    return replace(results, limits=limits_met(results.mechanism, results.reactions["status"].to_numpy()))
+    return replace(results, limits=limits_met(results.mechanism, results.reactions["status"].values))
 
 
 def with_bearings(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:

@@ -86,8 +86,8 @@ def bearings(
     samples = reactions.sizes["sample"]
     loads = np.zeros((samples, len(found), 2))
     turns = np.zeros((2, samples, len(found)))
-    sides = reactions["side"].to_numpy().tolist()
-    force = reactions["joint_force"].transpose("sample", "side", "axis").to_numpy()
+    sides = reactions["side"].values.tolist()
+    force = reactions["joint_force"].transpose("sample", "side", "axis").values
     for k, one in enumerate(found):
         loads[:, k] = force[:, sides.index(f"{one.point}/{one.bush}")]
         turns[:, :, k] = links[one.journal], links[one.bush]
@@ -145,17 +145,17 @@ def _moving(mechanism: Mechanism, reactions: xr.Dataset, there: xr.Dataset | Non
     there = motion_beside(mechanism, reactions) if there is None else there
     if not np.array_equal(parameter.instants(there), places):
         raise InputError("motion_there", _("it has other samples than the reactions"))
-    angles = there["angle"].transpose("link", "sample").to_numpy()
+    angles = there["angle"].transpose("link", "sample").values
     return {
         FRAME: np.zeros(len(places)),
-        **dict(zip(there["link"].to_numpy().tolist(), angles, strict=True)),
+        **dict(zip(there["link"].values.tolist(), angles, strict=True)),
     }
 
 
 def _bearings(mechanism: Mechanism, reactions: xr.Dataset) -> Iterator[Bearing]:
     """Of each hinge the link that is described first, which has the pin, with each of the others."""
-    points = reactions["side_point"].to_numpy().tolist()
-    bodies = reactions["side_link"].to_numpy().tolist()
+    points = reactions["side_point"].values.tolist()
+    bodies = reactions["side_link"].values.tolist()
     order = [*mechanism.links, FRAME]
     for point in dict.fromkeys(points):
         joined = [body for where, body in zip(points, bodies, strict=True) if where == point]

@@ -137,16 +137,16 @@ def check_ended(results: SimulationResults) -> None:
     if run.attrs["ended"] == "interrupted":
         raise KeyboardInterrupt
     if run.attrs["ended"] == "limit":
-        what = _("it stops at a limit after {time:.6g} s").format(time=float(run["time"].to_numpy()[-1]))
+        what = _("it stops at a limit after {time:.6g} s").format(time=float(run["time"].values[-1]))
         raise MotionError("", what, _("give a shorter time, or change the drive or the dimensions"))
     if run.attrs["ended"] == "change point":
         what = _(
             "the motion reaches the change point at {value:.9g} {unit} after {time:.6g} s: the assembly mode is "
             "kept, and beyond it the motion would be a different one"
         ).format(
-            value=float(run["occasion_value"].to_numpy()[-1]),
+            value=float(run["occasion_value"].values[-1]),
             unit=terminal_unit(run["occasion_value"].attrs["units"]),
-            time=float(run["occasion_time"].to_numpy()[-1]),
+            time=float(run["occasion_time"].values[-1]),
         )
         repair = _('choose continuation = "smooth" in [assembly], which passes it, or a shorter time')
         raise MotionError("", what, repair)
@@ -154,5 +154,5 @@ def check_ended(results: SimulationResults) -> None:
 
 def _has_turned(mechanism: Mechanism, run: xr.Dataset) -> bool:
     """Whether the drive has turned all the way round, and nothing has stopped it."""
-    turned = float(run["turned"].to_numpy().max())
+    turned = float(run["turned"].values.max())
     return mechanism.motion_parameter.turns and run.attrs["ended"] in ("duration", "turns") and turned >= tau

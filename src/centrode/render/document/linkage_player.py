@@ -233,7 +233,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
 
 def samples_in_one_piece(scene: LinkageScene | Globe, motion: xarray.Dataset) -> NDArray[np.intp]:
     """The samples about the initial position where the mechanism is in one piece and gets to."""
-    status = motion["status"].to_numpy()
+    status = motion["status"].values
     good = complete(scene) & ((status == Status.OK) | (status == Status.SINGULAR))
     if not good.any():
         raise InputError("", _("no sample has every point in place"), _("choose another range"))

@@ -90,7 +90,7 @@ def mechanism_drawing(
     drawing.strokes = [one for one in drawing.strokes if one.layer != "cams" or not _has_double(one, drawing)]
     whole = motion if course is None else course
     for name in paths:
-        drawing.strokes.append(Stroke("paths", METRE * whole["position"].sel(point=name).to_numpy()))
+        drawing.strokes.append(Stroke("paths", METRE * whole["position"].sel(point=name).values))
     for pair in centrodes:
         drawing.strokes += _centrode(scene, pair, sample, board.scale)
     _title(drawing, scene, place_words(mechanism, motion, sample, unit_name), CAPITAL * TITLE * board.letters)
@@ -115,8 +115,8 @@ def _centrode(scene: LinkageScene, pair: xarray.Dataset, sample: int, scale: flo
     reach = FARTHEST * scene.extent
     found = []
     for name, body in (("fixed_centrode", "against"), ("moving_centrode", "link")):
-        places = carried_by(scene, str(pair.attrs[body]), pair[name].to_numpy(), sample)
-        number = pair["centrode_piece"].to_numpy()
+        places = carried_by(scene, str(pair.attrs[body]), pair[name].values, sample)
+        number = pair["centrode_piece"].values
         near = (np.abs(places - 0.5 * (scene.low + scene.high)) <= reach).all(axis=1)
         for piece in np.unique(number[number >= 0]):
             kept = np.where(((number == piece) & near)[:, None], places, np.nan)

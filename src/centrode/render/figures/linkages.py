@@ -200,14 +200,14 @@ def initial_sample(scene: LinkageScene | Globe, dataset: xarray.Dataset) -> int:
     known = complete(scene)
     if not known.any():
         return 0
-    distance = np.abs(dataset["time"].to_numpy())
-    worth = np.where(dataset["status"].to_numpy() == Status.OK, 0.0, 1.0)
+    distance = np.abs(dataset["time"].values)
+    worth = np.where(dataset["status"].values == Status.OK, 0.0, 1.0)
     return int(np.lexsort((distance, worth, ~known))[0])
 
 
 def ghosts(scene: LinkageScene | Globe, dataset: xarray.Dataset, sample: int) -> list[int]:
     """Samples evenly spread over the motion's regular part, the nearest to the given one last."""
-    regular = np.flatnonzero(complete(scene) & (dataset["status"].to_numpy() == Status.OK))
+    regular = np.flatnonzero(complete(scene) & (dataset["status"].values == Status.OK))
     if regular.size < 2:
         return []
     chosen = regular[np.linspace(0, regular.size - 1, GHOSTS + 1).astype(int)]

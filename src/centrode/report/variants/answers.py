@@ -65,16 +65,16 @@ def _at(study: ReportStudy, moment: Moment) -> InstantAnswers:
     points: dict[str, tuple[float, ...]] = {}
     if moment.reached:
         dimension, names = ("link", OF_LINKS) if study.is_planar else ("joint", ON_SPHERE)
-        for label in here[dimension].to_numpy().tolist():
+        for label in here[dimension].values.tolist():
             links[label] = tuple(float(here[name].sel({dimension: label})) for name in names)
         for point in study.mechanism.moving_points:
-            vectors = (here[name].sel(point=point).to_numpy() for name in OF_POINTS)
+            vectors = (here[name].sel(point=point).values for name in OF_POINTS)
             points[point] = tuple(float(np.linalg.norm(vector)) for vector in vectors)
     return InstantAnswers(
         moment.title,
         moment.reached,
         float(here["time"]),
-        tuple(here["drive_value"].to_numpy().tolist()),
+        tuple(here["drive_value"].values.tolist()),
         links,
         points,
         _drives(study, moment) if moment.reached else {},
@@ -91,6 +91,6 @@ def _drives(study: ReportStudy, moment: Moment) -> dict[str, float]:
     except CentrodeError:
         return {}
     here = found.isel(sample=moment.sample)
-    values = here["balancing"].to_numpy().tolist()
-    balancing = dict(zip(here["drive"].to_numpy().tolist(), values, strict=True))
+    values = here["balancing"].values.tolist()
+    balancing = dict(zip(here["drive"].values.tolist(), values, strict=True))
     return {name: value for name, value in balancing.items() if np.isfinite(value)}
