@@ -1,24 +1,24 @@
-"""A second reader of documents: what pypdf finds in a PDF, from its outline to the places of its letters."""
+"""A second reader of documents: what PDFium finds in a PDF, from its outline to the places of its words."""
 
 from __future__ import annotations
 
-import io
+import ctypes
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-from pypdf import PdfReader
-from pypdf.generic import ContentStream
+import pypdfium2
+from pypdfium2 import raw
 
-STANDARD = re.compile(r"<pdf(a|ua)id:(part|conformance)>(\w+)<")
+STANDARD = re.compile(rb"<pdf(a|ua)id:(part|conformance)>(\w)<")
 
 
 @dataclass
 class PdfFile:
-    """A PDF that was read.
+    """A PDF that is read.
 
     Attributes
     ----------
@@ -27,138 +27,87 @@ class PdfFile:
 
     data: bytes
 
-    @cached_property
-    def reader(self) -> PdfReader:
-        return PdfReader(io.BytesIO(self.data), strict=True)
+    @contextmanager
+    def _opened(self) -> Iterator[Any]:
+        document = pypdfium2.PdfDocument(self.data)
+        yield document
+        document.close()
 
     @cached_property
     def pages(self) -> list[str]:
         """Text of each page."""
-        return [page.extract_text() for page in self.reader.pages]
+        with self._opened() as document:
+            texts = [page.get_textpage().get_text_range() for page in document]
+        return [text.replace("\r\n", "\n") for text in texts]
 
     @property
     def text(self) -> str:
         return "\n".join(self.pages)
 
-    @property
-    def catalogue(self) -> Any:
-        return self.reader.trailer["/Root"]
+    @cached_property
+    def outline(self) -> list[str]:
+        """Titles of the outline in their order, with their numbers."""
+        with self._opened() as document:
+            return [entry.get_title() for entry in document.get_toc()]
 
-    @property
+    @cached_property
+    def title(self) -> str:
+        with self._opened() as document:
+            return str(document.get_metadata_value("Title"))
+
+    @cached_property
     def language(self) -> str:
-        return str(self.catalogue["/Lang"])
+        with self._opened() as document:
+            return _text(lambda *buffer: raw.FPDFCatalog_GetLanguage(document, *buffer))
+
+    @cached_property
+    def is_tagged(self) -> bool:
+        with self._opened() as document:
+            return bool(raw.FPDFCatalog_IsTagged(document))
 
     @property
     def standards(self) -> str:
         """Those that the file names: "ua-1 a-2a"; nothing of a plain one."""
-        metadata = self.catalogue["/Metadata"].get_object().get_data().decode()
-        told = {(kind, key): value for kind, key, value in STANDARD.findall(metadata)}
-        accessible = [f"ua-{told['ua', 'part']}"] if ("ua", "part") in told else []
-        kept = [f"a-{told['a', 'part']}{told['a', 'conformance'].lower()}"] if ("a", "part") in told else []
+        told = {(kind, key): value.decode().lower() for kind, key, value in STANDARD.findall(self.data)}
+        accessible = [f"ua-{told[b'ua', b'part']}"] if (b"ua", b"part") in told else []
+        kept = [f"a-{told[b'a', b'part']}{told[b'a', b'conformance']}"] if (b"a", b"part") in told else []
         return " ".join([*accessible, *kept])
 
-    @property
-    def outline(self) -> list[str]:
-        """Titles of the outline in their order, with their numbers."""
-        return list(_titles(self.reader.outline))
+    def descriptions(self, kind: str) -> list[str]:
+        """Alternative texts of all elements of a kind ("Formula", "Figure") in the tree of the document."""
+        with self._opened() as document:
+            return [one for page in document for one in _descriptions(page, kind)]
 
-    def alternatives(self, kind: str) -> list[str]:
-        """Descriptions of all elements of a kind ("Formula", "Figure") in the tree of the document."""
-        return [
-            str(node.get("/Alt", ""))
-            for node in _nodes(self.catalogue["/StructTreeRoot"])
-            if node.get("/S") == f"/{kind}"
-        ]
-
-    def runs(self) -> Iterator[tuple[float, float, float, float]]:
-        """Left, bottom, right, top [points] of the runs of letters on all pages, by their advances."""
-        for page in self.reader.pages:
-            yield from _runs(page)
+    def words(self) -> list[tuple[float, float, float, float, str]]:
+        """Left, bottom, right, top [points] of the runs of letters on all pages, and what they say."""
+        found = []
+        with self._opened() as document:
+            for page in document:
+                text = page.get_textpage()
+                boxes = [text.get_rect(k) for k in range(text.count_rects())]
+                found += [(*box, text.get_text_bounded(*box)) for box in boxes]
+        return found
 
 
-def _titles(entries: Sequence[Any]) -> Iterator[str]:
-    for entry in entries:
-        if isinstance(entry, list):
-            yield from _titles(entry)
-        else:
-            yield str(entry.title)
+def _descriptions(page: Any, kind: str) -> Iterator[str]:
+    tree = raw.FPDF_StructTree_GetForPage(page)
+    for k in range(raw.FPDF_StructTree_CountChildren(tree)):
+        yield from _below(raw.FPDF_StructTree_GetChildAtIndex(tree, k), kind)
+    raw.FPDF_StructTree_Close(tree)
 
 
-def _nodes(node: Any) -> Iterator[Any]:
-    """Elements of the tree below one."""
-    kids = node.get("/K", [])
-    for kid in kids if isinstance(kids, list) else [kids]:
-        child = kid.get_object()
-        if hasattr(child, "get"):
-            yield child
-            yield from _nodes(child)
+def _below(element: Any, kind: str) -> Iterator[str]:
+    if _text(lambda *buffer: raw.FPDF_StructElement_GetType(element, *buffer)) == kind:
+        yield _text(lambda *buffer: raw.FPDF_StructElement_GetAltText(element, *buffer))
+    for k in range(raw.FPDF_StructElement_CountChildren(element)):
+        child = raw.FPDF_StructElement_GetChildAtIndex(element, k)
+        if child:
+            yield from _below(child, kind)
 
 
-def _runs(page: Any) -> Iterator[tuple[float, float, float, float]]:
-    fonts = {name: _Advances(font.get_object()) for name, font in page["/Resources"].get("/Font", {}).items()}
-    stack: list[np.ndarray] = []
-    current, text, line = np.eye(3), np.eye(3), np.eye(3)
-    font, size = None, 0.0
-    for operands, operator in ContentStream(page.get_contents(), page.pdf).operations:
-        match operator:
-            case b"q":
-                stack.append(current)
-            case b"Q":
-                current = stack.pop()
-            case b"cm":
-                current = _matrix(operands) @ current
-            case b"BT":
-                text = line = np.eye(3)
-            case b"Tf":
-                font, size = fonts[operands[0]], float(operands[1])
-            case b"Tm":
-                text = line = _matrix(operands)
-            case b"Td":
-                text = line = _matrix([1, 0, 0, 1, *operands]) @ line
-            case b"Tj" | b"TJ":
-                assert font is not None
-                parts = operands[0] if operator == b"TJ" else operands
-                width = sum(
-                    -float(part)
-                    if isinstance(part, (int, float)) or hasattr(part, "as_numeric")
-                    else font.width(part)
-                    for part in parts
-                )
-                corners = (
-                    np.array([[0.0, 0.0, 1.0], [width / 1000.0 * size, size * 0.7, 1.0]]) @ text @ current
-                )
-                (left, right), (bottom, top) = np.sort(corners[:, :2], axis=0).T
-                yield float(left), float(bottom), float(right), float(top)
-                text = _matrix([1, 0, 0, 1, width / 1000.0 * size, 0]) @ text
-            case b"T*" | b"'" | b'"' | b"TD" | b"Tc" | b"Tw" | b"Tz":
-                raise NotImplementedError(operator)
-
-
-def _matrix(numbers: Sequence[Any]) -> np.ndarray:
-    a, b, c, d, x, y = map(float, numbers)
-    return np.array([[a, b, 0.0], [c, d, 0.0], [x, y, 1.0]])
-
-
-class _Advances:
-    """Widths of the letters of a font whose codes have two bytes."""
-
-    def __init__(self, font: Any) -> None:
-        assert font["/Encoding"] == "/Identity-H"
-        below = font["/DescendantFonts"][0].get_object()
-        self.default = float(below.get("/DW", 1000))
-        self.found: dict[int, float] = {}
-        entries = list(below["/W"].get_object())
-        while entries:
-            first, second, *entries = entries
-            if isinstance(second, list):
-                widths = [float(one) for one in second]
-            else:
-                width, *entries = entries
-                widths = [float(width)] * (int(second) - int(first) + 1)
-            self.found |= dict(enumerate(widths, start=int(first)))
-
-    def width(self, text: Any) -> float:
-        """Of a string [thousandths of the size]."""
-        data = text.original_bytes
-        codes = [int.from_bytes(data[k : k + 2], "big") for k in range(0, len(data), 2)]
-        return sum(self.found.get(code, self.default) for code in codes)
+def _text(get: Callable[..., int]) -> str:
+    """What a function of PDFium writes into a buffer."""
+    length = get(None, 0)
+    buffer = (ctypes.c_ushort * (length // 2))()
+    get(buffer, length)
+    return bytes(buffer).decode("utf-16-le").rstrip("\0")

@@ -44,13 +44,13 @@ def test_what_users_wrote_is_shown_as_it_is(document: PdfFile) -> None:
 
 
 def test_nothing_runs_off_the_page(document: PdfFile) -> None:
-    boxes = list(document.runs())
+    boxes = document.words()
     assert len(boxes) > 1000
-    for left, bottom, right, top in boxes:
-        assert left >= MARGIN - SLACK
-        assert right <= WIDTH - MARGIN + SLACK
-        assert bottom >= 0
-        assert top <= HEIGHT
+    for left, bottom, right, top, word in boxes:
+        assert left >= MARGIN - SLACK, word
+        assert right <= WIDTH - MARGIN + SLACK, word
+        assert bottom >= 0, word
+        assert top <= HEIGHT, word
 
 
 def test_heads_of_tables_are_repeated_and_columns_shared_out(document: PdfFile) -> None:
@@ -87,7 +87,7 @@ def test_long_contents_share_a_page_with_the_first_chapter() -> None:
         )
         pages = pages_of(*chapters)
         assert "begin0" in pages[page], count
-        assert ("Chapter 59 ." in pages[page]) == (count > 50)  # the end of the contents
+        assert bool(re.search(r"Chapter 59\s*\.", pages[page])) == (count > 50)  # the end of the contents
 
 
 @pytest.mark.parametrize("titled", [True, False])
