@@ -155,9 +155,7 @@ class Source:
         self.files[name] = block.svg
         where = f"{block.number}, floats: {'true' if floats else 'false'}"
         words = quote(spoken_text(block.caption) or _("Figure"))
-        return (
-            f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {words}, {where})"
-        )
+        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {words}, {where})"
 
     @_shown.register
     def _moving(self, block: Moving) -> str:

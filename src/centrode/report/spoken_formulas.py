@@ -27,18 +27,19 @@ _GREEK: Mapping[str, str] = {
     "tau": "τ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
     "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω",
 }  # fmt: skip
+_OPEN, _CLOSE, _EQUALS = mark("open bracket"), mark("close bracket"), mark("equals")
 _WORDS: Mapping[str, str] = {
     "+": mark("plus"), "-": mark("minus"), "−": mark("minus"), "±": mark("plus or minus"),
     "dot.op": mark("times"), "times": mark("cross"), "*": mark("times"), "/": mark("divided by"),
-    "slash": mark("divided by"), ":": mark("to"), "=": mark("equals"), "<": mark("is less than"),
+    "slash": mark("divided by"), ":": mark("to"), "=": _EQUALS, "<": mark("is less than"),
     ">": mark("is greater than"), "lt": mark("is less than"), "gt": mark("is greater than"),
     "lt.eq": mark("is at most"), "gt.eq": mark("is at least"), "approx": mark("is about"),
     "perp": mark("perpendicular to"), "parallel": mark("parallel to"), "triangle": mark("triangle"),
-    "tilde.op": mark("is similar to"), "(": mark("open bracket"), ")": mark("close bracket"),
-    "[": mark("open bracket"), "]": mark("close bracket"), "|": mark("bar"), "degree": mark("degrees"),
+    "tilde.op": mark("is similar to"), "(": _OPEN, ")": _CLOSE, "[": _OPEN, "]": _CLOSE, "|": mark("bar"),
+    "degree": mark("degrees"),
     "sin": mark("sine"), "cos": mark("cosine"), "tan": mark("tangent"), "arcsin": mark("arc sine"),
     "arccos": mark("arc cosine"), "arctan": mark("arc tangent"), "ln": mark("natural logarithm"),
-    "infinity": mark("infinity"), "max": mark("maximum"), "min": mark("minimum"), "in": mark("in"),
+    "infinity": mark("infinity"), "max": mark("maximum"), "min": mark("minimum"),
 }  # fmt: skip
 _UNSPOKEN = frozenset(("thin", "quad", "med", "thick", "space"))
 _FRAMES: Mapping[str, str] = {
@@ -95,7 +96,7 @@ def spoken_system(block: SystemBlock) -> list[str]:
 
 
 def _spoken_lines(lines: Sequence[Sequence[str]]) -> list[str]:
-    equals = f" {_(_WORDS['='])} "
+    equals = f" {_(_EQUALS)} "
     room = LONGEST // max(len(lines), 1)
     return [_shortened(equals.join(map(spoken_formula, line)), room) for line in lines]
 
@@ -159,7 +160,7 @@ class _Reader:
             sign = {"*": _("star")}.get(above, above)
             return _("{letter} with {mark} above").format(letter=bare, mark=sign)
         if above in ("2", "3"):
-            return f"{bare} {_('squared') if above == '2' else _('cubed')}"
+            return (_("{base} squared") if above == "2" else _("{base} cubed")).format(base=bare)
         return _("{base} to the power {power}").format(base=bare, power=above)
 
     def _base(self, token: str) -> str:
@@ -171,7 +172,7 @@ class _Reader:
             return (frame if frame == "{operand}" else _(frame)).format(operand=operand)
         if token == "(":
             self.place -= 1
-            return _joined([_(_WORDS["("]), *self._bracket(), _(_WORDS[")"])])
+            return _joined([_(_OPEN), *self._bracket(), _(_CLOSE)])
         if token.startswith('"'):
             return _ESCAPE.sub(lambda one: chr(int(one[1], 16)) if one[1] else one[2], token[1:-1])
         if token.startswith("\\"):
