@@ -70,7 +70,7 @@ _options, _writing = (
     "full",
     default=None,
     help=mark(
-        "Everything there is to show, or the compact form; full for chosen chapters alone if left out."
+        "Everything there is to show, or the compact form; by default as [report] says, or full if chapters are chosen."
     ),
 )
 def report(
