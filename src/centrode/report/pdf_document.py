@@ -23,6 +23,7 @@ from centrode.render.document.blocks import (
     ParagraphBlock,
     Picture,
     ProseBlock,
+    ReferenceBlock,
     Report,
     SectionBlocks,
     Span,
@@ -64,7 +65,6 @@ class Source:
 
     def __init__(self, report: Report) -> None:
         self.files: dict[str, bytes] = {}
-        self.formulas = 0
         self.text = "\n".join(self._document(number_blocks(report))) + "\n"
 
     def _document(self, report: Report) -> Iterator[str]:
@@ -125,18 +125,23 @@ class Source:
 
     @_shown.register
     def _formula(self, block: FormulaBlock) -> str:
-        return self._numbered(f"relations({_relations(block.lines)}, {_strings(spoken_relations(block))})")
+        formula = f"relations({_relations(block.lines)}, {_strings(spoken_relations(block))})"
+        return f"#numbered({block.number}, {formula})"
 
     @_shown.register
     def _system(self, block: SystemBlock) -> str:
         matrix = _array([_array([_math(entry) for entry in row]) for row in block.matrix])
         unknowns, right = (_array([_math(one) for one in column]) for column in (block.unknowns, block.right))
         lines, words = _relations(relations_of(block)), _strings(spoken_system(block))
-        return self._numbered(f"system({matrix}, {unknowns}, {right}, {lines}, {words})")
+        formula = f"system({matrix}, {unknowns}, {right}, {lines}, {words})"
+        return f"#numbered({block.number}, {formula})"
 
-    def _numbered(self, formula: str) -> str:
-        self.formulas += 1
-        return f"#numbered({self.formulas}, {formula})"
+    @_shown.register
+    def _reference(self, block: ReferenceBlock) -> str:
+        pieces = (
+            f"#formula-number({one});" if isinstance(one, int) else f"#{quote(one)};" for one in block.pieces
+        )
+        return f"#par([{''.join(pieces)}])"
 
     @_shown.register
     def _table(self, block: TableBlock) -> str:
