@@ -139,8 +139,8 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.ParagraphBlock(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
         case LinearEquations(matrix, unknowns, right):
             rows = tuple(tuple(map(spelling.mathematics, row)) for row in matrix)
-            sides = (tuple(map(spelling.mathematics, side)) for side in (unknowns, right))
-            return blocks.SystemBlock(rows, *sides)
+            left, right_side = (tuple(map(spelling.mathematics, side)) for side in (unknowns, right))
+            return blocks.SystemBlock(rows, left, right_side)
         case SymbolList(symbols):
             entries = tuple(
                 (
