@@ -13,6 +13,7 @@ from centrode.render.document.blocks import (
     ChapterBlocks,
     FormulaBlock,
     ParagraphBlock,
+    ReferenceBlock,
     Report,
     SectionBlocks,
     TableBlock,
@@ -124,13 +125,16 @@ def test_what_announces_a_line_stays_with_it() -> None:
         ParagraphBlock("point A"),
         FormulaBlock((("x", "1"),)),
         ParagraphBlock("Last."),
+        ReferenceBlock("refer"),
+        TableBlock(("a",), (("b",),)),
     )
     source = Source(Report("", "", "en", (ChapterBlocks("a", "A", (SectionBlocks("", blocks),)),))).text
     kept = [line for line in source.splitlines() if "sticky: true" in line]
-    assert [any(word in line for line in kept) for word in ("Group", "point A", "Last")] == [
+    assert [any(word in line for line in kept) for word in ("Group", "point A", "Last", "refer")] == [
         True,
         True,
         False,
+        True,
     ]
 
 

@@ -180,12 +180,16 @@ def _lines_of_contents(report: Report) -> int:
 def _announces(blocks: Sequence[Block]) -> bool:
     """Whether the first of these is a line that would be lost at the foot of a page without what it announces.
 
-    Lines that end with a colon announce a line too.
+    Lines that end with a colon, and those that refer to formulas, announce a line too.
     """
     block, *others = blocks
+    if isinstance(block, ReferenceBlock) and others:
+        return not isinstance(others[0], ParagraphBlock | ReferenceBlock) or _announces(others)
     if not isinstance(block, ParagraphBlock) or not others or len(block.text) > ANNOUNCEMENT:
         return False
-    return not isinstance(others[0], ParagraphBlock) or (block.text.endswith(":") and _announces(others))
+    return not isinstance(others[0], ParagraphBlock | ReferenceBlock) or (
+        block.text.endswith(":") and _announces(others)
+    )
 
 
 def content(marked: str) -> str:
