@@ -5,18 +5,25 @@ from __future__ import annotations
 import io
 import re
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import typst
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 import centrode as ct
 from centrode.analysis.representative_position import representative_sample
 from centrode.errors import InputError, Status
+from centrode.render.document import chapters
 from centrode.render.document.blocks import CheckBlock, Moving, ParagraphBlock, Picture, Report, TableBlock
+from centrode.render.figures import pictures
+from centrode.report.chapters import CHAPTERS
 from centrode.report.pdf_document import STYLE, Source
+from centrode.report.study import settle_options
 from centrode.report.texts import blocks_of
+from centrode.topics.registry import TOPICS
 
 NAME = "crank-rocker"
 
@@ -42,6 +49,76 @@ def test_the_table_of_checks_holds_every_check_of_the_full_form(compact: Report,
         (check.text, "holds" if check.holds else "does not hold") for check in checks
     ]
     assert len(checks) > 1
+
+
+def headings(report: Report) -> set[tuple[str, str]]:
+    """Titles of chapters and of their sections."""
+    titles = {(chapter.title, "") for chapter in report.chapters}
+    return titles | {
+        (chapter.title, section.title) for chapter in report.chapters for section in chapter.sections
+    }
+
+
+def test_the_full_form_holds_the_compact_one_and_more(compact: Report, full: Report) -> None:
+    *others, checks = compact.chapters
+    compact = replace(compact, chapters=tuple(others))
+    assert checks.name == "checks"
+    assert headings(compact) < headings(full)
+    tables: dict[tuple[str, ...], list[set[tuple[str, ...]]]] = {}
+    for block in blocks_of(full):
+        if isinstance(block, TableBlock):
+            tables.setdefault(block.head, []).append(set(block.rows))
+    found = [block for block in blocks_of(compact) if isinstance(block, TableBlock)]
+    for table in found:  # with all its rows, of which the full form may have more
+        assert any(set(table.rows) <= rows for rows in tables[table.head]), table.caption
+    assert len(found) < sum(map(len, tables.values()))
+
+
+def test_every_chapter_that_concerns_a_mechanism_is_in_the_full_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    press = ct.example("six-bar-press")
+    wanted = {
+        chapter.name
+        for topic in TOPICS
+        for chapter in topic.document.chapters
+        if topic.subject == "mechanism"
+        and ((concerns := chapter.concerns or topic.concerns) is None or concerns(press))
+    }
+    monkeypatch.setattr(
+        pictures, "figure_of", lambda *_: Figure()
+    )  # which chapters there are hangs on no picture
+    monkeypatch.setattr(chapters, "drawn_to_scale", lambda figure, words, *_: chapters.picture(figure, words))
+    monkeypatch.setattr(chapters, "scale_of", lambda _: 1.0)
+    made = ct.report(press, ct.ReportOptions(full=True), language="en")
+    assert {chapter.name for chapter in made.chapters} == wanted
+    assert not [chapter.name for chapter in made.chapters if chapter.missing or not chapter.sections]
+    assert len(wanted) > 15
+
+
+@pytest.mark.parametrize(
+    ("file", "command", "full"),
+    [
+        (None, None, False),
+        (True, None, True),
+        (False, None, False),
+        (True, False, False),
+        (False, True, True),
+    ],
+)
+def test_the_form_is_that_of_the_command_then_of_the_file(
+    file: bool | None, command: bool | None, full: bool
+) -> None:
+    mechanism = replace_wishes(ct.example(NAME), file)
+    assert settle_options(mechanism, ct.ReportOptions(full=command), CHAPTERS).full is full
+    if file is not None:  # chapters that are chosen are full, unless somebody says otherwise
+        chosen = ct.ReportOptions(chapters=("data",))
+        assert settle_options(mechanism, chosen, CHAPTERS).full is file
+
+
+def replace_wishes(mechanism: ct.Mechanism, full: bool | None) -> ct.Mechanism:
+    wish = "" if full is None else f"\n[report]\nfull = {str(full).lower()}\n"
+    made = ct.parse_mechanism(ct.mechanism_text(mechanism) + wish)
+    assert ct.parse_mechanism(ct.mechanism_text(made)).report.full is full
+    return made
 
 
 def test_every_table_and_figure_has_a_number_and_a_caption_of_its_own(compact: Report, full: Report) -> None:

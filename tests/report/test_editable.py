@@ -209,7 +209,7 @@ def test_wide_tables_are_dealt_to_several_that_begin_with_the_first_column() -> 
     heads = ("sample", *(f"column {k}" for k in range(20)))
     block = TableBlock(heads, (tuple("123.4567" for _ in heads),), "Wide", (True,) * len(heads))
     report = Report("a", "b", "en", (made.ChapterBlocks("one", "One", (made.SectionBlocks("", (block,)),)),))
-    tree, _pictures = tree_of(report, lambda latex, number: [], "png")
+    tree, _pictures = tree_of(report, lambda latex, number: [], lambda number: {}, "png")
     tables = [one["c"] for one in json.loads(tree)["blocks"] if one["t"] == "Table"]
     assert len(tables) > 1
     columns = [[cell[4][0]["c"][0]["c"] for cell in table[3][1][0][1]] for table in tables]

@@ -67,7 +67,9 @@ _options, _writing = (
     "--full/--compact",
     "full",
     default=None,
-    help=mark("The full or the compact form; compact by default, and full for chosen chapters alone."),
+    help=mark(
+        "The full or the compact form; by default as [report] has it, and full if chapters are chosen."
+    ),
 )
 def report(
     description: str,

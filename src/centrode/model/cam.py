@@ -31,6 +31,7 @@ from centrode.model.settings import CamReportWishes, Display, read_samples
 from centrode.model.values import (
     READING,
     Angle,
+    Flag,
     TableColumns,
     Text,
     not_negative,
@@ -82,13 +83,6 @@ def _read_letter(key: object) -> str:
     raise Problem(
         what, _("use letters, digits and underscores, and begin with a letter; phi, pi and e are reserved")
     )
-
-
-def read_flag(value: object) -> bool:
-    """True or false."""
-    if not isinstance(value, bool):
-        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
-    return value
 
 
 def read_steepness(value: object, kind: str) -> float:
@@ -189,7 +183,6 @@ Curved = Annotated[float, quantity("curvature", positive)]
 Stress = Annotated[float, quantity("pressure", positive)]
 Size = Annotated[float, quantity("length", positive)]
 Steepness = Annotated[float, quantity("angle", read_steepness)]
-Flag = Annotated[bool, PlainValidator(read_flag)]
 
 
 # Parts of a cam's description: curvature law, start, range, roller, return arc, mover, contact, choice,

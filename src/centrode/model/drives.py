@@ -19,10 +19,11 @@ from centrode.model.motion_parameter import (
     kind_of_value,
 )
 from centrode.model.reading import FRAME, DescriptionPart, Problem, bounded_list, one_of
-from centrode.model.segments import Segment, law_of_segments, read_repeat, read_segments
+from centrode.model.segments import Segment, law_of_segments, read_segments
 from centrode.model.values import (
     READING,
     Angle,
+    Flag,
     Name,
     TableColumns,
     positive,
@@ -87,12 +88,12 @@ class Drive(DescriptionPart):
     law: Annotated[str, PlainValidator(_read_law)] | None = None
     table: tuple[tuple[float, float], ...] | None = None
     segments: tuple[Segment, ...] | None = None
-    repeat: Annotated[bool, PlainValidator(read_repeat)] = False
+    repeat: Flag = False
     cam: Annotated[PlateCam, PlainValidator(read_plate_cam)] | None = None
     cam_speed: Annotated[float, quantity("angular speed", positive)] | None = None
     cam_angle: Angle = 0.0
     cam_point: Name | None = None
-    lowers: Annotated[bool, PlainValidator(read_repeat)] = False
+    lowers: Flag = False
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:

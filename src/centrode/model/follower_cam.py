@@ -22,7 +22,7 @@ from centrode.errors import InputError
 from centrode.laws import SegmentedLaw
 from centrode.locale import _
 from centrode.model import reading
-from centrode.model.cam import Flag, Material, Size, Steepness, Stress
+from centrode.model.cam import Material, Size, Steepness, Stress
 from centrode.model.reading import (
     DescriptionPart,
     Problem,
@@ -35,7 +35,7 @@ from centrode.model.reading import (
 )
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
 from centrode.model.settings import CamReportWishes, Display, read_samples
-from centrode.model.values import Angle, Text, not_negative, positive, quantity, si
+from centrode.model.values import Angle, Flag, Text, not_negative, positive, quantity, si
 from centrode.quantities import terminal_unit
 
 # Parts of a cam with a follower: cam, follower, spring, bounds, tool, study.

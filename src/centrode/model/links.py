@@ -33,6 +33,7 @@ from centrode.model.values import (
     Angle,
     Coordinates,
     Direction,
+    Flag,
     Inertia,
     Name,
     NamedPositions,
@@ -173,12 +174,6 @@ def _read_ratio(value: object) -> float:
     return ratio
 
 
-def _read_flag(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
-    return value
-
-
 def unit_along(direction: Vector | float) -> Vector:
     """Unit vector of a direction that is given as a vector or as an angle [rad]."""
     if isinstance(direction, tuple):
@@ -310,7 +305,7 @@ class Track(DescriptionPart):
     direction: Direction | None = None
     centre: Spot | None = None
     radius: PositiveLength | None = None
-    inside: Annotated[bool, PlainValidator(_read_flag)] = False
+    inside: Flag = False
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:

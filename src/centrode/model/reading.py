@@ -407,6 +407,13 @@ _POINT = r"[^\W\d_]\d*['’′]*"
 _TWO_POINTS = re.compile(rf"({_POINT})({_POINT})")
 
 
+def read_flag(value: object) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
+    return value
+
+
 def read_name(value: object) -> str:
     """A name in composed form (NFC); a Problem if it cannot stand in a file, a table and a drawing."""
     if not isinstance(value, str):

@@ -307,6 +307,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "instants": list_of(AMOUNT, 0, reading.INSTANTS),
         "points": list_of(NAME, 0, reading.POINTS),
         "digits": REPORT_DIGITS,
+        "full": {"type": "boolean"},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     Description: {
@@ -395,6 +396,7 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
+        "full": {"type": "boolean"},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     PlateCam: {
@@ -483,6 +485,7 @@ CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
+        "full": {"type": "boolean"},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     Cam: {

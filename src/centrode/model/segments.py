@@ -207,13 +207,6 @@ def law_of_segments(segments: tuple[Segment, ...], repeat: bool) -> laws.Segment
     return laws.SegmentedLaw(tuple(segment.law for segment in segments), repeat)
 
 
-def read_repeat(value: object) -> bool:
-    """Whether, as true or false."""
-    if not isinstance(value, bool):
-        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
-    return value
-
-
 def _gaps(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
     """Rates that are given without the one of lower order: what they are to mean for a polynomial is open."""
     return [

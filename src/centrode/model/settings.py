@@ -25,6 +25,7 @@ from centrode.model.reading import (
 from centrode.model.values import (
     Angle,
     EndOfMotion,
+    Flag,
     Name,
     PlaceOfMotion,
     Text,
@@ -306,6 +307,8 @@ class CamReportWishes(DescriptionPart):
         Angles of the carrier, or of a cam that turns, that tables show.
     digits : int
         Significant digits of numbers.
+    full : bool
+        Everything there is to show, or the compact form; compact if left out, chapters that are chosen excepted.
     text : names of chapters -> ChapterText
         Own text before and after chapters.
     """
@@ -313,6 +316,7 @@ class CamReportWishes(DescriptionPart):
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
     instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
+    full: Flag | None = None
     text: ChapterTexts = FrozenMap({})
 
 
@@ -328,6 +332,8 @@ class ReportWishes(DescriptionPart):
         Whose velocities and paths are told.
     digits : int
         Significant digits of numbers.
+    full : bool
+        Everything there is to show, or the compact form; compact if left out, chapters that are chosen excepted.
     text : names of chapters -> ChapterText
         Own text before and after chapters.
     """
@@ -336,4 +342,5 @@ class ReportWishes(DescriptionPart):
     instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
     points: Annotated[tuple[Name, ...], bounded_list(reading.POINTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
+    full: Flag | None = None
     text: ChapterTexts = FrozenMap({})

@@ -25,6 +25,7 @@ from centrode.model.reading import (
     Problem,
     likely,
     read_file,
+    read_flag,
     read_link_name,
     read_name,
     table,
@@ -237,6 +238,7 @@ def quantity(kind: str, read: Callable[[object, str], float] = si) -> PlainValid
 
 Text = Annotated[str, PlainValidator(read_text)]
 Name = Annotated[str, PlainValidator(read_name)]
+Flag = Annotated[bool, PlainValidator(read_flag)]
 Coordinates = Annotated[Vector, PlainValidator(read_coordinates)]
 Position = Annotated[Vector | Placed, PlainValidator(read_position)]
 Through = Annotated[Vector | str | Placed, PlainValidator(read_through)]

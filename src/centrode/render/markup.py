@@ -22,6 +22,7 @@ from centrode.sheets.sheet import (
     LinearEquations,
     Listing,
     Paragraph,
+    Reference,
     Section,
     Sheet,
     SymbolList,
@@ -139,7 +140,7 @@ class MarkupPage(PrintSpelling):
                 return self.displayed(linear_system(entries, *sides))
             case SymbolList(symbols):
                 return self.table((_("symbol"), _("value"), _("meaning")), self._symbols(symbols))
-            case Illustration() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
+            case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
                 return ""
             case _:
                 assert_never(block)

@@ -21,6 +21,7 @@ from centrode.sheets.sheet import (
     LinearEquations,
     Listing,
     Paragraph,
+    Reference,
     Section,
     SymbolList,
     Table,
@@ -108,7 +109,7 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             return "\n".join(system_lines(entries, *sides))
         case SymbolList(symbols):
             return "\n".join(symbol_lines([symbol_texts(one, spelling) for one in symbols]))
-        case Illustration() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
+        case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
             return ""
         case _:
             assert_never(block)

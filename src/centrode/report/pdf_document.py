@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 
 import typst
 
-from centrode.locale import _
+from centrode.locale import _, speaking
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
@@ -22,6 +23,7 @@ from centrode.render.document.blocks import (
     ParagraphBlock,
     Picture,
     ProseBlock,
+    ReferenceBlock,
     Report,
     SectionBlocks,
     Span,
@@ -31,6 +33,7 @@ from centrode.render.document.blocks import (
 from centrode.render.document.numbering import number_blocks
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
+from centrode.report.spoken_formulas import spoken_formula, spoken_relations, spoken_system, spoken_text
 from centrode.report.texts import parts_of
 
 # A report as the source of a typst document; everything a user wrote stands in it as a string.
@@ -62,7 +65,6 @@ class Source:
 
     def __init__(self, report: Report) -> None:
         self.files: dict[str, bytes] = {}
-        self.formulas = 0
         self.text = "\n".join(self._document(number_blocks(report))) + "\n"
 
     def _document(self, report: Report) -> Iterator[str]:
@@ -123,17 +125,23 @@ class Source:
 
     @_shown.register
     def _formula(self, block: FormulaBlock) -> str:
-        return self._numbered(f"relations({_relations(block.lines)})")
+        formula = f"relations({_relations(block.lines)}, {_strings(spoken_relations(block))})"
+        return f"#numbered({block.number}, {formula})"
 
     @_shown.register
     def _system(self, block: SystemBlock) -> str:
         matrix = _array([_array([_math(entry) for entry in row]) for row in block.matrix])
         unknowns, right = (_array([_math(one) for one in column]) for column in (block.unknowns, block.right))
-        return self._numbered(f"system({matrix}, {unknowns}, {right}, {_relations(relations_of(block))})")
+        lines, words = _relations(relations_of(block)), _strings(spoken_system(block))
+        formula = f"system({matrix}, {unknowns}, {right}, {lines}, {words})"
+        return f"#numbered({block.number}, {formula})"
 
-    def _numbered(self, formula: str) -> str:
-        self.formulas += 1
-        return f"#numbered({self.formulas}, {formula})"
+    @_shown.register
+    def _reference(self, block: ReferenceBlock) -> str:
+        pieces = (
+            f"#formula-number({one});" if isinstance(one, int) else f"#{quote(one)};" for one in block.pieces
+        )
+        return f"#par([{''.join(pieces)}])"
 
     @_shown.register
     def _table(self, block: TableBlock) -> str:
@@ -151,7 +159,8 @@ class Source:
         name = f"pictures/{len(self.files) + 1}.svg"
         self.files[name] = block.svg
         where = f"{block.number}, floats: {'true' if floats else 'false'}"
-        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {where})"
+        words = quote(spoken_text(block.caption) or _("Figure"))
+        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {words}, {where})"
 
     @_shown.register
     def _moving(self, block: Moving) -> str:
@@ -171,17 +180,24 @@ def _lines_of_contents(report: Report) -> int:
 def _announces(blocks: Sequence[Block]) -> bool:
     """Whether the first of these is a line that would be lost at the foot of a page without what it announces.
 
-    Lines that end with a colon announce a line too.
+    Lines that end with a colon, and those that refer to formulas, announce a line too.
     """
     block, *others = blocks
+    if isinstance(block, ReferenceBlock) and others:
+        return not isinstance(others[0], ParagraphBlock | ReferenceBlock) or _announces(others)
     if not isinstance(block, ParagraphBlock) or not others or len(block.text) > ANNOUNCEMENT:
         return False
-    return not isinstance(others[0], ParagraphBlock) or (block.text.endswith(":") and _announces(others))
+    return not isinstance(others[0], ParagraphBlock | ReferenceBlock) or (
+        block.text.endswith(":") and _announces(others)
+    )
 
 
 def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
-    parts = [_math(part.text) if part.mathematics else f"#{quote(part.text)};" for part in parts_of(marked)]
+    parts = [
+        f"#{_inline(part.text)};" if part.mathematics else f"#{quote(part.text)};"
+        for part in parts_of(marked)
+    ]
     return f"[{''.join(parts)}]"
 
 
@@ -197,6 +213,11 @@ def _math(formula: str) -> str:
     return f"${check_formula(formula).strip()}$"
 
 
+def _inline(formula: str) -> str:
+    """Mathematics of a sentence with its words, for those who hear it."""
+    return f"inline({_math(formula)}, {quote(spoken_formula(formula))})"
+
+
 def _cell(text: str) -> str:
     """A cell of a table: text without mathematics is a string, which typst reads much faster."""
     parts = parts_of(text)
@@ -205,6 +226,10 @@ def _cell(text: str) -> str:
 
 def _caption(text: str) -> str:
     return content(text) if text else "none"
+
+
+def _strings(texts: Sequence[str]) -> str:
+    return _array([quote(text) for text in texts])
 
 
 def _array(entries: Sequence[str]) -> str:
@@ -264,20 +289,37 @@ def picture_width(picture: Picture) -> float:
 
 
 STYLE = Path(__file__).with_name("style.typ")
+STANDARDS: tuple[list[Any], ...] = (["ua-1", "a-2a"], [])
+"""PDF/UA-1 (tagged, described) with PDF/A-2a (kept for decades); neither where a user's letters are in no font."""
+
+EPOCH = 315_532_800
+"""The date of every document: PDF/A wants one, and the same report gives the same bytes. That of the other formats."""
 
 
 def pdf_document(report: Report) -> bytes:
-    """A report as PDF: searchable, with an outline and page numbers; the same bytes from the same report.
+    """A report as PDF/UA-1 and PDF/A-2a: tagged, with an outline and page numbers; the same bytes from the same report.
 
-    Typst reads nothing but what is handed to it, and no fonts but its own.
+    Typst reads nothing but what is handed to it, and no fonts but its own. Both standards forbid letters that no font
+    has: a document with such letters of a user's is a plain PDF.
     """
-    source = Source(report)
+    with speaking(report.language):
+        source = Source(report)
     files: Any = {
         "main": source.text.encode(),
         "style.typ": STYLE.read_bytes(),
         **source.files,
     }
     compiler = typst.Compiler(ignore_system_fonts=True)
-    document, _warnings = compiler.compile_with_warnings(input=files, format="pdf", timestamp=0)
+    *strict, plain = STANDARDS
+    for standards in strict:
+        with suppress(typst.TypstError):
+            return _compiled(compiler, files, standards)
+    return _compiled(compiler, files, plain)
+
+
+def _compiled(compiler: typst.Compiler, files: Any, standards: list[Any]) -> bytes:
+    document, _warnings = compiler.compile_with_warnings(
+        input=files, format="pdf", timestamp=EPOCH, pdf_standards=standards
+    )
     assert isinstance(document, bytes)
     return document

@@ -42,7 +42,7 @@ class ReportOptions:
     points : names of points whose velocities and paths are given
     digits : significant digits of numbers
     full : everything there is to show; otherwise the compact form, with the checks in one table at the end.
-        Chapters that somebody has chosen are full unless this says otherwise
+        Chapters that somebody has chosen are full unless this or the description says otherwise
 
     Examples
     --------
@@ -78,12 +78,13 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     asked = description.report
     points = asked.points or None if isinstance(asked, ReportWishes) else None
     chapters = _first(options.chapters, asked.chapters or None)
+    full = _first(options.full, asked.full)
     found = Wishes(
         chapters,
         _first(options.instants, asked.instants or description.study.instants) or (),
         _first(options.points, points),
         options.digits if options.digits is not None else asked.digits or DIGITS,
-        chapters is not None if options.full is None else options.full,
+        chapters is not None if full is None else full,
     )
     where = "chapters" if options.chapters is not None else "[report] chapters"
     if found.chapters is not None and not found.chapters:

@@ -116,9 +116,21 @@ class Formula:
     Attributes
     ----------
     lines : each the parts of a = b = ..., the first the left side
+    name : by which a `Reference` finds it; several formulas may share one
     """
 
     lines: tuple[tuple[Leaf, ...], ...]
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A sentence of a document whose holes are names of formulas: their numbers stand there.
+
+    It is left out where the document has no formula of such a name.
+    """
+
+    text: Sentence
 
 
 @dataclass(frozen=True)
@@ -208,6 +220,7 @@ class SymbolList:
 Block: TypeAlias = (
     Paragraph
     | Formula
+    | Reference
     | Table
     | FactTable
     | Illustration

@@ -109,9 +109,9 @@ def _derived(equations: Equations) -> Iterator[Section]:
     if equations.groups:
         explained = equations.together is None
         normal = [line for group in equations.groups for line in _normal_form(group, explained)]
-        yield Section(Sentence("Cauchy normal form"), _blocks(normal))
+        yield Section(Sentence("Cauchy normal form"), _blocks(normal, "rates"))
         seconds = [line for group in equations.groups for line in _accelerations(group)]
-        yield Section(Sentence("Accelerations"), _blocks(seconds))
+        yield Section(Sentence("Accelerations"), _blocks(seconds, "accelerations"))
     through = equations.board.axes_through
     if equations.points and through is not None:
         first, second = map(Name, through)
@@ -124,8 +124,11 @@ def _derived(equations: Equations) -> Iterator[Section]:
         yield Section(title, (Formula(tuple(_velocity(equations.velocity(point)))),))
 
 
-def _blocks(entries: Iterable[Line | Block]) -> tuple[Block, ...]:
-    """Relations that follow each other stand in one formula."""
+def _blocks(entries: Iterable[Line | Block], name: str = "") -> tuple[Block, ...]:
+    """Relations that follow each other stand in one formula; it has a name where nothing is left to sentences."""
+    entries = list(entries)
+    if name and all(isinstance(entry, tuple) for entry in entries):
+        return (Formula(tuple(entry for entry in entries if isinstance(entry, tuple)), name),)
     blocks: list[Block] = []
     lines: list[Line] = []
     for entry in entries:

@@ -20,6 +20,7 @@ from centrode.sheets.sheet import (
     FactTable,
     Formula,
     Paragraph,
+    Reference,
     Scalar,
     Section,
     Sheet,
@@ -389,9 +390,13 @@ def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapt
     course = _over_cycle(
         results.steady, ENERGIES_IN_TABLE, Sentence("Moments, works and energies over the cycle")
     )
+    formulas = (
+        Reference(Sentence("The inertia of the links follows from {reduction}.")),
+        Reference(Sentence("Works and energies follow from {works}.")),
+    )
     sections = (
-        Section(NOTHING, (*_groups(flywheel), Formula(tuple(_work_relations(results))))),
-        Section(Sentence("Over the cycle"), (course,)),
+        Section(NOTHING, (*_groups(flywheel), Formula(tuple(_work_relations(results)), "works"))),
+        Section(Sentence("Over the cycle"), (*formulas, course)),
         Section(Sentence("Inertia and flywheel"), tuple(_needed_inertia(results))),
         Section(Sentence("Summary"), (FactTable(facts),)),
         illustrations(pictures, captions, details=("works",)),
@@ -578,10 +583,11 @@ def _real_motion_chapter(results: MachineResults) -> Chapter:
     course = _over_cycle(
         results.steady, SPEEDS_IN_TABLE, Sentence("Speed and acceleration of the drive over the cycle")
     )
+    formulas = Reference(Sentence("The first-order values follow from {speed}."))
     sections = (
         Section(NOTHING, _speed_relations()),
         *instants,
-        Section(Sentence("Over the cycle"), (course,)),
+        Section(Sentence("Over the cycle"), (formulas, course)),
         illustrations(pictures, captions, details=pictures[1:]),
     )
     return Chapter(Sentence("Real motion"), sections)
@@ -609,10 +615,13 @@ def _speed_relations() -> tuple[Block, ...]:
     )
     return (
         Paragraph(meaning),
-        Formula((("omega", speed), ("epsilon", acceleration))),
+        Formula((("omega", speed), ("epsilon", acceleration)), "speed"),
         Paragraph(beside),
         Paragraph(links),
-        Formula((("arrow(v)", "arrow(r)' omega"), ("arrow(a)", "arrow(r)'' omega^2 + arrow(r)' epsilon"))),
+        Formula(
+            (("arrow(v)", "arrow(r)' omega"), ("arrow(a)", "arrow(r)'' omega^2 + arrow(r)' epsilon")),
+            "transfer",
+        ),
     )
 
 
@@ -634,6 +643,7 @@ def _at(results: MachineResults, here: xr.Dataset) -> Iterator[Block]:
             ("epsilon", with_numbers, acceleration),
         )
     )
+    yield Reference(Sentence("Velocities and accelerations follow from {transfer}."))
     mechanism = results.mechanism
     if mechanism.space == "plane":
         names = tuple(mechanism.links)

@@ -12,7 +12,7 @@ from centrode.errors import Status
 from centrode.kinematics.rigid_body_checks import rigid_body_checks
 from centrode.model.mechanism import FRAME
 from centrode.quantities import QUANTITIES, STATUS_WORDS
-from centrode.sheets.sheet import Block, Chapter, Check, Column, Paragraph, Section, Table
+from centrode.sheets.sheet import Block, Chapter, Check, Column, Paragraph, Reference, Section, Table
 from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Slanted, Text
 from centrode.views.columns import rows_shown
 from centrode.views.instants import instant_title
@@ -37,6 +37,9 @@ MOST = 4
 """Links, and guides, that a table of a whole motion on the sphere has."""
 RATES = (("velocity", "v"), ("acceleration", "a"))
 TURNING = (("angle", "phi"), ("angular_velocity", "omega"), ("angular_acceleration", "epsilon"))
+FORMULAS = Reference(
+    Sentence("Angular velocities follow from {rates}, angular accelerations from {accelerations}.")
+)
 
 
 def tables_chapter(results: MotionResults, shown: xarray.Dataset, head: Sequence[Block]) -> Chapter:
@@ -50,7 +53,7 @@ def tables_chapter(results: MotionResults, shown: xarray.Dataset, head: Sequence
     return Chapter(
         Sentence("Tables of the motion"),
         (
-            Section(Sentence("Range"), tuple(head)),
+            Section(Sentence("Range"), (*head, *([] if on_sphere else [FORMULAS]))),
             *instants,
             Section(Sentence("The whole motion"), tuple(whole)),
             Section(Sentence("Checks"), tuple(_checks(results))),

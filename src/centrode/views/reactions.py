@@ -26,6 +26,7 @@ from centrode.sheets.sheet import (
     Failure,
     Formula,
     Paragraph,
+    Reference,
     Scalar,
     Section,
     Sheet,
@@ -593,7 +594,7 @@ def _relations(mechanism: Mechanism) -> tuple[Block, ...]:
         )
         inertia = (("arrow(M)_(Phi k)", turning),)
     signs = Sentence("A force in a hinge is that of the pin on the link, in the axes of the frame.")
-    return Paragraph(text), Formula((*inertia, system)), Paragraph(signs)
+    return Paragraph(text), Formula((*inertia, system), "inertia"), Paragraph(signs)
 
 
 def _instants(mechanism: Mechanism, instants: ReactionsAtInstants) -> Iterator[Section]:
@@ -608,6 +609,7 @@ def _instants(mechanism: Mechanism, instants: ReactionsAtInstants) -> Iterator[S
         yield Section(
             title,
             (
+                Reference(Sentence("Inertia forces and reactions follow from {inertia}.")),
                 *_inertia(mechanism, instants, k),
                 reactions,
                 *_virtual_work(mechanism, instants, k),

@@ -21,6 +21,7 @@ from centrode.sheets.sheet import (
     FactTable,
     Formula,
     Paragraph,
+    Reference,
     Section,
     Sheet,
     Table,
@@ -299,7 +300,10 @@ def _chapter(results: ReductionResults) -> Chapter:
     }
     sections = [Section(NOTHING, (*_meaning(results), FactTable(tuple(_facts(results)))))]
     if "reduced_inertia" in results.reduction:
-        sections += [*_sums(results), Section(Sentence("Over the motion"), (_course(results),))]
+        formulas = Reference(
+            Sentence("Reduced inertia, its derivative and the reduced moment follow from {reduction}.")
+        )
+        sections += [*_sums(results), Section(Sentence("Over the motion"), (formulas, _course(results)))]
     sections.append(Section(Sentence("Extremes and means"), (_extremes(results),), detail=True))
     return Chapter(Sentence("Reduction to the drive"), (*sections, illustrations(captions, captions)))
 
@@ -323,7 +327,7 @@ def _meaning(results: ReductionResults) -> tuple[Block, ...]:
         )
         inertia = "sum_k arrow(omega)'_k dot.op upright(bold(I))_k arrow(omega)'_k"
         lines = (("T", "1/2 J dot(q)^2"), ("J", inertia), ("M", "sum_j arrow(M)_j dot.op arrow(omega)'_j"))
-        return Paragraph(text), Paragraph(meaning), Formula(lines)
+        return Paragraph(text), Paragraph(meaning), Formula(lines, "reduction")
     meaning = Sentence(
         "$v_k$ is the velocity of the centre of mass of link $k$, $phi_k$ the angle of the link."
     )
@@ -333,7 +337,7 @@ def _meaning(results: ReductionResults) -> tuple[Block, ...]:
         ("J'", "2 sum_k (m_k arrow(v)'_k dot.op arrow(v)''_k + J_k phi'_k phi''_k)"),
         ("M", "sum_j arrow(F)_j dot.op arrow(r)'_j + sum_j M_j phi'_j"),
     )
-    return Paragraph(text), Paragraph(meaning), Formula(lines)
+    return Paragraph(text), Paragraph(meaning), Formula(lines, "reduction")
 
 
 def _course(results: ReductionResults) -> Table:

@@ -9,6 +9,7 @@ chapter is missing, are plain text without mathematics.
 
 from __future__ import annotations
 
+import string
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
@@ -64,18 +65,52 @@ class FormulaBlock:
     Attributes
     ----------
     lines : each the parts of a = b = ..., the first the left side, as mathematics
+    name : by which a `ReferenceBlock` finds it
+    number : of the formula in its document, from 1
     """
 
     lines: tuple[tuple[str, ...], ...]
+    name: str = ""
+    number: int = 0
 
 
 @dataclass(frozen=True)
 class SystemBlock:
-    """matrix unknowns = right, as mathematics."""
+    """matrix unknowns = right, as mathematics; its `number` in the document counts from 1, with those of formulas."""
 
     matrix: tuple[tuple[str, ...], ...]
     unknowns: tuple[str, ...]
     right: tuple[str, ...]
+    number: int = 0
+
+
+@dataclass(frozen=True)
+class ReferenceBlock:
+    """A sentence with numbers of formulas.
+
+    Attributes
+    ----------
+    text : plain, with a hole {name} for each name of formulas
+    numbers : name -> numbers of its formulas; empty until the document is numbered
+    """
+
+    text: str
+    numbers: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the formulas."""
+        return tuple(name for _text, name, *_rest in string.Formatter().parse(self.text) if name)
+
+    @property
+    def pieces(self) -> tuple[str | int, ...]:
+        """The sentence, with the numbers of formulas as numbers in their places."""
+        found: list[str | int] = []
+        for text, name, *_rest in string.Formatter().parse(self.text):
+            found.append(text)
+            for place, number in enumerate(self.numbers[name] if name else ()):
+                found += [", ", number] if place else [number]
+        return tuple(piece for piece in found if piece != "")
 
 
 @dataclass(frozen=True)
@@ -207,6 +242,7 @@ Block: TypeAlias = (
     | ItemsBlock
     | FormulaBlock
     | SystemBlock
+    | ReferenceBlock
     | TableBlock
     | Picture
     | CheckBlock

@@ -38,6 +38,7 @@ from centrode.sheets.sheet import (
     LinearEquations,
     Listing,
     Paragraph,
+    Reference,
     Section,
     Sheet,
     SymbolList,
@@ -101,8 +102,10 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.ParagraphBlock(f"{spelled[:1].upper()}{spelled[1:]}." if clause else spelled)
         case MotionPlayer(mechanism, motion):
             return moving_of(mechanism, motion)
-        case Formula(lines):
-            return blocks.FormulaBlock(tuple(tuple(map(spelling.mathematics, line)) for line in lines))
+        case Formula(lines, name):
+            return blocks.FormulaBlock(tuple(tuple(map(spelling.mathematics, line)) for line in lines), name)
+        case Reference(text):
+            return blocks.ReferenceBlock(_(text.message))
         case Table():
             return _table(block, spelling)
         case FactTable(facts, caption):
@@ -136,8 +139,8 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.ParagraphBlock(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
         case LinearEquations(matrix, unknowns, right):
             rows = tuple(tuple(map(spelling.mathematics, row)) for row in matrix)
-            sides = (tuple(map(spelling.mathematics, side)) for side in (unknowns, right))
-            return blocks.SystemBlock(rows, *sides)
+            left, right_side = (tuple(map(spelling.mathematics, side)) for side in (unknowns, right))
+            return blocks.SystemBlock(rows, left, right_side)
         case SymbolList(symbols):
             entries = tuple(
                 (

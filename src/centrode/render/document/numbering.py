@@ -1,8 +1,8 @@
-"""Captions and numbers of tables and figures of a document, and the sentences that refer to figures."""
+"""Captions and numbers of tables, figures and formulas, and the sentences that refer to figures and formulas."""
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -12,11 +12,14 @@ from centrode.locale import _
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
+    FormulaBlock,
     Moving,
     ParagraphBlock,
     Picture,
+    ReferenceBlock,
     Report,
     SectionBlocks,
+    SystemBlock,
     TableBlock,
     shown,
 )
@@ -25,21 +28,48 @@ Captioned: TypeAlias = TableBlock | Picture | Moving
 
 
 def number_blocks(report: Report) -> Report:
-    """The report with every captioned table and figure numbered from 1 in the order of the document.
+    """The report with every formula, captioned table and captioned figure numbered from 1 in the order of the document.
 
-    Numbers that blocks have already are given anew, so a report may be numbered more than once.
+    Sentences get the numbers of the formulas before them that they name; those without any are left out. Numbers that
+    blocks have already are given anew, so a report may be numbered more than once.
     """
-    tables, figures = _counter(), _counter()
+    tables, figures, formulas = _counter(), _counter(), _counter()
+    named: defaultdict[str, tuple[int, ...]] = defaultdict(tuple)
 
     def numbered(block: Block) -> Block:
         if isinstance(block, TableBlock):
             return replace(block, number=tables() if block.caption else 0)
         if isinstance(block, Picture | Moving):
             return replace(block, number=figures() if block.caption else 0)
+        if isinstance(block, FormulaBlock | SystemBlock):
+            block = replace(block, number=formulas())
+            if isinstance(block, FormulaBlock) and block.name:
+                named[block.name] += (block.number,)
+        if isinstance(block, ReferenceBlock):
+            return replace(block, numbers={name: named[name] for name in block.names if name in named})
         return block
 
     opening = tuple(map(numbered, report.opening))
-    return replace(report, opening=opening, chapters=_changed(report.chapters, numbered))
+    chapters = _without_loose_references(_changed(report.chapters, numbered))
+    return replace(report, opening=opening, chapters=chapters)
+
+
+def _without_loose_references(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ...]:
+    """Chapters without the sentences that name a formula which is not there."""
+    return tuple(
+        replace(
+            chapter,
+            sections=tuple(
+                replace(section, blocks=tuple(block for block in section.blocks if not _is_loose(block)))
+                for section in chapter.sections
+            ),
+        )
+        for chapter in chapters
+    )
+
+
+def _is_loose(block: Block) -> bool:
+    return isinstance(block, ReferenceBlock) and set(block.names) != set(block.numbers)
 
 
 def _counter() -> Callable[[], int]:

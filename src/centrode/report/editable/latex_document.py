@@ -10,7 +10,7 @@ from centrode.render.document.blocks import Report
 from centrode.render.latex import escape
 from centrode.report.editable.pandoc import run_pandoc
 from centrode.report.editable.pictures import converted
-from centrode.report.editable.tree import Element, raw_block, tree_of
+from centrode.report.editable.tree import Element, raw_block, raw_inline, tree_of
 
 LANGUAGES = {"en": "english", "ru": "russian", "uk": "ukrainian"}
 """Names of languages in LaTeX."""
@@ -76,7 +76,7 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
     source, figures
     """
     with speaking(report.language):
-        tree, pictures = tree_of(report, _numbered, "pdf")
+        tree, pictures = tree_of(report, _numbered, _referred, "pdf")
         contents = _("Contents")
     body = run_pandoc(tree, "--from=json", "--to=latex-smart-auto_identifiers", "--wrap=preserve").decode()
     body = _in_folder(body, pictures, figures)
@@ -116,3 +116,8 @@ def _in_folder(body: str, pictures: Mapping[str, bytes], folder: str) -> str:
 def _numbered(latex: str, number: int) -> list[Element]:
     """A formula that LaTeX numbers, with a label to refer to."""
     return [raw_block("latex", f"\\begin{{equation}}\\label{{eq:{number}}}\n{latex}\n\\end{{equation}}")]
+
+
+def _referred(number: int) -> Element:
+    """The number of a formula that LaTeX looks up."""
+    return raw_inline("latex", f"\\eqref{{eq:{number}}}")

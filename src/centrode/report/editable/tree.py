@@ -20,12 +20,14 @@ from centrode.render.document.blocks import (
     ParagraphBlock,
     Picture,
     ProseBlock,
+    ReferenceBlock,
     Report,
     SectionBlocks,
     Span,
     SystemBlock,
     TableBlock,
 )
+from centrode.render.document.numbering import number_blocks
 from centrode.report.editable.mathematics import LatexFormulas, latex_formulas, spellings_of
 from centrode.report.pdf_document import picture_width
 from centrode.report.texts import blocks_of, parts_of, texts_of
@@ -49,16 +51,16 @@ class Tree:
     ----------
     formulas : of the report in LaTeX
     number : (LaTeX of a displayed formula, its number) -> blocks
+    refer : number of a formula -> what stands for it in a sentence
     file : ending of the pictures
     pictures : name -> SVG of each picture, in their order
-    count : of the formulas on lines of their own
     """
 
     formulas: LatexFormulas
     number: Callable[[str, int], list[Element]]
+    refer: Callable[[int], Element]
     file: str
     pictures: dict[str, bytes] = field(default_factory=dict)
-    count: int = 0
 
     def document(self, report: Report) -> bytes:
         """The whole tree as pandoc reads it."""
@@ -122,13 +124,15 @@ class Tree:
 
     @shown.register
     def _formula(self, block: FormulaBlock) -> list[Element]:
-        self.count += 1
-        return self.number(self.formulas.relations(block), self.count)
+        return self.number(self.formulas.relations(block), block.number)
 
     @shown.register
     def _system(self, block: SystemBlock) -> list[Element]:
-        self.count += 1
-        return self.number(self.formulas.system(block), self.count)
+        return self.number(self.formulas.system(block), block.number)
+
+    @shown.register
+    def _reference(self, block: ReferenceBlock) -> list[Element]:
+        return [paragraph([self.refer(one) if isinstance(one, int) else _text(one) for one in block.pieces])]
 
     @shown.register
     def _check(self, block: CheckBlock) -> list[Element]:
@@ -200,15 +204,19 @@ def cell_of(inlines: list[Element], alignment: str = "AlignDefault") -> list[Any
 
 
 def tree_of(
-    report: Report, number: Callable[[str, int], list[Element]], file: str
+    report: Report,
+    number: Callable[[str, int], list[Element]],
+    refer: Callable[[int], Element],
+    file: str,
 ) -> tuple[bytes, Mapping[str, bytes]]:
     """The tree of a report and the pictures that it names."""
+    report = number_blocks(report)
     spelled: list[str] = []
     for block in blocks_of(report):
         spelled += [part.text for text in texts_of(block) for part in parts_of(text) if part.mathematics]
         if isinstance(block, FormulaBlock | SystemBlock):
             spelled += spellings_of(block)
-    tree = Tree(latex_formulas(spelled), number, file)
+    tree = Tree(latex_formulas(spelled), number, refer, file)
     return tree.document(report), tree.pictures
 
 

@@ -33,7 +33,7 @@ DECIMAL = re.compile(r"(\d+)\{,\}(\d+)")
 def word_document(report: Report) -> bytes:
     """A report as DOCX, whose formulas, headings, tables and captions are the word processor's own."""
     with speaking(report.language):
-        tree, pictures = tree_of(report, _numbered, "png")
+        tree, pictures = tree_of(report, _numbered, _referred, "png")
     with tempfile.TemporaryDirectory() as folder:
         for name, picture in converted(pictures, "png").items():
             (Path(folder) / name).write_bytes(picture)
@@ -70,6 +70,14 @@ def _numbered(latex: str, number: int) -> list[Element]:
             "c": [attributes, [None, []], widths, nothing, [[NO_ATTRIBUTES, 0, [], [row]]], nothing],
         }
     ]
+
+
+def _referred(number: int) -> Element:
+    """The number of a formula as a field that repeats the one at its formula."""
+    field = (
+        f'<w:fldSimple w:instr=" REF formula-{number} \\h "><w:r><w:t>({number})</w:t></w:r></w:fldSimple>'
+    )
+    return raw_inline("openxml", field)
 
 
 @cache

@@ -17,6 +17,7 @@ from centrode.render.document.blocks import (
     ParagraphBlock,
     Picture,
     ProseBlock,
+    ReferenceBlock,
     Span,
     SystemBlock,
     TableBlock,
@@ -49,11 +50,10 @@ def formulas_in(block: Block) -> Iterator[str]:
 
 @dataclass
 class Elements:
-    """Makes the elements of a page, with the numbers of formulas."""
+    """Makes the elements of a page."""
 
     formulas: Formulas
     drawings: Drawings = field(default_factory=Drawings)
-    displayed: int = 0
 
     def text(self, marked: str) -> str:
         """A text with its mathematics."""
@@ -75,7 +75,9 @@ class Elements:
             return self.formula(block)
         if isinstance(block, SystemBlock):
             system = self.formulas.system(block.matrix, block.unknowns, block.right)
-            return self.numbered(f'<div class="one system">{system}</div>')
+            return numbered(f'<div class="one system">{system}</div>', block.number)
+        if isinstance(block, ReferenceBlock):
+            return f"<p>{''.join(map(_piece, block.pieces))}</p>"
         if isinstance(block, TableBlock):
             return self.table(block)
         if isinstance(block, CheckBlock):
@@ -99,13 +101,7 @@ class Elements:
             else:
                 drawn.append(f"<p>{BREAK.join(self.formulas.pieces(line[0]))}{BREAK}{right}</p>")
         kind = "aligned" if aligned else "running"
-        return self.numbered(f'<div class="{kind}">{"".join(drawn)}</div>')
-
-    def numbered(self, formula: str) -> str:
-        """A formula on lines of its own, with its number, which can be referred to."""
-        self.displayed += 1
-        number = f'<span class="number" id="formula-{self.displayed}">({self.displayed})</span>'
-        return f'<div class="formulas">{formula}{number}</div>'
+        return numbered(f'<div class="{kind}">{"".join(drawn)}</div>', block.number)
 
     def table(self, block: TableBlock) -> str:
         """Rows under heads, with a number if it has a caption."""
@@ -157,6 +153,17 @@ class Elements:
             return ""
         number = html.escape(_("Figure {number}").format(number=block.number))
         return f"<figcaption><b>{number}.</b> {self.text(block.caption)}</figcaption>"
+
+
+def numbered(formula: str, number: int) -> str:
+    """A formula on lines of its own, with its number, which can be referred to."""
+    shown = f'<span class="number" id="formula-{number}">({number})</span>'
+    return f'<div class="formulas">{formula}{shown}</div>'
+
+
+def _piece(piece: str | int) -> str:
+    """Of a sentence: text, or the number of a formula, which leads to it."""
+    return f'<a href="#formula-{piece}">({piece})</a>' if isinstance(piece, int) else html.escape(piece)
 
 
 def _prose(block: ProseBlock) -> str:
