@@ -73,7 +73,7 @@ def _table(limits: Limits) -> Table:
 
 
 def reached_text(results: MotionResults) -> Text:
-    """From where to where a motion is reached, and which ends are dead positions."""
+    """From where to where a motion is reached, and of which groups the ends are dead positions."""
     status = results.motion["status"].values
     if np.isin(status, STATUSES_NOT_REACHED).all():
         return Sentence("nothing of the range")
@@ -138,5 +138,5 @@ def _repair(mechanism: Mechanism) -> Sentence:
         return Sentence("choose a range between the limits of the drive, or change the dimensions")
     return Sentence(
         'choose the range between the limits (range = "reachable" under [study], or --range reachable), or '
-        "change the dimensions"
+        "change a dimension as centrode rotatability proposes"
     )

@@ -65,7 +65,7 @@ def sheet(results: MotionResults) -> Sheet:
     datasets = {"motion": results.motion}
     chapters = {
         "motion": partial(_motion_chapter, results),
-        "plots": partial(_plots_chapter, mechanism, pictures),
+        "plots": partial(_plots_chapter, results, pictures),
     }
     if results.shown is not None:
         chapters["tables"] = partial(_tables_chapter, results, results.shown)
@@ -383,8 +383,9 @@ TOGETHER: Mapping[tuple[str, ...], Sentence] = {
 """Figures that a document shows as one where each has one panel."""
 
 
-def _plots_chapter(mechanism: Mechanism, pictures: Mapping[str, Picture]) -> Chapter:
+def _plots_chapter(results: MotionResults, pictures: Mapping[str, Picture]) -> Chapter:
     """The figures that a run draws, those of the links one below the other."""
+    mechanism = results.mechanism
     captions = CAPTIONS | (ON_SPHERE if mechanism.space == "sphere" else {})
     joined: dict[str, Illustration | None] = {}
     for names, caption in TOGETHER.items():
@@ -395,14 +396,17 @@ def _plots_chapter(mechanism: Mechanism, pictures: Mapping[str, Picture]) -> Cha
                 names[0]: Illustration(replace(plots[0], title=caption, rows=rows))
             }
     figures = (joined.get(name, Illustration(name, captions[name], name in DETAILS)) for name in pictures)
-    blocks = tuple(one for one in figures if one is not None)
+    blocks: tuple[Block, ...] = (
+        *(Paragraph(text, clause=True) for text in _reach(results)),
+        *(one for one in figures if one is not None),
+    )
     return Chapter(Sentence("Plots of the motion"), (Section(NOTHING, blocks),))
 
 
 def _reach(results: MotionResults) -> Iterator[Text]:
     """Which part of the motion a document shows where the mechanism locks."""
     if results.unreached:
-        yield Sentence("reached: {part}; tables and plots cover this part", part=reached_text(results))
+        yield Sentence("tables and plots cover what is reached: {part}", part=reached_text(results))
 
 
 def _tables_chapter(results: MotionResults, shown: xarray.Dataset) -> Chapter:
