@@ -91,7 +91,7 @@ def _facts(results: MotionResults) -> Iterator[Fact]:
     status = results.motion["status"].values
     yield Fact(Sentence("range"), _range(results))
     if results.unreached:
-        yield Fact(Sentence("reached"), reached_text(results))
+        yield Fact(Sentence("reached part"), reached_text(results))
     yield Fact(Sentence("limits"), _events(results, LIMIT))
     yield Fact(Sentence("change points"), _events(results, CHANGE_POINT))
     samples = Joined((Number(len(status), digits="d"), counted_statuses(status)), ": ")

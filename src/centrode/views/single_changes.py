@@ -54,7 +54,7 @@ def single_facts(found: SingleChanges) -> Iterator[Fact]:
         yield Fact(
             NOTHING,
             Sentence(
-                "{change} (limit {bound}), transmission angle of {angle} or more",
+                "{change} (limiting value {bound}), transmission angle of {angle} or more",
                 change=change_text(found.mechanism, change, ".9g"),
                 bound=Number(change.bound, change.unit),
                 angle=_angle(change.least_angle),
@@ -74,9 +74,8 @@ def single_blocks(found: SingleChanges, dead: DeadPosition | None, cause: Text) 
     best = found.changes[0]
     yield Paragraph(
         Sentence(
-            "The smallest change of one dimension that repairs it: {change}. With {bound} the mechanism only just "
-            "passes its dead position; the rest is a margin, with which the transmission angle of every group stays "
-            "at {angle} or more.",
+            "The smallest change of one dimension that repairs it: {change}. The limiting value is {bound}. The "
+            "difference is a margin: the transmission angle of every group stays at {angle} or more.",
             change=change_text(found.mechanism, best),
             bound=Number(best.bound, best.unit, ""),
             angle=_angle(best.least_angle),
@@ -152,7 +151,7 @@ def _angle(angle: float) -> Number:
 def scheme_pair(found: SingleChanges, change: SingleChange, dead: DeadPosition) -> SchemePair:
     """The mechanism in its dead position, and repaired at the same value of the drive."""
     changed = change.dimension.name if change.dimension.kind == "length" else FRAME
-    words = Sentence("repaired, with {change}", change=change_text(found.mechanism, change))
+    words = Sentence("repaired: {change}", change=change_text(found.mechanism, change))
     return pair_of_schemes(found.mechanism, change.repaired, dead, words, changed)
 
 
@@ -196,7 +195,7 @@ def _table(found: SingleChanges) -> Table:
         (
             Column("", names, head=Sentence("dimension")),
             numbers(Sentence("present value"), [Number(one.before, one.unit, "") for one in changes]),
-            numbers(Sentence("limit"), [Number(one.bound, one.unit, "") for one in changes]),
+            numbers(Sentence("limiting value"), [Number(one.bound, one.unit, "") for one in changes]),
             numbers(Sentence("proposed value"), [Number(one.after, one.unit, "") for one in changes]),
             numbers(
                 Sentence("least transmission angle"),

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.model.settings import shown_as
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe
@@ -90,11 +91,11 @@ def pair_figure(pair: SchemePair, display: Display) -> Figure:
     figure = Figure(figsize=(width, height + below))
     left, whole = 0.0, height + below
     known: frozenset[str] = frozenset()
-    for mark, picture, (scene, size) in zip("ab", pictures, drawn, strict=True):
+    for mark, picture, (scene, size) in zip((_("a)"), _("b)")), pictures, drawn, strict=True):
         axes = figure.add_axes((left / width, below / whole, size[0] / width, height / whole))
         known |= _draw_scheme(axes, scene, picture, display, known)
         place = ((left + 0.5 * size[0]) / width, (below - 0.5 * MARK_INCHES) / whole)
-        figure.text(*place, f"{mark})", ha="center", va="center", fontsize=TEXT)
+        figure.text(*place, mark, ha="center", va="center", fontsize=TEXT)
         left += size[0] + PAIR_GAP
     handles, names = zip(*key, strict=True)
     figure.legend(
