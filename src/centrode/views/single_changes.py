@@ -102,8 +102,8 @@ def change_text(mechanism: Mechanism, change: SingleChange, digits: str = "") ->
     dimension = change.dimension
     return CHANGES[_kind(mechanism, dimension)].fill(
         name=Name(dimension.name),
-        after=Number(change.after, change.unit, digits),
-        before=Number(change.before, change.unit, digits),
+        after=Number(change.after, change.unit, digits, degrees_too=True),
+        before=Number(change.before, change.unit, digits, degrees_too=True),
         **_axis(dimension),
     )
 
