@@ -134,8 +134,12 @@ def unreached_failure(
 
 def _repair(mechanism: Mechanism) -> Sentence:
     """What to ask for: the range between the limits, by a word where one drive has them."""
-    if not mechanism.motion_parameter.is_uniform:
+    if len(mechanism.drives) > 1:
         return Sentence("choose a range between the limits of the drive, or change the dimensions")
+    if not mechanism.motion_parameter.is_uniform:
+        return Sentence(
+            "choose a range between the limits of the drive, or change a dimension as centrode rotatability proposes"
+        )
     return Sentence(
         'choose the range between the limits (range = "reachable" under [study], or --range reachable), or '
         "change a dimension as centrode rotatability proposes"
