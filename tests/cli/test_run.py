@@ -149,10 +149,12 @@ def test_a_mechanism_that_locks_ends_with_3_and_everything_written(centrode: Cen
         "Error: slider-between-cranks-locked: the mechanism locks: 72 of 101 samples are not reached"
         " (limit at 1.79991242 rad (103.127 deg), group CB-BD (point B) in a dead position);"
         ' choose the range between the limits (range = "reachable" under [study], or --range reachable),'
-        " or change the dimensions\n"
+        " or change a dimension as centrode rotatability proposes\n"
     )
     assert names(folder / "result") == sorted([*TABLES, "instants.csv", *PICTURES])
     assert "ok 29, open 59, cut off 13" in done.rows["samples"]
+    end = "1.79991242 rad (103.127 deg) (dead position of group CB-BD (point B))"
+    assert done.rows["reached part"] == f"0 rad (0 deg) to {end}"
     assert summary_of(folder / "result")["limit_1"] == pytest.approx(1.79991241652444, abs=1e-12)
     statuses = [row["status"] for row in rows_of(folder / "result")]
     assert statuses == ["ok"] * 29 + ["open"] * 59 + ["cut off"] * 13

@@ -85,19 +85,41 @@ def test_links_that_cannot_turn_have_no_curve(gallery):
     assert legend_texts(figures["angles"]) == {"OA", "AB", "rocker", "DH"}
 
 
-def test_a_gap_is_not_bridged(gallery):
+def test_only_what_is_reached_is_drawn_up_to_the_dead_position(gallery):
+    """Of a mechanism that locks: neither its gap nor what is cut off; the axes end at the limit."""
     _mechanism, dataset, figures = gallery("worked", locked=True)
+    reached = dataset["status"].values == 0
+    assert 0 < reached.sum() < reached.size
+    first, limit = float(dataset["time"][0]), float(dataset["event_value"].min())
+    for name in ("angles", "velocities", "accelerations", "kinematic-coefficients"):
+        for axes in figures[name].axes:
+            # at a speed of 1 rad/s the time is the value of the drive
+            assert axes.get_xlim() == pytest.approx((first, limit), rel=1e-14)
+            for line in axes.get_lines():
+                known = np.isfinite(line.get_ydata())
+                assert np.all(np.asarray(line.get_xdata())[known] <= limit)
+    (path,) = lines(figures["paths"], "B")
+    shown = np.column_stack(path.get_data())
+    expected = dataset["position"].sel(point="B").values[reached]
+    np.testing.assert_array_equal(shown[np.isfinite(shown).all(axis=1)][[0, -1]], expected[[0, -1]])
+    for figure in figures.values():
+        assert "cut off" not in legend_texts(figure)
+    assert "limit" in legend_texts(figures["angular-velocities"])
+
+
+def test_what_is_cut_off_is_drawn_where_nothing_is_reached(make):
+    """A gap between two parts is not bridged."""
+    mechanism, dataset = make("worked", locked=True)
     known = np.isfinite(dataset["position"].sel(point="B", axis="x").values)
     assert not known.all()
+    status = np.where(dataset["status"].values == 0, 2, dataset["status"].values).astype(np.int8)
+    figures = motion_figures(mechanism, dataset.assign(status=("sample", status)), only=["paths"])
     (regular,) = lines(figures["paths"], "B")
     (beyond,) = lines(figures["paths"], "B (cut off)")
-    cut = dataset["status"].values == 2
-    for line, part in ((regular, known & ~cut), (beyond, known & cut)):
-        shown = np.isfinite(line.get_ydata())
-        assert shown.sum() == part.sum()
+    assert not np.isfinite(regular.get_ydata()).any()
+    assert np.isfinite(beyond.get_ydata()).sum() == known.sum()
     assert beyond.get_linestyle() != "-"
     assert to_hex(beyond.get_color()).upper() == curves.MUTED
-    assert {"limit", "cut off"} <= legend_texts(figures["angular-velocities"])
 
 
 def test_a_gap_between_two_samples_parts_them(make):
@@ -118,11 +140,11 @@ def test_a_gap_between_two_samples_parts_them(make):
 
 def test_events_are_marked_in_every_panel(gallery):
     _mechanism, dataset, figures = gallery("worked", locked=True)
-    events = dataset["event_value"].values
+    limit, beyond = dataset["event_value"].values
     for name in ALWAYS[2:]:
         for axes in figures[name].axes:
             upright = [line.get_xdata()[0] for line in axes.get_lines() if len(line.get_xdata()) == 2]
-            assert set(events) <= set(upright)
+            assert limit in upright and beyond not in upright
 
 
 def test_events_of_a_law_stand_at_the_times_it_passes_them(gallery):

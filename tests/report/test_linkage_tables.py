@@ -13,6 +13,7 @@ import centrode as ct
 from centrode.errors import Status
 from centrode.kinematics.rigid_body_checks import rigid_body_checks
 from centrode.render.document.blocks import ChapterBlocks, CheckBlock, ParagraphBlock, TableBlock
+from centrode.render.document.numbers import NARROW
 from centrode.report.document import report
 from centrode.report.study import ReportOptions, ReportStudy, moments_of, settle_options
 from centrode.views.columns import rows_shown
@@ -90,18 +91,22 @@ def test_the_coursework_s_instant() -> None:
     assert number(coefficients["H"][3]) == pytest.approx(0.331, abs=5e-4 + 5e-6)
 
 
-def test_statuses_are_told_where_not_all_is_reached() -> None:
+def test_tables_of_a_mechanism_that_locks_have_the_rows_it_reaches() -> None:
     mechanism = ct.example("slider-between-cranks-locked")
     found = made("tables", mechanism)
-    for table in tables(found, "The whole motion"):
-        column = table.head.index("status")
-        words = {row[column] for row in table.rows}
-        assert words == {"ok", "open", "cut off"}
-        for row in table.rows:
-            blank = [cell == "—" for k, cell in enumerate(row) if k not in (0, column)]
-            assert all(blank) if row[column] == "open" else not any(blank)
+    shown = tables(found, "The part of the motion that is reached")
+    assert shown and not tables(found, "The whole motion")
+    for table in shown:
+        assert "status" not in table.head
+        times = [number(row[0]) for row in table.rows]
+        assert times[0] == 0.0 and times[-1] <= 1.79991241652444
+        assert not any(cell == "—" for row in table.rows for cell in row)
     said = [b.text for s in found.sections for b in s.blocks if isinstance(b, ParagraphBlock)]
     assert any("locks" in text and "1.7999 rad" in text for text in said)
+    part = "0 rad to 1.7999 rad (103.13°) (dead position of group CB-BD (point B))"
+    assert any(
+        f"Tables and plots cover what is reached: {part}." == text.replace(NARROW, " ") for text in said
+    )
 
 
 def test_rows_are_even_with_both_ends() -> None:

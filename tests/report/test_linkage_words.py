@@ -18,7 +18,7 @@ from centrode.render.document.blocks import (
     Picture,
     TableBlock,
 )
-from centrode.render.document.numbers import Numbers
+from centrode.render.document.numbers import NARROW, Numbers
 from centrode.render.document.scale import drawn_to_scale, scale_of
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.document.vectors import symbol
@@ -85,7 +85,17 @@ def test_what_stops_a_locking_mechanism_and_its_repair() -> None:
     cells = [cell for table in blocks(found, TableBlock) for row in table.rows for cell in row]
     assert any("$sin(phi_(3) - phi_(4)) = 0$" in cell for cell in cells)
     assert any("OA = 1.7999 rad (103.13°)" in cell for cell in cells)
-    assert [section.title for section in found.sections] == ["", "Transmission angles", "Repair"]
+    titles = ["", "Transmission angles", "Repair", "Change of several dimensions"]
+    assert [section.title for section in found.sections] == titles
+    repair = found.sections[2]
+    said = " ".join(block.text for block in repair.blocks if isinstance(block, ParagraphBlock))
+    said = said.replace(NARROW, " ")
+    assert "The mechanism locks at OA = 1.7999 rad (103.13°): CB and BD are collinear, extended" in said
+    assert "initial angle of link CB 4.2 rad (240.64°) instead of 4.7 rad (269.29°)" in said
+    (schemes,) = (block for block in repair.blocks if isinstance(block, Picture))
+    assert schemes.caption.replace(NARROW, " ").startswith(
+        "Kinematic schemes at OA = 1.7999 rad (103.13°): a) in the dead position; b) repaired: initial angle of link CB"
+    )
     assert all(check.holds for check in blocks(found, CheckBlock)) and blocks(found, CheckBlock)
     turning = made("rotatability", ct.example("six-bar-press"))
     assert [section.title for section in turning.sections] == ["", "Transmission angles"]

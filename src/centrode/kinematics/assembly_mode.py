@@ -18,6 +18,7 @@ from centrode.kinematics.plan_evaluation import (
     rotor_of_angle,
 )
 from centrode.locale import _
+from centrode.model.settings import Display, shown_as
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 from centrode.quantities import terminal_unit
@@ -201,14 +202,14 @@ def angle_off(numbers: Dimensions, angle: float, at: Positions, link: str) -> fl
 # By how much a group of class II falls short of closing, in words a designer can act on.
 
 
-def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:
-    """The sentence that says what is too short or too long, and by how much."""
+def shortfall(group: Group, numbers: Dimensions, at: Positions, display: Display) -> str:
+    """The sentence that says what is too short or too long, and by how much in the units of the display."""
     if isinstance(group, Aim):
-        return _of_aim(group, numbers, at)
+        return _of_aim(group, numbers, at, display)
     assert isinstance(group, Meet)
     one, other = loci_of(group, ARRAYS, numbers, at, SideChoices(EvaluationPolicy(), 0))
     lack = numbers.space.lack(ARRAYS, one, other)
-    by = f"{max(lack):.4g} {numbers.space.unit}"
+    by = _amount(max(lack), numbers.space, display)
     # lacks are in the order that `lack` gives: too short together, the first too long, the second too long,
     # too long together
     reason = lack.index(max(lack))
@@ -225,7 +226,12 @@ def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:
     return _("guides {names} do not meet by {by}").format(names=_(" and ").join(guides), by=by)
 
 
-def _of_aim(group: Aim, numbers: Dimensions, at: Positions) -> str:
+def _amount(size: float, space: Space, display: Display) -> str:
+    factor, unit = shown_as(space.unit, display)
+    return f"{factor * size:.4g} {terminal_unit(unit)}"
+
+
+def _of_aim(group: Aim, numbers: Dimensions, at: Positions, display: Display) -> str:
     space = numbers.space
     pivot = space.place(ARRAYS, space.at_rest, numbers.local[group.link][group.pivot])
     offset = space.reach(ARRAYS, aim_curve(group, numbers), pivot)
@@ -233,7 +239,7 @@ def _of_aim(group: Aim, numbers: Dimensions, at: Positions) -> str:
     if by <= 0.0:  # only circles can be too near as well
         return _("{line} does not reach {b}").format(line=line_name(group), b=group.target)
     return _("the offset of {line} exceeds the distance {a}-{b} by {by}").format(
-        line=line_name(group), a=group.pivot, b=group.target, by=f"{by:.4g} {space.unit}"
+        line=line_name(group), a=group.pivot, b=group.target, by=_amount(by, space, display)
     )
 
 
@@ -335,7 +341,12 @@ class OneSide(Starting):
             raise InputError(
                 name_of(self.solved),
                 _("it does not close in the initial position: {by_how_much}").format(
-                    by_how_much=shortfall(self.solved, self.kinematics.numbers, self.known)
+                    by_how_much=shortfall(
+                        self.solved,
+                        self.kinematics.numbers,
+                        self.known,
+                        self.kinematics.structure.mechanism.display,
+                    )
                 ),
                 _("change a length, or the initial position"),
             )

@@ -43,12 +43,28 @@ class SchemePicture:
     title : what it shows, and where
     mechanism, motion : of which motion, without batch dimensions
     sample : of the motion, that is drawn
+    changed : link, or the frame, whose dimensions are set off; none if empty
     """
 
     title: Sentence
     mechanism: Mechanism
     motion: xarray.Dataset
     sample: int
+    changed: str = ""
+
+
+@dataclass(frozen=True)
+class SchemePair:
+    """Two kinematic schemes side by side to one scale, marked a) and b), with one key of the links.
+
+    Attributes
+    ----------
+    title : what they show
+    schemes : of mechanisms with the same links
+    """
+
+    title: Sentence
+    schemes: tuple[SchemePicture, SchemePicture]
 
 
 @dataclass(frozen=True)

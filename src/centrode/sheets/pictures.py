@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePicture
+from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
@@ -31,6 +31,7 @@ Picture: TypeAlias = (
     | MechanismPicture
     | PathsPicture
     | SchemePicture
+    | SchemePair
     | OutlineDrawing
     | PathDrawing
     | WheelPositions

@@ -63,11 +63,12 @@ class Abscissa:
     Attributes
     ----------
     label : of the axis
-    values : (sample), in the unit of the label, in drawing order
-    order : (sample) numbers of the samples in drawing order
+    values : (place), in the unit of the label, in drawing order
+    order : (place) numbers of the samples in drawing order; those beyond a dead position are left out
     breaks : places in that order before which a limit parts two samples: no line joins them
     cut : (sample) True where a sample is cut off from the initial position
     events : values at which something happens, with its kind
+    ends : where the axis begins and ends: dead positions lie beyond the samples; the extreme values if None
     """
 
     label: AxisLabel
@@ -76,6 +77,7 @@ class Abscissa:
     breaks: NDArray[np.intp] = field(default_factory=lambda: np.array([], dtype=np.intp))
     cut: NDArray[np.bool_] = field(default_factory=lambda: np.array([], dtype=np.bool_))
     events: tuple[tuple[float, EventKind], ...] = ()
+    ends: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,7 @@
-"""What curves of a motion are drawn over: the value of the drive or time, the gaps in it, the events along it."""
+"""What curves of a motion are drawn over: the value of the drive or time, the gaps in it, the events along it.
+
+A mechanism that locks is drawn over the part of its motion that it reaches, up to its dead positions.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.errors import Status
+from centrode.errors import STATUSES_NOT_REACHED, Status
 from centrode.quantities import QUANTITIES
 from centrode.sheets.plots import Abscissa, AxisLabel, EventKind
 from centrode.sheets.texts import Name, Sentence, Symbol, Text
@@ -33,13 +36,8 @@ def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     """The value of the only drive."""
     coordinate = mechanism.motion_parameter.drives[0]
     values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).values)
-    return Abscissa(
-        drive_label(coordinate),
-        values,
-        order,
-        limits_between(dataset, values),
-        dataset["status"].values == Status.CUT_OFF,
-        _events(within(values, events(dataset))),
+    return _over_reached(
+        drive_label(coordinate), dataset, values, order, limits_between(dataset, values), events(dataset)
     )
 
 
@@ -63,16 +61,62 @@ def text_of_drive(coordinate: DriveCoordinate) -> Text:
 def over_time(dataset: xarray.Dataset) -> Abscissa:
     """Time; events stand where the only drive passes them, with several drives at their own times."""
     times, order = in_time(dataset, dataset["time"].values)
-    if dataset.sizes["drive"] == 1:
-        values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).values)
-        breaks = limits_between(dataset, values)
-        marks = [(time, kind) for value, kind in events(dataset) for time in passings(times, values, value)]
-    else:
-        breaks, marks = limits_between(dataset, times), events(dataset)
-    cut = dataset["status"].values == Status.CUT_OFF
     quantity = QUANTITIES["time"]
     label = AxisLabel(Sentence(quantity.long_name), Symbol(quantity.symbol), quantity.unit)
-    return Abscissa(label, times, order, breaks, cut, _events(within(times, marks)))
+    if dataset.sizes["drive"] > 1:
+        return _over_reached(label, dataset, times, order, limits_between(dataset, times), events(dataset))
+    values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).values)
+    marks = [(time, kind) for value, kind in events(dataset) for time in passings(times, values, value)]
+    return _over_reached(label, dataset, times, order, limits_between(dataset, values), marks)
+
+
+def _over_reached(
+    label: AxisLabel,
+    dataset: xarray.Dataset,
+    values: Array,
+    order: NDArray[np.intp],
+    breaks: NDArray[np.intp],
+    marks: list[tuple[float, int]],
+) -> Abscissa:
+    """Values in the order of time as far as they are reached, and up to the limits that bound what is reached."""
+    first, last = _span_reached(dataset["status"].values[order])
+    limits = [value for value, kind in marks if kind == LIMIT]
+    ends = (
+        _bound(limits, float(values[first]), None if first == 0 else float(values[first - 1])),
+        _bound(limits, float(values[last]), None if last == len(values) - 1 else float(values[last + 1])),
+    )
+    return Abscissa(
+        label,
+        values[first : last + 1],
+        order[first : last + 1],
+        breaks[(breaks > first) & (breaks <= last)] - first,
+        dataset["status"].values == Status.CUT_OFF,
+        _events(within(np.array([*values[first : last + 1], *ends]), marks)),
+        ends,
+    )
+
+
+def _bound(limits: list[float], reached: float, beyond: float | None) -> float:
+    """The limit between the last value that is reached and the first one beyond; that value where there is none."""
+    if beyond is None:
+        return reached
+    between = [value for value in limits if min(reached, beyond) <= value <= max(reached, beyond)]
+    return min(between, key=lambda value: abs(value - reached), default=reached)
+
+
+def _span_reached(status: NDArray[np.int8]) -> tuple[int, int]:
+    """The first and the last sample that is reached; those of the whole motion where none is."""
+    reached = np.flatnonzero(~np.isin(status, STATUSES_NOT_REACHED))
+    return (int(reached[0]), int(reached[-1])) if reached.size else (0, len(status) - 1)
+
+
+def reached_part(dataset: xarray.Dataset) -> xarray.Dataset:
+    """The part of a motion between the first and the last sample in time that is reached; all of it if none is."""
+    _times, order = in_time(dataset, dataset["time"].values)
+    first, last = _span_reached(dataset["status"].values[order])
+    if (first, last) == (0, len(order) - 1):
+        return dataset
+    return dataset.isel(sample=np.sort(order[first : last + 1]))
 
 
 def _events(marks: list[tuple[float, int]]) -> tuple[tuple[float, EventKind], ...]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.errors import Status
+from centrode.errors import STATUSES_NOT_REACHED, Status
 from centrode.quantities import STATUS_WORDS
 from centrode.sheets.sheet import Column, Table
 from centrode.sheets.texts import Joined, Name, Number, Sentence, Text
@@ -185,6 +185,14 @@ def rows_shown(count: int, most: int = SHOWN_ROWS) -> tuple[int, ...]:
     if step is not None:
         return tuple(range(0, count, step))
     return tuple(round(float(k)) for k in np.linspace(0, count - 1, most))
+
+
+def rows_reached(status: xarray.DataArray, most: int = SHOWN_ROWS) -> tuple[int, ...]:
+    """Numbers of a few of the samples that a mechanism reaches, as `rows_shown` has them; of all if it reaches none."""
+    reached = np.flatnonzero(~np.isin(status.values, STATUSES_NOT_REACHED))
+    if not reached.size:
+        return rows_shown(status.size, most)
+    return tuple(int(reached[row]) for row in rows_shown(reached.size, most))
 
 
 def counted_statuses(status: NDArray[np.int8]) -> Text:

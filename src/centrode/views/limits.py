@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.errors import STATUSES_NOT_REACHED
+from centrode.sheets.plots import EventKind
 from centrode.sheets.sheet import Column, Fact, Failure, Sheet, Table
 from centrode.sheets.texts import Counted, Joined, Name, Number, Sentence, Text
+from centrode.views.abscissa import motion_abscissa, reached_part
 from centrode.views.instants import place_number
 
 if TYPE_CHECKING:
@@ -16,8 +18,13 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
+    from centrode.dynamics.motion_results import MotionResults
     from centrode.kinematics.several_inputs.limits import End, Limits
     from centrode.model.mechanism import Mechanism
+    from centrode.sheets.plots import Abscissa
+
+SAME = 1e-12
+"""Difference of places [rad or m] that are the same but for rounding."""
 
 
 def sheet(limits: Limits) -> Sheet:
@@ -65,6 +72,33 @@ def _table(limits: Limits) -> Table:
 # Samples that are not reached
 
 
+def reached_text(results: MotionResults) -> Text:
+    """From where to where a motion is reached, and of which groups the ends are dead positions."""
+    status = results.motion["status"].values
+    if np.isin(status, STATUSES_NOT_REACHED).all():
+        return Sentence("nothing of the range")
+    abscissa = motion_abscissa(results.mechanism, results.motion)
+    assert abscissa.ends is not None
+    first, last = (_reached_end(results, end, abscissa) for end in abscissa.ends)
+    gaps = np.isin(reached_part(results.motion)["status"].values, STATUSES_NOT_REACHED).any()
+    if gaps:
+        return Sentence("parts of {first} to {last}", first=first, last=last)
+    return Sentence("{first} to {last}", first=first, last=last)
+
+
+def _reached_end(results: MotionResults, end: float, abscissa: Abscissa) -> Text:
+    """An end of what is reached, with the group whose dead position it is."""
+    value = place_number(end, abscissa.label.unit)
+    if (end, EventKind.LIMIT) not in abscissa.events:
+        return value
+    group = next(
+        (one.group for one in results.limits if abs(one.value - end) <= SAME * max(1.0, abs(end))), ""
+    )
+    if not group:
+        return Sentence("{value} (dead position)", value=value)
+    return Sentence("{value} (dead position of {group})", value=value, group=Name(group))
+
+
 def unreached_failure(
     mechanism: Mechanism, status: xr.DataArray, limits: Sequence[End], *, single: bool = False
 ) -> Failure | None:
@@ -100,9 +134,13 @@ def unreached_failure(
 
 def _repair(mechanism: Mechanism) -> Sentence:
     """What to ask for: the range between the limits, by a word where one drive has them."""
-    if not mechanism.motion_parameter.is_uniform:
+    if len(mechanism.drives) > 1:
         return Sentence("choose a range between the limits of the drive, or change the dimensions")
+    if not mechanism.motion_parameter.is_uniform:
+        return Sentence(
+            "choose a range between the limits of the drive, or change a dimension as centrode rotatability proposes"
+        )
     return Sentence(
         'choose the range between the limits (range = "reachable" under [study], or --range reachable), or '
-        "change the dimensions"
+        "change a dimension as centrode rotatability proposes"
     )

@@ -26,10 +26,10 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text, Title
 from centrode.views import structure
-from centrode.views.abscissa import CHANGE_POINT, LIMIT, events, motion_abscissa, over_drive
+from centrode.views.abscissa import CHANGE_POINT, LIMIT, events, motion_abscissa, over_drive, reached_part
 from centrode.views.columns import coefficients_table, counted_statuses, motion_table
 from centrode.views.instants import place_number
-from centrode.views.limits import unreached_failure
+from centrode.views.limits import reached_text, unreached_failure
 from centrode.views.motion_plots import (
     PlottedMotion,
     panels_of_coefficients,
@@ -65,7 +65,7 @@ def sheet(results: MotionResults) -> Sheet:
     datasets = {"motion": results.motion}
     chapters = {
         "motion": partial(_motion_chapter, results),
-        "plots": partial(_plots_chapter, mechanism, pictures),
+        "plots": partial(_plots_chapter, results, pictures),
     }
     if results.shown is not None:
         chapters["tables"] = partial(_tables_chapter, results, results.shown)
@@ -90,6 +90,8 @@ def _facts(results: MotionResults) -> Iterator[Fact]:
     """Range, events, statuses and worst residual."""
     status = results.motion["status"].values
     yield Fact(Sentence("range"), _range(results))
+    if results.unreached:
+        yield Fact(Sentence("reached part"), reached_text(results))
     yield Fact(Sentence("limits"), _events(results, LIMIT))
     yield Fact(Sentence("change points"), _events(results, CHANGE_POINT))
     samples = Joined((Number(len(status), digits="d"), counted_statuses(status)), ": ")
@@ -261,7 +263,9 @@ def _pictures(
     mechanism: Mechanism, motion: xarray.Dataset, values: tuple[float, ...], instants: xarray.Dataset | None
 ) -> Iterator[tuple[str, Callable[[], Picture]]]:
     title = Sentence("Mechanism")
-    yield "mechanism", partial(MechanismPicture, title, mechanism, motion, values, instants)
+    # of an instant that is not reached the picture says so: only the exact motion there has it then
+    shown = motion if values and instants is None else reached_part(motion)
+    yield "mechanism", partial(MechanismPicture, title, mechanism, shown, values, instants)
     yield "paths", partial(_paths, mechanism, motion)
     parameter = mechanism.motion_parameter
     plotted = PlottedMotion(mechanism, motion, parameter.drives[0].speed if parameter.is_uniform else 1.0)
@@ -273,6 +277,7 @@ def _pictures(
 
 
 def _paths(mechanism: Mechanism, motion: xarray.Dataset) -> PathsPicture:
+    motion = reached_part(motion)
     abscissa = motion_abscissa(mechanism, motion)
     return PathsPicture(Sentence("Paths of the points"), mechanism, motion, mechanism.moving_points, abscissa)
 
@@ -378,8 +383,9 @@ TOGETHER: Mapping[tuple[str, ...], Sentence] = {
 """Figures that a document shows as one where each has one panel."""
 
 
-def _plots_chapter(mechanism: Mechanism, pictures: Mapping[str, Picture]) -> Chapter:
+def _plots_chapter(results: MotionResults, pictures: Mapping[str, Picture]) -> Chapter:
     """The figures that a run draws, those of the links one below the other."""
+    mechanism = results.mechanism
     captions = CAPTIONS | (ON_SPHERE if mechanism.space == "sphere" else {})
     joined: dict[str, Illustration | None] = {}
     for names, caption in TOGETHER.items():
@@ -390,8 +396,17 @@ def _plots_chapter(mechanism: Mechanism, pictures: Mapping[str, Picture]) -> Cha
                 names[0]: Illustration(replace(plots[0], title=caption, rows=rows))
             }
     figures = (joined.get(name, Illustration(name, captions[name], name in DETAILS)) for name in pictures)
-    blocks = tuple(one for one in figures if one is not None)
+    blocks: tuple[Block, ...] = (
+        *(Paragraph(text, clause=True) for text in _reach(results)),
+        *(one for one in figures if one is not None),
+    )
     return Chapter(Sentence("Plots of the motion"), (Section(NOTHING, blocks),))
+
+
+def _reach(results: MotionResults) -> Iterator[Text]:
+    """Which part of the motion a document shows where the mechanism locks."""
+    if results.unreached:
+        yield Sentence("tables and plots cover what is reached: {part}", part=reached_text(results))
 
 
 def _tables_chapter(results: MotionResults, shown: xarray.Dataset) -> Chapter:
@@ -402,6 +417,6 @@ def _tables_chapter(results: MotionResults, shown: xarray.Dataset) -> Chapter:
     sentences = [] if failure is None else [failure.what]
     head: tuple[Block, ...] = (
         FactTable(facts, Sentence("Range of the motion")),
-        *(Paragraph(text, clause=True) for text in (*sentences, *_notes(results))),
+        *(Paragraph(text, clause=True) for text in (*sentences, *_reach(results), *_notes(results))),
     )
     return tables_chapter(results, shown, head)

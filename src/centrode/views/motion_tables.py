@@ -14,7 +14,7 @@ from centrode.model.mechanism import FRAME
 from centrode.quantities import QUANTITIES, STATUS_WORDS
 from centrode.sheets.sheet import Block, Chapter, Check, Column, Paragraph, Reference, Section, Table
 from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Slanted, Text
-from centrode.views.columns import rows_shown
+from centrode.views.columns import rows_reached
 from centrode.views.instants import instant_title
 
 if TYPE_CHECKING:
@@ -45,17 +45,22 @@ FORMULAS = Reference(
 def tables_chapter(results: MotionResults, shown: xarray.Dataset, head: Sequence[Block]) -> Chapter:
     """Range and limits (`head`), tables of the instants `shown`, tables over the motion, checks."""
     on_sphere = results.mechanism.space == "sphere"
-    rows = rows_shown(results.motion.sizes["sample"], ROWS)
+    rows = rows_reached(results.motion["status"], ROWS)
     instants = (
         section for sample in range(shown.sizes["sample"]) for section in _at_instant(results, shown, sample)
     )
     whole = [_hinges_over_motion(results, rows)] if on_sphere else _over_motion(results, rows)
+    title = (
+        Sentence("The part of the motion that is reached")
+        if results.unreached
+        else Sentence("The whole motion")
+    )
     return Chapter(
         Sentence("Tables of the motion"),
         (
             Section(Sentence("Range"), (*head, *([] if on_sphere else [FORMULAS]))),
             *instants,
-            Section(Sentence("The whole motion"), tuple(whole)),
+            Section(title, tuple(whole)),
             Section(Sentence("Checks"), tuple(_checks(results))),
             *([] if on_sphere else [Section(NOTHING, (_rows_shown(results, rows),), detail=True)]),
         ),
@@ -283,15 +288,15 @@ def _tables(
                 still.append(Joined((one.letter, Number(value, one.unit, digits="")), " = "))
             else:
                 moving[-1].append(_column(one.letter, one.values, one.unit, sizes[one.unit]))
-    for number, columns in enumerate(_pages(_front(results), moving)):
+    for number, columns in enumerate(_pages(_front(results, rows), moving)):
         more = Sentence("{caption} (continued)", caption=caption) if number else caption
         yield Table(tuple(columns), more, rows)
     if still:
         yield Paragraph(Sentence("The same at all samples: {quantities}.", quantities=Joined(still)))
 
 
-def _front(results: MotionResults) -> list[Column]:
-    """Time, values of drives that are no angles of links, and the status where not all samples are reached."""
+def _front(results: MotionResults, rows: tuple[int, ...]) -> list[Column]:
+    """Time, values of drives that are no angles of links, and the status where not all rows are in order."""
     data, mechanism = results.motion, results.mechanism
     columns = [_time(data)]
     for k, drive in enumerate(mechanism.drives):
@@ -300,7 +305,7 @@ def _front(results: MotionResults) -> list[Column]:
         unit = mechanism.motion_parameter.drive(drive.id).unit
         columns.append(Column("", data["drive_value"].values[:, k], unit, Name(drive.id)))
     status = data["status"].values
-    if (status != Status.OK).any():
+    if (status[list(rows)] != Status.OK).any():
         words = tuple(Sentence(STATUS_WORDS[Status(code)]) for code in status.tolist())
         columns.append(Column("", words, head=Sentence("status")))
     return columns

@@ -43,7 +43,7 @@ from centrode.sheets.texts import (
     Unit,
 )
 from centrode.views.abscissa import motion_abscissa
-from centrode.views.columns import force_columns, rows_shown, status_column
+from centrode.views.columns import force_columns, rows_reached, status_column
 from centrode.views.formulas import index_symbol, join_expressions, sum_of
 from centrode.views.instants import instant_title
 from centrode.views.limits import unreached_failure
@@ -354,7 +354,7 @@ def _course(results: ReductionResults) -> Table:
             *quantities,
         ),
         Sentence("Reduced inertia, its derivative and the reduced moment at equal steps"),
-        rows_shown(data.sizes["sample"]),
+        rows_reached(data["status"]),
     )
 
 

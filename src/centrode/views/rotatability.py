@@ -28,6 +28,7 @@ from centrode.sheets.sheet import (
     Fact,
     FactTable,
     Failure,
+    Illustration,
     Paragraph,
     Section,
     Sheet,
@@ -47,6 +48,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views import transmission
 from centrode.views.instants import place_number
+from centrode.views.single_changes import pair_of_schemes, single_blocks, single_facts
 from centrode.views.structure import GROUP_KINDS
 
 if TYPE_CHECKING:
@@ -64,12 +66,21 @@ def sheet(turning: Rotatability) -> Sheet:
     """Whether the drives turn and why not, how everything moves; where a repair was sought, this in its place."""
     found = turning if isinstance(turning, RotatabilityResults) else RotatabilityResults.of(turning)
     shown = (
-        Sheet(facts=tuple(_facts(found)), record=_record(found))
+        Sheet(facts=(*_facts(found), *_single_facts(found)), record=_record(found))
         if found.repair is None
         else repair_sheet(found.repair)
     )
     pictures = {} if found.angles is None else transmission.sheet(found.angles).pictures
     return dataclasses.replace(shown, pictures=pictures, chapters={"rotatability": _chapter(found)})
+
+
+def _single_facts(found: RotatabilityResults) -> Iterator[Fact]:
+    """The change of one dimension that repairs a mechanism that locks, or why none is sought."""
+    if found.single is not None:
+        yield from single_facts(found.single)
+    elif found.refusal is not None:
+        reason = Name(str(found.refusal))
+        yield Fact(Sentence("repair"), Sentence("none is sought: {reason}", reason=reason))
 
 
 def repair_sheet(repair: Repair) -> Sheet:
@@ -519,20 +530,32 @@ def _chapter(found: RotatabilityResults) -> Chapter:
     sections = [Section(NOTHING, (FactTable(tuple(_facts(found))),))]
     if found.angles is not None:
         sections.append(transmission.section(found.angles))
-    if found.repair is not None or found.refusal is not None:
+    if found.single is not None or found.refusal is not None:
         sections.append(Section(Sentence("Repair"), tuple(_repair_blocks(found))))
+    if found.repair is not None:
+        several = tuple(_blocks_of_several(found, found.repair))
+        enough = found.single is not None and bool(found.single.changes)
+        sections.append(Section(Sentence("Change of several dimensions"), several, detail=enough))
     return Chapter(Sentence("Rotatability"), tuple(sections))
 
 
 def _repair_blocks(found: RotatabilityResults) -> Iterator[Block]:
-    """The smallest change after which the drive turns fully, or why there is none."""
-    repair = found.repair
-    if repair is None:
+    """The smallest change of one dimension after which the motion is made, or why none is sought."""
+    if found.single is None:
         yield Paragraph(Sentence("No repair was sought: {reason}", reason=Name(str(found.refusal))))
         return
+    cause = NOTHING if found.dead is None else cause_text(found.dead.limit.cause)
+    yield from single_blocks(found.single, found.dead, cause)
+
+
+def _blocks_of_several(found: RotatabilityResults, repair: Repair) -> Iterator[Block]:
+    """The smallest change of several dimensions after which the drive turns fully."""
     yield Paragraph(Sentence("A change of the dimensions was sought after which the drive turns fully."))
     yield FactTable(tuple(_repair_facts(repair)))
     if repair.repaired is not None:
+        if found.dead is not None and found.single is not None and not found.single.changes:
+            words = Sentence("with the changed dimensions")
+            yield Illustration(pair_of_schemes(found.mechanism, repair.repaired, found.dead, words))
         turns = repair.after is not None and repair.after.turns_fully is True
         statement = Sentence("The changed mechanism was analysed again: its drive turns fully.")
         yield Check(statement, 0.0 if turns else 1.0, 1.0, 0.0)
@@ -540,7 +563,7 @@ def _repair_blocks(found: RotatabilityResults) -> Iterator[Block]:
 
 # Records
 
-LEFT_OUT = ("mechanism", "repaired", "repair", "refusal", "angles")
+LEFT_OUT = ("mechanism", "repaired", "repair", "refusal", "angles", "dead")
 """Of a result, what its record does not hold."""
 REASONS = ("circuits_missing", "impossible")
 """What a record holds as an empty text where there is none."""

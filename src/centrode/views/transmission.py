@@ -35,10 +35,11 @@ def sheet(results: TransmissionResults) -> Sheet:
 
 def section(results: TransmissionResults) -> Section:
     """The section of a document: extremes over the motion, and the curves."""
-    caption = Sentence("Transmission and pressure angles of the groups")
+    extremes = Sentence("Extremes of the transmission and pressure angles of the groups")
+    curves = Sentence("Transmission and pressure angles of the groups")
     return Section(
         Sentence("Transmission angles"),
-        (extremes_table(results, caption), Illustration(PICTURE, caption)),
+        (extremes_table(results, extremes), Illustration(PICTURE, curves)),
     )
 
 

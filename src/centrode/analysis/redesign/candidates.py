@@ -96,8 +96,25 @@ def default_paths(mechanism: Mechanism) -> list[str]:
     if places_anew(mechanism):
         angled = [name for name, link in mechanism.links.items() if link.angle is not None]
         return [f"links.{name}.angle" for name in angled if name not in driven][:MOST_PATHS]
-    lengths = [name for name, link in mechanism.links.items() if link.length is not None]
-    return [f"links.{name}.length" for name in lengths][:MOST_PATHS]
+    return list(paths_of_lengths(mechanism).values())[:MOST_PATHS]
+
+
+def paths_of_lengths(mechanism: Mechanism) -> dict[str, str]:
+    """Paths of the lengths of links, by the names of the links.
+
+    Of a link that gives coordinates for two points, its origin and one on an axis, the coordinate is the length.
+    """
+    found: dict[str, str] = {}
+    for name, link in mechanism.links.items():
+        if link.length is not None:
+            found[name] = f"links.{name}.length"
+        elif mechanism.space == "plane" and len(link.coordinates) == 2:
+            origin, *others = sorted(link.coordinates.items(), key=lambda end: end[1] != (0.0, 0.0))
+            point, coordinates = others[0]
+            along = [axis for axis, value in zip("xy", coordinates, strict=True) if value]
+            if origin[1] == (0.0, 0.0) and len(along) == 1:
+                found[name] = f"links.{name}.points.{point}.{along[0]}"
+    return found
 
 
 def places_anew(mechanism: Mechanism) -> bool:
@@ -122,7 +139,9 @@ def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | Non
     unbounded = Varying(path, before, 0.0, 0.0, unit, scale)
     _check_varies(prepared, unbounded)
     low, high = (
-        _default_bounds(unbounded) if bounds is None else _given_bounds(unbounded, bounds, mechanism.display)
+        _default_bounds(unbounded, is_length=_is_length(mechanism, path))
+        if bounds is None
+        else _given_bounds(unbounded, bounds, mechanism.display)
     )
     return Varying(path, before, low, high, unit, scale)
 
@@ -134,13 +153,17 @@ def _unit(mechanism: Mechanism, path: str) -> str:
 
 
 def _scale(prepared: Ready, path: str, before: float, unit: str) -> float:
-    if path.endswith((".length", ".ratio", ".radius")):
+    if path.endswith((".length", ".ratio", ".radius")) or _is_length(prepared.mechanism, path):
         return abs(before)
     return 1.0 if unit == "rad" else float(prepared.kinematics.numbers.scale)
 
 
-def _default_bounds(one: Varying) -> tuple[float, float]:
-    if one.path.endswith((".length", ".ratio", ".radius")):
+def _is_length(mechanism: Mechanism, path: str) -> bool:
+    return path in paths_of_lengths(mechanism).values()
+
+
+def _default_bounds(one: Varying, *, is_length: bool = False) -> tuple[float, float]:
+    if is_length or one.path.endswith((".length", ".ratio", ".radius")):
         ends = sorted((SHRINK * one.before, STRETCH * one.before))
         # an arc stays below half a great circle
         return ends[0], min(ends[1], 0.999 * pi) if one.unit == "rad" else ends[1]

@@ -50,11 +50,9 @@ ABSENT = -1.0
 """Stands for a group where one before it is open."""
 
 
-def squared_sines(batch: Batch, nodes: int) -> Array:
-    """Squared sines (lanes, groups, nodes) of transmission angles over one turn; NaN behind an open group."""
-    kinematics = batch.kinematics
-    # between the round values at which events like to lie
-    along = kinematics.path.initial + (np.arange(nodes) + 0.5) * (tau / nodes)
+def squared_sines(batch: Batch, along: Array) -> Array:
+    """Squared sines (lanes, groups, nodes) of transmission angles at values of the drive; NaN behind an open group."""
+    kinematics, nodes = batch.kinematics, len(along)
     at = kinematics.frame(ARRAYS, along[None, :])
     hooks = _Keeping(batch.signs)
     ratios = []
@@ -71,6 +69,11 @@ def squared_sines(batch: Batch, nodes: int) -> Array:
         # without a dyad nothing can lock
         return np.ones((batch.size, 1, nodes))
     return np.stack(ratios, axis=1)
+
+
+def over_turn(batch: Batch, nodes: int) -> Array:
+    """Values of the drive over one turn, between the round ones at which events like to lie."""
+    return np.asarray(batch.kinematics.path.initial + (np.arange(nodes) + 0.5) * (tau / nodes))
 
 
 class _Keeping(FixedSigns):
@@ -204,7 +207,8 @@ class RepairSearch:
         parts = []
         for first in range(0, len(changes), CHUNK):
             some = changes[first : first + CHUNK]
-            parts.append(least(squared_sines(self.candidates.batch(some), nodes)))
+            batch = self.candidates.batch(some)
+            parts.append(least(squared_sines(batch, over_turn(batch, nodes))))
             self._count(len(some))
         return np.concatenate(parts)
 
@@ -319,8 +323,8 @@ class RepairSearch:
 
     def _sectors(self, changes: Array) -> Array:
         self._count(len(changes))
-        sines = squared_sines(self.candidates.batch(changes), FINE)
-        return least_by_sector(sines, SECTORS)
+        batch = self.candidates.batch(changes)
+        return least_by_sector(squared_sines(batch, over_turn(batch, FINE)), SECTORS)
 
     def _slopes(self, change: Array) -> Array:
         size = len(change)
@@ -436,7 +440,7 @@ def repair(
     """
     mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
-    _check_repairable(prepared)
+    check_repairable(prepared)
     least_angle = _angle(least_transmission_angle, mechanism.display)
     varying = varyings(prepared, vary, bounds)
     before = rotatability(mechanism)
@@ -454,7 +458,7 @@ def repair(
 def needs_repair(mechanism: Mechanism) -> bool:
     """Whether its one drive does not turn fully, and a repair can be sought."""
     try:
-        _check_repairable(ready(mechanism))
+        check_repairable(ready(mechanism))
     except CentrodeError:
         return False
     return rotatability(mechanism).turns_fully is False
@@ -484,7 +488,8 @@ def _angle(given: Value | None, display: Display) -> float:
     return value
 
 
-def _check_repairable(prepared: Ready) -> None:
+def check_repairable(prepared: Ready, *, turning: bool = True) -> None:
+    """Raise InputError or NotComputedYet where no repair can be sought; `turning` drives have to turn fully."""
     mechanism = prepared.mechanism
     if len(mechanism.drives) != 1:
         raise InputError(
@@ -492,7 +497,7 @@ def _check_repairable(prepared: Ready) -> None:
             _("a repair is computed for one drive; {n} are given").format(n=len(mechanism.drives)),
             _("give one drive"),
         )
-    if mechanism.drives[0].kind != "angle":
+    if turning and mechanism.drives[0].kind != "angle":
         raise InputError("[[drives]]", _("a displacement cannot turn fully"), _("drive the angle of a link"))
     groups = prepared.structure.groups
     on_sphere = mechanism.space == "sphere"

@@ -1,13 +1,19 @@
-"""Rotatability with the repair: whether the drives turn fully, and the smallest change after which they do."""
+"""Rotatability with the repair: whether the drives turn fully, and the smallest changes after which they do."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from centrode.analysis.redesign.repair import Repair
 from centrode.analysis.redesign.repair import repair as find_repair
+from centrode.analysis.redesign.single_changes import (
+    DeadPosition,
+    SingleChanges,
+    dead_position,
+    single_changes,
+)
 from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
 from centrode.analysis.transmission import TransmissionResults, transmission_results
 from centrode.errors import CentrodeError, InputError
@@ -25,25 +31,23 @@ class RotatabilityResults(Rotatability):
     Attributes
     ----------
     repair : the smallest change after which the drive turns fully; None where none was sought
-    refusal : why none could be sought
+    single : the dimensions of which each alone repairs the mechanism; None where it makes the motion asked for
+    dead : the dead position, and the mechanism with the smallest of these changes there, for documents
+    refusal : why no change could be sought
     angles : transmission angles over the motion, for documents; None where no group has one
     """
 
     repair: Repair | None = None
+    single: SingleChanges | None = None
+    dead: DeadPosition | None = None
     refusal: CentrodeError | None = None
     angles: TransmissionResults | None = None
 
     @classmethod
-    def of(
-        cls,
-        turning: Rotatability,
-        repair: Repair | None = None,
-        refusal: CentrodeError | None = None,
-        angles: TransmissionResults | None = None,
-    ) -> RotatabilityResults:
+    def of(cls, turning: Rotatability, **more: Any) -> RotatabilityResults:
         """What is known of the turning, and more."""
         known = {one.name: getattr(turning, one.name) for one in fields(Rotatability)}
-        return cls(**known, repair=repair, refusal=refusal, angles=angles)
+        return cls(**known, **more)
 
 
 def rotatability_results(
@@ -56,7 +60,7 @@ def rotatability_results(
     complete: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> RotatabilityResults:
-    """Whether a mechanism turns fully, on demand with the repair of it.
+    """Whether a mechanism turns fully; of one that locks the changes of one dimension that repair it.
 
     Parameters
     ----------
@@ -69,8 +73,8 @@ def rotatability_results(
     least_transmission_angle : float [rad] or text, optional
         As `repair` has it.
     complete : bool
-        As documents have it: with the transmission angles over the motion, and with the repair of one drive that
-        does not turn fully, or the reason why none is sought.
+        As documents have it: with the transmission angles over the motion, and of a mechanism that locks with its
+        dead position and with the change of several dimensions.
     progress : function of the share that is done
 
     Raises
@@ -88,14 +92,18 @@ def rotatability_results(
             least_transmission_angle,
             None if progress is None else lambda done, of: progress(done / of),
         )
-        return RotatabilityResults.of(found.before, found)
+        return RotatabilityResults.of(found.before, repair=found)
     turning = rotatability(mechanism)
+    single, refusal = _single_or_refusal(turning)
     if not complete:
-        return RotatabilityResults.of(turning)
-    mended, refusal = None, None
-    if turning.turns_fully is False:
-        mended, refusal = _repair_or_refusal(mechanism)
-    return RotatabilityResults.of(turning, mended, refusal, _angles(mechanism, samples))
+        return RotatabilityResults.of(turning, single=single, refusal=refusal)
+    angles = _angles(mechanism, samples)
+    if single is None:
+        return RotatabilityResults.of(turning, refusal=refusal, angles=angles)
+    mended = _repair_or_none(mechanism) if single.required.turn else None
+    repaired = single.changes[0].repaired if single.changes else mended and mended.repaired
+    dead = dead_position(turning, single.required, repaired) if repaired else None
+    return RotatabilityResults.of(turning, repair=mended, single=single, dead=dead, angles=angles)
 
 
 def repair_results(mechanism: Mechanism, samples: int | None = None) -> Repair:
@@ -117,11 +125,22 @@ def need_repair(
             raise InputError(option, _("this option is used with --repair only"), _("add --repair"))
 
 
-def _repair_or_refusal(mechanism: Mechanism) -> tuple[Repair | None, CentrodeError | None]:
+def _single_or_refusal(turning: Rotatability) -> tuple[SingleChanges | None, CentrodeError | None]:
+    """The changes that repair the one drive of a mechanism that locks, or why none is sought."""
+    if len(turning.drives) > 1 or not (turning.limits or turning.turns_fully is False):
+        return None, None
     try:
-        return find_repair(mechanism), None
+        return single_changes(turning.mechanism, turning), None
     except CentrodeError as refusal:
         return None, refusal
+
+
+def _repair_or_none(mechanism: Mechanism) -> Repair | None:
+    """The change of several dimensions; None where there is nothing to vary."""
+    try:
+        return find_repair(mechanism)
+    except CentrodeError:
+        return None
 
 
 def _angles(mechanism: Mechanism, samples: int | None) -> TransmissionResults | None:

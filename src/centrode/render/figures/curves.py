@@ -56,9 +56,9 @@ class DrawnAbscissa:
 
     Attributes
     ----------
-    values : (sample) [unit]
+    values : (place) [unit]
         In the order of time.
-    order, breaks : (sample), (any)
+    order, breaks : (place), (any)
         The samples in the order of time, and the places in it where a limit parts two samples.
     cut : (sample)
         True where the sample is cut off from the initial position.
@@ -66,6 +66,8 @@ class DrawnAbscissa:
         Limits and change points within the range.
     label, unit : str
         Text of the axis, and its unit.
+    ends : (first, last) or None
+        Where the axis begins and ends; at the extreme values if None.
     """
 
     values: Array
@@ -75,6 +77,13 @@ class DrawnAbscissa:
     marks: tuple[tuple[float, EventKind], ...]
     label: str
     unit: str
+    ends: tuple[float, float] | None = None
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """The least and the greatest value that the axis shows; None where nothing lies between."""
+        known = [*self.values[np.isfinite(self.values)].tolist(), *(self.ends or ())]
+        return (min(known), max(known)) if known and max(known) > min(known) else None
 
     def parts(self, curve: Array) -> tuple[Array, Array]:
         """A curve in drawing order, as its regular and its cut-off part; a gap parts what must not be joined."""
@@ -305,13 +314,12 @@ def lonely(values: Array) -> dict[str, Any]:
 
 def set_range(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> None:
     """Limits of both axes: the whole motion across, what can be read up and down."""
-    across = abscissa.values[np.isfinite(abscissa.values)]
-    if across.size and across.max() > across.min():
-        axes.set_xlim(float(across.min()), float(across.max()))
+    if abscissa.range is not None:
+        axes.set_xlim(abscissa.range)
         place = axes.get_subplotspec()
         most = TICKS if place is None else TICKS // place.get_gridspec().ncols
-        angle_ticks(axes.xaxis, float(across.min()), float(across.max()), abscissa.unit, most)
-    heights = np.concatenate([np.empty(0), *panel.curves.values()])
+        angle_ticks(axes.xaxis, *abscissa.range, abscissa.unit, most)
+    heights = np.concatenate([np.empty(0), *(curve[abscissa.order] for curve in panel.curves.values())])
     heights = heights[np.isfinite(heights)]
     if not heights.size:
         return

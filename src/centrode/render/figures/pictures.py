@@ -19,7 +19,7 @@ from centrode.render.figures.outlines import outline_figure, path_figure
 from centrode.render.figures.panel_grids import grid_figure
 from centrode.render.figures.plots import diagram_figure, plot_figure
 from centrode.render.figures.scenes import scene_figure
-from centrode.render.figures.schemes import scheme_figure
+from centrode.render.figures.schemes import pair_figure, scheme_figure
 from centrode.render.figures.span_plots import span_figure
 from centrode.render.pages.force_polygons import group_page
 from centrode.render.pages.instants import instant_figure
@@ -29,7 +29,7 @@ from centrode.render.pages.vector_diagrams import vector_diagram_figure
 from centrode.render.pages.vectors import vector_page
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePicture
+from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
 from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
@@ -114,6 +114,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return paths_figure(picture, display)
             case SchemePicture():
                 return scheme_figure(picture, display)
+            case SchemePair():
+                return pair_figure(picture, display)
             case OutlineDrawing():
                 return outline_figure(picture, display)
             case PathDrawing():

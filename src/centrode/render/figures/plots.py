@@ -170,10 +170,9 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
             handles.append((line, name))
         axes.set_yscale("log")
         axes.margins(y=0.12)  # the lowest power stands clear of the ticks below
-        if abscissa.values[0] < abscissa.values[-1]:
-            ends = float(abscissa.values[0]), float(abscissa.values[-1])
-            axes.set_xlim(ends)
-            angle_ticks(axes.xaxis, *ends, abscissa.unit, TICKS)
+        if abscissa.range is not None:
+            axes.set_xlim(abscissa.range)
+            angle_ticks(axes.xaxis, *abscissa.range, abscissa.unit, TICKS)
         axes.set_ylabel(panel.label)
         wrap_label(axes, each)
         write_legend(axes, handles)
@@ -186,7 +185,10 @@ def drawn_abscissa(abscissa: Abscissa, spelling: FigureSpelling) -> DrawnAbsciss
     factor, label, unit = spelling.label(abscissa.label)
     cut = abscissa.cut if abscissa.cut.size else np.zeros(len(abscissa.values), dtype=bool)
     events = tuple((factor * value, kind) for value, kind in abscissa.events)
-    return DrawnAbscissa(factor * abscissa.values, abscissa.order, abscissa.breaks, cut, events, label, unit)
+    ends = None if abscissa.ends is None else (factor * abscissa.ends[0], factor * abscissa.ends[1])
+    return DrawnAbscissa(
+        factor * abscissa.values, abscissa.order, abscissa.breaks, cut, events, label, unit, ends
+    )
 
 
 def _panel(panel: CurvePanel, spelling: FigureSpelling, across: float = 1.0) -> Panel:

@@ -8,10 +8,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.model.settings import shown_as
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe
@@ -19,19 +21,25 @@ from centrode.render.drawing.linkage import draw_mechanism, used_points
 from centrode.render.drawing.style import GROUND, INK, MUTED, pens
 from centrode.render.drawing.tags import Tag, lines, write_tags
 from centrode.render.drawing.texts import plain
-from centrode.render.figures.curves import write_legend
+from centrode.render.figures.curves import columns_above, write_legend
 from centrode.render.figures.linkages import read_scene
 from centrode.scenes.places import Array, LinkageScene, corners
 from centrode.scenes.sphere import Globe, great_arc
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
-    from centrode.sheets.linkages import SchemePicture
+    from centrode.sheets.linkages import SchemePair, SchemePicture
 
 Paper: TypeAlias = LinkageScene | Globe
 
 WIDTH, HEIGHT = 6.3, 4.1
 """Greatest size of the drawing [inches]."""
+PAIR_WIDTH, PAIR_HEIGHT, PAIR_GAP = 3.05, 3.6, 0.2
+"""Greatest size of each of two drawings side by side, and what is between them [inches]."""
+MARK_INCHES, ROW_INCHES = 0.28, 0.22
+"""Height of the marks a) and b), and of a row of the key below them [inches]."""
+CHANGED = "#C00000"
+"""Colour of a dimension that is changed."""
 LEAST_HEIGHT = 2.0
 KEY = 1.3
 """Width of the key of the links [inches]."""
@@ -52,32 +60,99 @@ SAME = 1e-9
 def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     """The scheme at the sample of the picture, as large as its paper allows, beside the key of the links."""
     scene = read_scene(picture.mechanism, picture.motion)
-    scene, size = _on_paper(scene, picture.sample)
+    scene, size = _on_paper(scene, picture.sample, (WIDTH - KEY, HEIGHT))
     figure = Figure(figsize=(size[0] + KEY, size[1]))
     axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + KEY), 1.0))
-    tags = list(_draw(axes, scene, picture.sample, display))
-    axes.set_axis_off()
-    solid = arcs_on_paper(scene, picture.sample) if isinstance(scene, Globe) else lines(scene, picture.sample)
-    circles = [_cross(np.array(text.get_position()), scene) for text in axes.texts]
-    write_tags(axes, tags, [*solid, *(stroke for cross in circles for stroke in cross)], [], TEXT, REACH)
-    key = [
-        (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
-        for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
-    ]
-    write_legend(axes, key, inches=size[1] - 0.2)
+    _draw_scheme(axes, scene, picture, display)
+    write_legend(axes, _key(scene), inches=size[1] - 0.2)
     return figure
 
 
-def _on_paper(scene: Paper, sample: int) -> tuple[Paper, tuple[float, float]]:
-    """The scene in the window of one sample, its signs in their size on paper, and the size of the paper [inches]."""
+def pair_figure(pair: SchemePair, display: Display) -> Figure:
+    """Two schemes side by side to one scale, at one height, marked a) and b), above the key of the links."""
+    pictures = pair.schemes
+    scenes = [read_scene(one.mechanism, one.motion) for one in pictures]
+    per_inch, levels = 0.0, None
+    for _pass in range(2):  # first the scale and the heights of each, then the greater ones for both
+        drawn = [
+            _on_paper(scene, one.sample, (PAIR_WIDTH, PAIR_HEIGHT), per_inch, levels)
+            for scene, one in zip(scenes, pictures, strict=True)
+        ]
+        per_inch = max(float(scene.high[0] - scene.low[0]) / size[0] for scene, size in drawn)
+        levels = (
+            min(float(scene.low[1]) for scene, _size in drawn),
+            max(float(scene.high[1]) for scene, _size in drawn),
+        )
+    height = (levels[1] - levels[0]) / per_inch if levels else LEAST_HEIGHT
+    width = sum(size[0] for _scene, size in drawn) + PAIR_GAP
+    key = _key(drawn[0][0])
+    columns = columns_above([name for _line, name in key], width)
+    below = MARK_INCHES + ROW_INCHES * -(-len(key) // columns)
+    figure = Figure(figsize=(width, height + below))
+    left, whole = 0.0, height + below
+    known: frozenset[str] = frozenset()
+    for mark, picture, (scene, size) in zip((_("a)"), _("b)")), pictures, drawn, strict=True):
+        axes = figure.add_axes((left / width, below / whole, size[0] / width, height / whole))
+        known |= _draw_scheme(axes, scene, picture, display, known)
+        place = ((left + 0.5 * size[0]) / width, (below - 0.5 * MARK_INCHES) / whole)
+        figure.text(*place, mark, ha="center", va="center", fontsize=TEXT)
+        left += size[0] + PAIR_GAP
+    handles, names = zip(*key, strict=True)
+    figure.legend(
+        handles, names, loc="lower center", ncols=columns, handlelength=2.2, columnspacing=1.2, frameon=False
+    )
+    return figure
+
+
+def _draw_scheme(
+    axes: Axes, scene: Paper, picture: SchemePicture, display: Display, known: frozenset[str] = frozenset()
+) -> frozenset[str]:
+    """The mechanism with all that is written about it, which is returned.
+
+    Dimensions of what is changed are set off, without those that are `known`.
+    """
+    tags = [
+        replace(tag, colour=INK) if tag.text in known else tag for tag in _draw(axes, scene, picture, display)
+    ]
+    axes.set_axis_off()
+    sample = picture.sample
+    solid = arcs_on_paper(scene, sample) if isinstance(scene, Globe) else lines(scene, sample)
+    circles = [_cross(np.array(text.get_position()), scene) for text in axes.texts]
+    write_tags(axes, tags, [*solid, *(stroke for cross in circles for stroke in cross)], [], TEXT, REACH)
+    return frozenset(tag.text for tag in tags)
+
+
+def _key(scene: Paper) -> list[tuple[Artist, str]]:
+    """Entries of the key of the links."""
+    return [
+        (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
+        for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
+    ]
+
+
+def _on_paper(
+    scene: Paper,
+    sample: int,
+    most: tuple[float, float],
+    per_inch: float = 0.0,
+    levels: tuple[float, float] | None = None,
+) -> tuple[Paper, tuple[float, float]]:
+    """The scene in the window of one sample, its signs in their size on paper, and the size of the paper [inches].
+
+    It is at most so large; or to a scale of so many units to an inch, between two heights.
+    """
+    least = np.array([min(2.5, most[0]), LEAST_HEIGHT])
     for _pass in range(2):  # the signs reach as far as their size, which depends on the window
         held = _held(scene, sample)
         low, high = held.min(axis=0), held.max(axis=0)
         span = np.maximum(high - low, 1e-3 * float(np.max(high - low)) + np.finfo(float).tiny)
-        per_inch = float(np.max(span / (np.array([WIDTH - KEY, HEIGHT]) - 2 * ROOM)))
-        size = np.maximum(span / per_inch + 2 * ROOM, [2.5, LEAST_HEIGHT])
+        scale = per_inch or float(np.max(span / (np.array(most) - 2 * ROOM)))
+        size = np.maximum(span / scale + 2 * ROOM, least)
         middle = 0.5 * (low + high)
-        low, high = middle - 0.5 * size * per_inch, middle + 0.5 * size * per_inch
+        low, high = middle - 0.5 * size * scale, middle + 0.5 * size * scale
+        if levels is not None:
+            low[1], high[1] = levels
+            size[1] = (levels[1] - levels[0]) / scale
         scene = replace(scene, low=low, high=high, inches=float(np.max(size)))
     return scene, (float(size[0]), float(size[1]))
 
@@ -103,8 +178,9 @@ def _arcs(scene: Globe, sample: int) -> Array:
     return np.array([*ends, *(scene.flat(place) for place in scene.at(sample).values())])
 
 
-def _draw(axes: Axes, scene: Paper, sample: int, display: Display) -> Iterator[Tag]:
+def _draw(axes: Axes, scene: Paper, picture: SchemePicture, display: Display) -> Iterator[Tag]:
     """Draw the mechanism and the numbers of its links; what else is written about it."""
+    sample = picture.sample
     if isinstance(scene, Globe):
         draw_globe(axes, scene, sample, names=False)
     else:
@@ -119,9 +195,13 @@ def _draw(axes: Axes, scene: Paper, sample: int, display: Display) -> Iterator[T
             if name in places and name in used_points(scene):
                 yield Tag(places[name] + scene.sign * np.array([3.2, -3.4]), "0")
     for number, name in enumerate(scene.mechanism.links, start=1):
-        yield from _marked_link(axes, scene, sample, number, name, display)
+        colour = CHANGED if name == picture.changed else INK
+        for tag in _marked_link(axes, scene, sample, number, name, display):
+            yield replace(tag, colour=colour)
     if isinstance(scene, LinkageScene):
-        yield from _frame_dimensions(axes, scene, sample)
+        colour = CHANGED if picture.changed == FRAME else INK
+        for tag in _frame_dimensions(axes, scene, sample):
+            yield replace(tag, colour=colour)
 
 
 def _flat(scene: Paper, place: Array) -> Array:
