@@ -23,13 +23,14 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.motion import (
     attributes_of,
-    coordinates_of,
+    coordinates_along,
     judgements_of,
     labels_of,
     vocabulary_variable,
 )
 from centrode.kinematics.path import JETS, SampleGrid
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import start_of
 from centrode.kinematics.solve import fit_for, grid_of, solve
 from centrode.locale import _
@@ -121,12 +122,11 @@ def curvature(
     scale = float(prepared.kinematics.numbers.scale)
     with np.errstate(all="ignore"):
         variables = _of_pole(seen, scale) | _of_points(seen, own, scale)
-    coordinates = coordinates_of(solved)
-    kept = {name: coordinates[name] for name in ("time", "drive_value", "drive", "axis")}
+    kept = {**coordinates_along(solved), "axis": labels_of(solved.layout.space.axes)}
     variables["status"] = judgements_of(solved, ())["status"]
     coordinate = {"point": labels_of(tuple(own)), "coefficient": labels_of(("a", "b"))}
     facts = attributes_of(solved, "centrodes") | {"link": link, "against": against}
-    return xr.Dataset(variables, coords=kept | coordinate, attrs=facts)
+    return selectable(xr.Dataset(variables, coords=kept | coordinate, attrs=facts))
 
 
 def _source_mechanism(

@@ -20,12 +20,14 @@ from centrode.errors import InputError, MotionError, NotComputedYet
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
-    coordinates_of,
+    coordinates_along,
     judgements_of,
+    labels_of,
     vocabulary_variable,
 )
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _, speaking
@@ -590,7 +592,7 @@ def shaking(
         del variables["drive_rate"]
     attributes = attributes_of(solved, "shaking") | {"about": list(centre), "speed": speed} | facts
     coordinates = _coordinates(solved, found)
-    return xr.Dataset(variables | found, coords=coordinates, attrs=attributes)
+    return selectable(xr.Dataset(variables | found, coords=coordinates, attrs=attributes))
 
 
 def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
@@ -656,8 +658,8 @@ def _curves(effects: Effects, unit: str, *, several: bool) -> dict[str, Variable
 
 
 def _coordinates(solved: Solved, found: dict[str, Variable]) -> dict[str, Any]:
-    kept = {name: value for name, value in coordinates_of(solved).items() if name in ("drive", "axis")}
-    kept |= {name: coordinates_of(solved)[name] for name in ("time", "drive_value")}
+    along = coordinates_along(solved)
+    kept = {"drive": along.pop("drive"), "axis": labels_of(solved.layout.space.axes), **along}
     return kept | ({"order": found.pop("order")} if "order" in found else {})
 
 
