@@ -341,17 +341,19 @@ def _varied_numbers(mechanism: Mechanism, vary: Values | None) -> Values | None:
     if not vary:
         return None
     refuses_bare = mechanism.display.refuses_bare_angles
-    return {
-        path: [
-            read_quantity(value, kind_at(mechanism, path), path, refuses_bare=refuses_bare)
-            if isinstance(value, str)
-            else value
+
+    def numbers(path: str, values: Any) -> Any:
+        values = [values] if isinstance(values, str) else values
+        listed = isinstance(values, Sequence) or getattr(values, "dtype", np.dtype(float)).kind in "OU"
+        if not listed or not any(isinstance(value, str) for value in values):
+            return values
+        kind = kind_at(mechanism, path)
+        return [
+            read_quantity(value, kind, path, refuses_bare=refuses_bare) if isinstance(value, str) else value
             for value in values
         ]
-        if isinstance(values, Sequence) and any(isinstance(value, str) for value in values)
-        else values
-        for path, values in vary.items()
-    }
+
+    return {path: numbers(path, values) for path, values in vary.items()}
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

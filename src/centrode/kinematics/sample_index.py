@@ -93,15 +93,14 @@ class SampleIndex(xr.Index):
 
     def create_variables(self, variables: Mapping[Any, xr.Variable] | None = None) -> dict[Any, xr.Variable]:
         """The coordinates, with the attributes of those given."""
-        known = variables or {}
-        found = {}
+        known, found = variables or {}, dict[Any, xr.Variable]()
         for name, values in self.values.items():
             given = known.get(name)
-            if given is not None and given.dims == (SAMPLE,) and given.size == values.size:
-                found[name] = given
-            else:
-                attributes = {"units": self.units[name]} if given is None else given.attrs
-                found[name] = xr.Variable((SAMPLE,), values, attributes)
+            attributes = {"units": self.units[name]} if given is None else given.attrs
+            # xarray gives the variable before a roll or a join, whose values are others
+            if given is None or given.values is not values:
+                given = xr.Variable((SAMPLE,), values, attributes)
+            found[name] = given
         return found
 
     def isel(self, indexers: Mapping[Any, Any]) -> SampleIndex | None:

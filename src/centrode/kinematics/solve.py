@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -13,7 +14,7 @@ from centrode.errors import InputError
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.path import SampleGrid, even_grid, grid_at
+from centrode.kinematics.path import SampleGrid, even_grid, grid_at, places_of
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
@@ -86,8 +87,7 @@ def grid_of(
     """Evenly spaced samples, or exactly the places `at` where there are some; numbers in SI or texts with a unit."""
     if at is None:
         return requested_grid(ready, samples, start, stop)
-    places = ready.parameter.instant.read_all(at, "at")
-    return grid_at(ready.kinematics.path, np.asarray(places, dtype=np.float64))
+    return grid_at(ready.kinematics.path, places_of(ready.parameter.instant, at))
 
 
 def requested_grid(
@@ -95,8 +95,11 @@ def requested_grid(
 ) -> SampleGrid:
     """Evenly spaced samples; what is left out is what the description asks for."""
     study, instant = ready.mechanism.study, ready.parameter.instant
-    start = instant.read(start, "start") if isinstance(start, str) else start
-    stop = instant.read(stop, "stop") if isinstance(stop, str) else stop
+    # a number is looked at with the range
+    start, stop = (
+        end if end is None or isinstance(end, Real) else instant.read(end, name)
+        for name, end in (("start", start), ("stop", stop))
+    )
     start = study.start if start is None else start
     stop = study.stop if stop is None else stop
     # the description's number before the program's own

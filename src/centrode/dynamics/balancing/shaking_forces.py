@@ -34,6 +34,7 @@ from centrode.locale import _, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
+from centrode.model.units import read_quantity
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import tops
 
@@ -521,7 +522,7 @@ def _halve_panels(panels: Panels) -> Panels:
     return Panels(np.sort(np.concatenate([panels.edges, middles])))
 
 
-About = str | tuple[float, float]
+About = str | tuple[float | str, float | str]
 ORDERS, MOST_ORDERS = 8, 60
 
 
@@ -604,7 +605,10 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
         x, y = mechanism.frame.coordinates[about]
         return x, y
     try:
-        x, y = (float(number) for number in about)
+        x, y = (
+            read_quantity(number, "length", "about") if isinstance(number, str) else float(number)
+            for number in about
+        )
     except (TypeError, ValueError):
         x = y = np.nan
     if not np.isfinite([x, y]).all():

@@ -42,7 +42,7 @@ from centrode.kinematics.motion import (
     judgements_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.path import SampleGrid, places_of
 from centrode.kinematics.plan_evaluation import layout_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import selectable
@@ -437,7 +437,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
 def _times(setting: Setting, course: Trajectory, at: npt.ArrayLike | None) -> Array:
     """The instants of the result, no later than the end."""
     if at is not None:
-        times = np.asarray(TIME.read_all(at, "at"), dtype=np.float64)
+        times = places_of(TIME, at)
         if times.ndim != 1 or not len(times) or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
             raise InputError("at", _("a one-dimensional array of finite, increasing times is required"))
         if times[0] < 0.0:
