@@ -24,6 +24,7 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Flag, Material, Size, Steepness, Stress
 from centrode.model.reading import (
+    KEY,
     DescriptionPart,
     Problem,
     Problems,
@@ -169,6 +170,17 @@ def _belongs(
     ]
 
 
+def read_ratio(value: object, kind: str) -> float:
+    """A part of a whole: positive, at most 1."""
+    ratio = positive(value, kind)
+    if ratio > 1:
+        raise Problem(_("{key} must be at most 1, got {value}").format(key=KEY, value=value_text(value)))
+    return ratio
+
+
+Ratio = Annotated[float, quantity("ratio", read_ratio)]
+
+
 class FollowerBounds(DescriptionPart):
     """What is admissible: table [bounds].
 
@@ -180,6 +192,9 @@ class FollowerBounds(DescriptionPart):
         Greatest one where the follower falls; that of the rise if left out.
     curvature_radius : float [m]
         Least radius of curvature of the profile where it is convex.
+    roller_to_curvature, roller_to_radius : float, at most 1
+        Greatest ratios of a roller's radius to the least radius of curvature of the path of its centre, and to the
+        least distance of this path from the cam's centre.
     stress : float [Pa]
         Greatest contact stress.
     """
@@ -187,6 +202,8 @@ class FollowerBounds(DescriptionPart):
     pressure_angle: Steepness | None = None
     return_pressure_angle: Steepness | None = None
     curvature_radius: Size | None = None
+    roller_to_curvature: Ratio | None = None
+    roller_to_radius: Ratio | None = None
     stress: Stress | None = None
 
 
@@ -495,10 +512,21 @@ class PlateCam(DescriptionPart):
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        problems = segment_problems(self.segments)
+        problems = [*segment_problems(self.segments), *self._ratios_without_roller()]
         if problems:
             raise Problems(problems)
         return self
+
+    def _ratios_without_roller(self) -> list[Problem]:
+        """Ratios of a roller's radius that are given for another follower."""
+        if self.follower.contact == "roller":
+            return []
+        what, repair = _("{key} is used with {whose} only"), _("remove it")
+        return [
+            Problem(what.format(key=value_text(key), whose=_("a roller")), repair, ("bounds",))
+            for key in ("roller_to_curvature", "roller_to_radius")
+            if getattr(self.bounds, key) is not None
+        ]
 
     @property
     def swings(self) -> bool:

@@ -381,6 +381,8 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "pressure_angle": above_zero("angle"),
         "return_pressure_angle": above_zero("angle"),
         "curvature_radius": above_zero("length"),
+        "roller_to_curvature": above_zero("ratio"),
+        "roller_to_radius": above_zero("ratio"),
         "stress": above_zero("pressure"),
     },
     Tool: {"radius": above_zero("length")},
