@@ -44,6 +44,7 @@ from centrode.sheets.texts import (
     Factor,
     Joined,
     Leaf,
+    Name,
     Number,
     Sentence,
     Symbol,
@@ -385,10 +386,23 @@ def _segment_blocks(results: FollowerMotionResults) -> Iterator[Block]:
                     last=Number(last, "rad", digits=""),
                 )
             )
+        if segment.lift:
+            yield Paragraph(_lift_formula(results, segment.lift))
         if after != before:
             yield Formula(tuple(_segment_lines(results, number, before, after)))
         if segment.curve in THROUGH_POINTS:
             yield from _pieces(results, number, before)
+
+
+def _lift_formula(results: FollowerMotionResults, text: str) -> Sentence:
+    """The formula of a segment as it is given."""
+    unit = Number(1.0, "rad" if results.motion.swings else "m", unit_fixed=True)
+    return Sentence(
+        "Its lift in units of {unit} is {formula}; phi counts in radians from its start, beta is its angle, s0 the "
+        "lift at its start, s1 at its end, h the rise.",
+        unit=unit,
+        formula=Name(text),
+    )
 
 
 def _segment_lines(results: FollowerMotionResults, number: int, before: float, after: float) -> Lines:
