@@ -117,8 +117,7 @@ def test_a_mechanism_that_such_a_cam_drives() -> None:
     drive = feed.drives[0]
     assert isinstance(drive.cam, ct.PlateCam)
     named = ct.cam_text(drive.cam)
-    formula = '"s0 + h*(35*(phi/beta)^4 - 84*(phi/beta)^5 + 70*(phi/beta)^6 - 20*(phi/beta)^7)"'
-    written = ct.parse_cam(named.replace('curve = "4-5-6-7"', f"lift = {formula}"))
+    written = ct.parse_cam(named.replace('curve = "cycloidal"', f'lift = "{CYCLOIDAL}"'))
     assert written != drive.cam
     driven = feed.model_copy(update={"drives": (drive.model_copy(update={"cam": written}),)})
     ours, theirs = ct.motion(driven, 73), ct.motion(feed, 73)
