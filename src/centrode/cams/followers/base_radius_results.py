@@ -122,6 +122,8 @@ def choose_base_radius(
     found = with_least(replace(found, margin=margin))
     if found.least is None or plate.swings or (found.is_free and plate.follower.contact != "flat"):
         return found
+    if found.least.by == "roller to radius":
+        return found  # no offset makes the cam smaller
     try:
         return replace(found, best=least_cam(plate, offset=True))
     except MotionError as refusal:
