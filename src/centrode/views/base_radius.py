@@ -248,10 +248,12 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
         )
     yield Paragraph(text)
     formulas = FollowerFormulas(least_body(results), place)
-    decisive = formulas.pressure() if least.by == "pressure angle" else formulas.radius()
     if least.by == "roller to radius":
-        decisive = ()
-    yield Formula((("r_0", length(least.base_radius)), *formulas.start(), *formulas.lift(), *decisive))
+        ratio = Number(chosen_admissible(results.cam).roller_to_radius)
+        yield Formula((("r_0", length(least.base_radius)), *formulas.start(), ("frac(r, r_0 + r)", ratio)))
+    else:
+        decisive = formulas.pressure() if least.by == "pressure angle" else formulas.radius()
+        yield Formula((("r_0", length(least.base_radius)), *formulas.start(), *formulas.lift(), *decisive))
     statement = Sentence(
         "A base radius smaller by a fraction {part} violates a bound; one larger by the same fraction violates none.",
         part=Number(NEAR, digits=".1e"),

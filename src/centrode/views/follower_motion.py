@@ -387,20 +387,18 @@ def _segment_blocks(results: FollowerMotionResults) -> Iterator[Block]:
                 )
             )
         if segment.lift:
-            yield Paragraph(_lift_formula(results, segment.lift))
+            yield Paragraph(_lift_formula(segment.lift))
         if after != before:
             yield Formula(tuple(_segment_lines(results, number, before, after)))
         if segment.curve in THROUGH_POINTS:
             yield from _pieces(results, number, before)
 
 
-def _lift_formula(results: FollowerMotionResults, text: str) -> Sentence:
+def _lift_formula(text: str) -> Sentence:
     """The formula of a segment as it is given."""
-    unit = Number(1.0, "rad" if results.motion.swings else "m", unit_fixed=True)
     return Sentence(
-        "Its lift in units of {unit} is {formula}; phi counts in radians from its start, beta is its angle, s0 the "
-        "lift at its start, s1 at its end, h the rise.",
-        unit=unit,
+        "In SI units its lift is {formula}, with phi the angle from its start, beta the angle of the segment, s0 and "
+        "s1 the lift at its start and at its end, h = s1 - s0.",
         formula=Name(text),
     )
 
