@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, Pla
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
 from centrode.locale import _
+from centrode.model.motion_parameter import MotionVariable
 from centrode.model.settings import REACHABLE
 from centrode.structure.dimensions import Dimensions
 
@@ -95,11 +96,7 @@ def requested_grid(
 ) -> SampleGrid:
     """Evenly spaced samples; what is left out is what the description asks for."""
     study, instant = ready.mechanism.study, ready.parameter.instant
-    # a number is looked at with the range
-    start, stop = (
-        end if end is None or isinstance(end, Real) else instant.read(end, name)
-        for name, end in (("start", start), ("stop", stop))
-    )
+    start, stop = (_end(instant, end, name) for name, end in (("start", start), ("stop", stop)))
     start = study.start if start is None else start
     stop = study.stop if stop is None else stop
     # the description's number before the program's own
@@ -107,6 +104,11 @@ def requested_grid(
     reachable = study.range == REACHABLE
     reach = _reach_if_needed(ready, start, stop, reachable)
     return even_grid(ready.kinematics.path, count, start, stop, reach, reachable)
+
+
+def _end(instant: MotionVariable, end: Any, name: str) -> float | None:
+    """An end of a range in SI; a number is looked at with the range, a text read."""
+    return cast(float, end) if end is None or isinstance(end, Real) else instant.read(end, name)
 
 
 def solve(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -119,8 +118,10 @@ def _instants(
     """Instants in SI, of several or one alone."""
     if given is None:
         return None
-    listed = [given] if isinstance(given, str | int | float) else given
-    return tuple(instant(description, float(one) if isinstance(one, Real) else one, "at") for one in listed)
+    listed: Sequence[Any] = [given] if isinstance(given, str | int | float) else given
+    # a number of an array is one, as no text is
+    numbers = (one if isinstance(one, str) else float(one) for one in listed)
+    return tuple(instant(description, one, "at") for one in numbers)
 
 
 def _first(wish: Wished | None, other: Wished | None) -> Wished | None:

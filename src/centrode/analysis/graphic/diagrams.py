@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -297,7 +297,7 @@ def _step(step: float | str | None, kind: str, *, refuses_bare: bool = False) ->
     return None if step is None else read_quantity(step, kind, f"{kind}_step", refuses_bare=refuses_bare)
 
 
-def _scale(name: str, scale: float | str) -> float:
+def _scale(name: str, scale: Any) -> float:
     """What a millimetre stands for, in SI; the names of scales are looked at with the drawing."""
     kind = KINDS_OF_SCALES.get(name)
     if kind is None or isinstance(scale, Real):
