@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -89,3 +90,81 @@ def test_dimensions_that_vary() -> None:
 def test_texts_that_are_no_values(arguments: dict[str, Any], told: str) -> None:
     with pytest.raises(ct.InputError, match=told):
         ct.motion(PRESS, **arguments)
+
+
+@pytest.mark.parametrize("at", [2.0, "2 rad", ["2 rad"], [2.0], (np.float64(2.0),), np.array([2.0])])
+def test_one_instant_alone_or_in_a_list(at: Any) -> None:
+    same(ct.reduce(PRESS, at=at), ct.reduce(PRESS, at=[2.0]))
+    assert ct.force_polygons(PRESS, at=at).balancing == POLYGONS.balancing
+
+
+POLYGONS = ct.force_polygons(PRESS, 2.0)
+
+
+def test_angles_of_cams() -> None:
+    same(
+        ct.cam("cam-from-curvature", at=["10 deg", 0.5]), ct.cam("cam-from-curvature", at=[10 * DEGREE, 0.5])
+    )
+    same(ct.cam_forces("valve-cam", at="100 deg"), ct.cam_forces("valve-cam", at=[100 * DEGREE]))
+    with pytest.raises(ct.InputError, match=r'at: "10" is an angle without a unit'):
+        ct.cam("cam-from-curvature", at=["10"])
+
+
+def test_places_and_scales() -> None:
+    engine = "single-cylinder-engine"
+    same(ct.shaking(engine, 5, about=("0 mm", "10 mm")), ct.shaking(engine, 5, about=(0.0, 0.01)))
+    same(
+        ct.curvature(ROCKER, "AB", [1.0], points={"Q": ("10 mm", 0.2)}),
+        ct.curvature(ROCKER, "AB", [1.0], points={"Q": (0.01, 0.2)}),
+    )
+    texts = {"length": "50 mm", "velocity": "20 mm/s", "acceleration": "2 cm/s^2"}
+    numbers = {"length": 0.05, "velocity": 0.02, "acceleration": 0.02}
+    drawn = (ct.graphic_analysis(ROCKER, instants="1 rad", scales=scales) for scales in (texts, numbers))
+    assert len({ct.summary(found) for found in drawn}) == 1
+
+
+def test_reports() -> None:
+    """What a report shows at an instant, by its options and by `at`."""
+    plain = ct.ReportOptions(chapters=("structure",))
+    chosen = replace(plain, instants=("60 deg", 2.0))
+    for options, at, instants in (
+        (chosen, None, (60 * DEGREE, 2.0)),
+        (chosen, "1 rad", (1.0,)),
+        (plain, 1.0, (1.0,)),
+        (plain, ["60 deg", np.float64(1.0)], (60 * DEGREE, 1.0)),
+        (replace(plain, instants="60 deg"), None, (60 * DEGREE,)),
+    ):
+        made = ct.report(ROCKER, options, at=at)
+        assert made.description is not None and made.description.instants == instants
+    cam = ct.report("valve-cam", ct.ReportOptions(chapters=("data",)), at=["100 deg"])
+    assert cam.description is not None and cam.description.instants == (100 * DEGREE,)
+    with pytest.raises(ct.InputError, match="at: expected an angle"):
+        ct.report(ROCKER, at=["60 mm"])
+
+
+def test_vary_takes_texts_in_arrays_and_alone() -> None:
+    wanted = ct.motion(ROCKER, 5, vary={"links.AB.length": [3.4]})
+    for values in (["3400 mm"], "3400 mm", np.array(["3400 mm"])):
+        same(ct.motion(ROCKER, 5, vary={"links.AB.length": values}), wanted)
+
+
+@pytest.mark.parametrize(
+    "compute",
+    [
+        lambda: ct.motion(PRESS, at=[["60 deg"]]),
+        lambda: ct.motion(PRESS, at=[]),
+        lambda: ct.motion(PRESS, at=[None, "60 deg"]),
+        lambda: ct.motion(PRESS, start=["60 deg"]),
+        lambda: ct.motion(PRESS, stop={}),
+        lambda: ct.cam("cam-from-curvature", at=[["10 deg"]]),
+        lambda: ct.force_polygons(PRESS, ["60 deg", "70 deg"]),
+        lambda: ct.force_polygons(PRESS, []),
+        lambda: ct.graphic_analysis(ROCKER, instants=["1 rad"], scales={"length": "1 s"}),
+        lambda: ct.curvature(ROCKER, "AB", [1.0], points={"Q": "10 mm"}),
+        lambda: ct.variants(ROCKER, {"links.AB.length": ["3.4 m"]}),
+    ],
+)
+def test_what_is_no_value_is_refused(compute: Callable[[], object]) -> None:
+    with pytest.raises(ct.InputError) as refused:
+        compute()
+    assert refused.value.where and refused.value.what

@@ -170,6 +170,12 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
     if isinstance(table, str | Path):
         where = Path(table).name
         headers, rows = _file(Path(table), where)
+    elif isinstance(table, Mapping):
+        what, repair = (
+            _("it is one mapping"),
+            _("give the path of a file, or a list with a mapping for each variant"),
+        )
+        raise InputError(_("table"), what, repair)
     else:
         where = _("table")
         headers, rows = _mappings(table, where)

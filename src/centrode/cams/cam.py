@@ -37,6 +37,7 @@ from centrode.cams.roller_path import (
 )
 from centrode.errors import CentrodeError, Status
 from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
+from centrode.kinematics.sample_index import selectable
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam, cam_text, require_curvature_cam
 from centrode.model.examples.catalogue import CamSource, cam_of
@@ -100,7 +101,7 @@ def dataset_of_path(cam: Cam, path: RollerPath, phi: Array) -> xr.Dataset:
         "carrier_angle": vocabulary_variable("carrier_angle", along, phi),
         "axis": labels_of(("x", "y")),
     }
-    return xr.Dataset(data, coords=coordinates, attrs=_path_facts(cam, path))
+    return selectable(xr.Dataset(data, coords=coordinates, attrs=_path_facts(cam, path)))
 
 
 def _values(path: RollerPath, phi: Array) -> dict[str, Array]:
@@ -233,7 +234,7 @@ def cam_routes(
         "carrier_angle": vocabulary_variable("carrier_angle", ("sample",), phi),
         "route": labels_of(ROUTES),
     }
-    return xr.Dataset(data, coords=coordinates, attrs=_comparison_facts(cam, routes, data))
+    return selectable(xr.Dataset(data, coords=coordinates, attrs=_comparison_facts(cam, routes, data)))
 
 
 def _three(routes: Routes) -> tuple[SeriesPath, ExpandedPath, IntegratedPath]:

@@ -22,6 +22,7 @@ from centrode.cams.roller_path import FEWEST, Array, angles_of, frames, in_order
 from centrode.cams.walking_wheel import Shoe, WheelMover, WheelRolling, mover, rolling
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
+from centrode.kinematics.sample_index import selectable
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Cam
@@ -455,7 +456,7 @@ def cam_contact(cam: CamSource, samples: int | None = None) -> xr.Dataset:
     data = {name: vocabulary_variable(name, ("sample",), one) for name, one in values.items()}
     data["status"] = status_of(path, phi)
     coordinates = {"carrier_angle": vocabulary_variable("carrier_angle", ("sample",), phi)}
-    return xr.Dataset(data, coords=coordinates, attrs=attributes)
+    return selectable(xr.Dataset(data, coords=coordinates, attrs=attributes))
 
 
 def _check_strip(found: Stressed, contact: LineContact) -> None:

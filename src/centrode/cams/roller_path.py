@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import factorial
 from typing import Any, Protocol
 
@@ -23,6 +23,7 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
+from centrode.model.motion_parameter import ANGLE
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.search import Extremes as PathExtremes
@@ -444,7 +445,11 @@ def angles_of(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None 
             what = _("{samples} samples are given").format(samples=count)
             raise InputError(_("samples"), what, _("give 2 to {most}").format(most=reading.SAMPLES))
         return np.linspace(*ends_of(cam), count)
-    places = np.asarray(at, dtype=np.float64)
+    angle = replace(ANGLE, refuses_bare=cam.display.refuses_bare_angles)
+    try:
+        places = np.asarray(angle.read_all(at, "at"), dtype=np.float64)
+    except (TypeError, ValueError):
+        places = np.array(math.nan)
     if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("a one-dimensional array of finite angles of the carrier is required"))
     return places

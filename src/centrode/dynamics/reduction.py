@@ -22,13 +22,14 @@ from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
-    coordinates_of,
+    coordinates_along,
     judgements_of,
     labels_of,
     vocabulary_variable,
 )
 from centrode.kinematics.plan_evaluation import Event
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.several_inputs.coefficients import Partials, partials
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, grid_of, solve
@@ -273,12 +274,11 @@ def reduced_to_several(solved: Solved, burden: MassesAndLoads) -> xr.Dataset:
         ),
         "status": judgements_of(coefficients.solved, ())["status"],
     }
-    known = coordinates_of(solved)
-    coordinates = {name: known[name] for name in ("time", "drive_value", "drive")}
+    coordinates = coordinates_along(solved)
     names = labels_of(tuple(coefficients.units))
     coordinates |= {"drive_2": names, "drive_3": names}
     coordinates |= {"link": labels_of(burden.links), "load": labels_of(burden.labels)}
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "reduce"))
+    return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "reduce")))
 
 
 def refuse_drive_in_formulas(burden: MassesAndLoads) -> None:
@@ -447,13 +447,11 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
         "jumps", ("jump",), reducer.jumps(float(first), float(last)), unit
     )
     variables["status"] = judgements_of(solved, ())["status"]
-    coordinates = {
-        name: values for name, values in coordinates_of(solved).items() if name in ("time", "drive")
-    }
-    coordinates["drive_value"] = coordinates_of(solved)["drive_value"]
-    coordinates |= {"link": labels_of(burden.links), "load": labels_of(burden.labels)}
+    along = coordinates_along(solved)
+    coordinates = {name: along.pop(name) for name in ("time", "drive", "drive_value")}
+    coordinates |= {**along, "link": labels_of(burden.links), "load": labels_of(burden.labels)}
     attributes = attributes_of(solved, "reduce") | {"rate_from": "drive" if _by_drive(solved) else "machine"}
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes))
 
 
 def _by_drive(solved: Solved) -> bool:

@@ -29,6 +29,7 @@ from centrode.kinematics.motion import (
 )
 from centrode.kinematics.path import DrivenBy
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -765,7 +766,7 @@ def _dataset(
         "return_difference": _apart(course.angles, course.points, scaled.scale),
         "closed_return_difference": _apart(closed["angle"].values, closed["position"].values, scaled.scale),
     }
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes))
 
 
 def _or_nan(time: float | None) -> float:

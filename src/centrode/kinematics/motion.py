@@ -16,6 +16,7 @@ import xarray as xr
 from centrode.errors import STATUSES_OF_MOTION, InputError
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import drive_coordinates, labelled
 from centrode.kinematics.solve import Progress, Solved, grid_of, solve
 from centrode.locale import _, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -52,9 +53,8 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     variables |= judgements_of(solved, front) | _contacts(solved, front)
     if not batch:
         variables |= _events(solved)
-    data = xr.Dataset(
-        variables, coords=coordinates_of(solved), attrs=attributes_of(solved, None if batch else "run")
-    )
+    attributes = attributes_of(solved, None if batch else "run")
+    data = xr.Dataset(variables, coords=labelled(coordinates_of(solved)), attrs=attributes)
     for path, values in (vary or {}).items():
         data = data.assign_coords({path: (BATCH, np.asarray(values, dtype=np.float64))})
     return data
@@ -193,6 +193,26 @@ def _events(solved: Solved) -> dict[str, Variable]:
 
 def coordinates_of(solved: Solved) -> dict[str, Any]:
     """Times, values of the drives, and names."""
+    along = coordinates_along(solved)
+    frame = tuple(solved.ready.structure.dimensions.frame)
+    joints = {} if solved.spins is None else {"joint": labels_of(solved.layout.angles)}
+    wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
+    return {
+        "time": along.pop("time"),
+        "drive_value": along.pop("drive_value"),
+        "point": labels_of(frame + solved.layout.points),
+        "link": labels_of(solved.layout.links),
+        **joints,
+        "guide": labels_of(solved.layout.guides),
+        **({"rolling": labels_of(wheels)} if wheels else {}),
+        "drive": along.pop("drive"),
+        "axis": labels_of(solved.layout.space.axes),
+        **along,
+    }
+
+
+def coordinates_along(solved: Solved) -> dict[str, Any]:
+    """Times, values of the drives together, their names, and the values of each by its name."""
     path = solved.ready.kinematics.path
     values = path.drive_values(ARRAYS, solved.span.parameter)
     count = len(solved.span.time)
@@ -201,19 +221,11 @@ def coordinates_of(solved: Solved) -> dict[str, Any]:
     drive_value = vocabulary_variable("drive_value", ("sample", "drive"), drives, units[0])
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
-    frame = tuple(solved.ready.structure.dimensions.frame)
-    joints = {} if solved.spins is None else {"joint": labels_of(solved.layout.angles)}
-    wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
     return {
         "time": vocabulary_variable("time", ("sample",), solved.span.time),
         "drive_value": drive_value,
-        "point": labels_of(frame + solved.layout.points),
-        "link": labels_of(solved.layout.links),
-        **joints,
-        "guide": labels_of(solved.layout.guides),
-        **({"rolling": labels_of(wheels)} if wheels else {}),
         "drive": labels_of(tuple(values)),
-        "axis": labels_of(solved.layout.space.axes),
+        **drive_coordinates(tuple(values), drives, units),
     }
 
 
@@ -329,17 +341,19 @@ def _varied_numbers(mechanism: Mechanism, vary: Values | None) -> Values | None:
     if not vary:
         return None
     refuses_bare = mechanism.display.refuses_bare_angles
-    return {
-        path: [
-            read_quantity(value, kind_at(mechanism, path), path, refuses_bare=refuses_bare)
-            if isinstance(value, str)
-            else value
+
+    def numbers(path: str, values: Any) -> Any:
+        values = [values] if isinstance(values, str) else values
+        listed = isinstance(values, Sequence) or getattr(values, "dtype", np.dtype(float)).kind in "OU"
+        if not listed or not any(isinstance(value, str) for value in values):
+            return values
+        kind = kind_at(mechanism, path)
+        return [
+            read_quantity(value, kind, path, refuses_bare=refuses_bare) if isinstance(value, str) else value
             for value in values
         ]
-        if isinstance(values, Sequence) and any(isinstance(value, str) for value in values)
-        else values
-        for path, values in vary.items()
-    }
+
+    return {path: numbers(path, values) for path, values in vary.items()}
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

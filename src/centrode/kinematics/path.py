@@ -20,7 +20,7 @@ from centrode.laws import Law, ShaftLaw
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.mechanism import Drive, Mechanism
-from centrode.model.motion_parameter import MotionParameter
+from centrode.model.motion_parameter import MotionParameter, MotionVariable
 from centrode.model.placement import chain_of
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
@@ -437,10 +437,34 @@ def even_grid(
     return span
 
 
+def places_of(variable: MotionVariable, at: npt.ArrayLike) -> Array:
+    """Values [rad, m or s] of what `at` gives: numbers in SI or texts with a unit, several or one alone.
+
+    Raises InputError for anything else; whether there are some, finite and in one dimension, is seen later.
+    """
+    try:
+        return np.asarray(variable.read_all(at, "at"), dtype=np.float64)
+    except (TypeError, ValueError):
+        raise _no_places() from None
+
+
+def place_of(variable: MotionVariable, at: npt.ArrayLike) -> float:
+    """The value [rad, m or s] of one instant, alone or as the only one of several; InputError for another number."""
+    places = places_of(variable, at)
+    if places.size != 1:
+        what = _("{count} instants are given").format(count=places.size)
+        raise InputError("at", what, _("give one"))
+    return float(places.item())
+
+
+def _no_places() -> InputError:
+    return InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
+
+
 def grid_at(path: Path, places: Array) -> SampleGrid:
     """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
     if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
-        raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
+        raise _no_places()
     span = _at_values(path, places) if path.parameter.is_uniform else _at_times(path, places)
     _check_extent(path, span)
     return span

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from numbers import Real
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +14,12 @@ from centrode.errors import InputError
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.path import SampleGrid, even_grid, grid_at
+from centrode.kinematics.path import SampleGrid, even_grid, grid_at, places_of
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
 from centrode.locale import _
+from centrode.model.motion_parameter import MotionVariable
 from centrode.model.settings import REACHABLE
 from centrode.structure.dimensions import Dimensions
 
@@ -86,8 +88,7 @@ def grid_of(
     """Evenly spaced samples, or exactly the places `at` where there are some; numbers in SI or texts with a unit."""
     if at is None:
         return requested_grid(ready, samples, start, stop)
-    places = ready.parameter.instant.read_all(at, "at")
-    return grid_at(ready.kinematics.path, np.asarray(places, dtype=np.float64))
+    return grid_at(ready.kinematics.path, places_of(ready.parameter.instant, at))
 
 
 def requested_grid(
@@ -95,8 +96,7 @@ def requested_grid(
 ) -> SampleGrid:
     """Evenly spaced samples; what is left out is what the description asks for."""
     study, instant = ready.mechanism.study, ready.parameter.instant
-    start = instant.read(start, "start") if isinstance(start, str) else start
-    stop = instant.read(stop, "stop") if isinstance(stop, str) else stop
+    start, stop = (_end(instant, end, name) for name, end in (("start", start), ("stop", stop)))
     start = study.start if start is None else start
     stop = study.stop if stop is None else stop
     # the description's number before the program's own
@@ -104,6 +104,11 @@ def requested_grid(
     reachable = study.range == REACHABLE
     reach = _reach_if_needed(ready, start, stop, reachable)
     return even_grid(ready.kinematics.path, count, start, stop, reach, reachable)
+
+
+def _end(instant: MotionVariable, end: Any, name: str) -> float | None:
+    """An end of a range in SI; a number is looked at with the range, a text read."""
+    return cast(float, end) if end is None or isinstance(end, Real) else instant.read(end, name)
 
 
 def solve(

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any, Protocol
+
+from centrode.numerics.text_formula import TextFormula
 
 Number = Any
 
@@ -78,6 +80,40 @@ class Piece:
 
 
 @dataclass(frozen=True)
+class TextPiece:
+    """A formula that is written as text, in the distance x = t - origin.
+
+    Attributes
+    ----------
+    formula : of the variable `phi` and of `numbers`
+    length : of the stretch on which it holds
+    numbers : name -> value of its other variables
+    """
+
+    origin: float
+    formula: TextFormula
+    length: float
+    numbers: Mapping[str, float]
+    wave: float = field(default=0.0, init=False)
+    powers: tuple[float, ...] = field(default=(), init=False)
+
+    def row(self, degree: int) -> Row:
+        """The row of zero, which stands for this formula in a table of rows."""
+        return Piece(self.origin, 0.0).row(degree)
+
+    def jet(self, m: Any, t: Number) -> Number:
+        """The value at t over the algebra of `m`, which needs what the formula uses."""
+        x = t - self.origin
+        # with x times zero a constant formula too has the shape and the order of t
+        return x * 0.0 + self.formula(m, phi=x, **self.numbers)
+
+    def jet_where(self, here: Number, m: Any, t: Number) -> Number:
+        """The same where `here` is 1, and 0 where it is 0: there the formula is taken at the middle of its stretch."""
+        middle = self.origin + 0.5 * self.length
+        return self.jet(m, t * here + (1.0 - here) * middle) * here
+
+
+@dataclass(frozen=True)
 class Pieces:
     """Formulas by stretches: before the first break, between the breaks, after the last.
 
@@ -87,21 +123,37 @@ class Pieces:
     breaks: tuple[float, ...]
     rows: tuple[Row, ...]
     waves: bool
+    texts: Mapping[int, TextPiece] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, breaks: Sequence[float], pieces: Sequence[Piece]) -> Pieces:
+    def of(cls, breaks: Sequence[float], pieces: Sequence[Piece | TextPiece]) -> Pieces:
         """From pieces, one more than breaks."""
         degree = max(len(piece.powers) for piece in pieces)
         rows = tuple(piece.row(degree) for piece in pieces)
-        return cls(tuple(breaks), rows, any(piece.wave for piece in pieces))
+        texts = {place: piece for place, piece in enumerate(pieces) if isinstance(piece, TextPiece)}
+        return cls(tuple(breaks), rows, any(piece.wave for piece in pieces), texts)
 
     def jet(self, m: Any, t: Number) -> Number:
         """The value at t over the algebra of `m`, which needs sin (with cos, on jets)."""
+        if self.texts:
+            return self._jet_with_texts(m, t)
         return self._formula(row_at(self.breaks, self.rows, plain(t)), m, t)
 
     def at_row(self, place: int, m: Any, t: Number) -> Number:
         """The value at t by one formula, wherever t lies: 0 is the one before the first break."""
+        if place in self.texts:
+            return self.texts[place].jet(m, t)
         return self._formula(self.rows[place], m, t)
+
+    def _jet_with_texts(self, m: Any, t: Number) -> Number:
+        """The value at t where some formulas are no rows: of an array each of these is evaluated for itself."""
+        places = places_at(self.breaks, plain(t))
+        if isinstance(places, int):
+            return self.at_row(places, m, t)
+        value = self._formula(row_at(self.breaks, self.rows, plain(t)), m, t)
+        for place, text in self.texts.items():
+            value = value + text.jet_where((places == place) * 1.0, m, t)
+        return value
 
     def _formula(self, row: Row, m: Any, t: Number) -> Number:
         origin, unit, wave, cycloid, square, *powers = row
@@ -132,14 +184,21 @@ def row_at(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:
 
     Rows are one more than breaks. At a break the right one is taken, at the last break the left one.
     """
-    if isinstance(t, float | int) or not hasattr(t, "__array_namespace__"):
-        # bisect_right takes the right piece at a break; at the last break the left one is meant
-        place = bisect_right(breaks, t) - (1 if t == breaks[-1] else 0)
-        return rows[place]
+    places = places_at(breaks, t)
+    if isinstance(places, int):
+        return rows[places]
     # The array says itself which library it belongs to: this room imports none.
     xp = t.__array_namespace__()
-    places = xp.searchsorted(xp.asarray(breaks), t, side="right") - (t == breaks[-1])
     return tuple(xp.moveaxis(xp.asarray(rows)[places], -1, 0))
+
+
+def places_at(breaks: Sequence[float], t: Number) -> Any:
+    """The number of the stretch that a plain t lies in, as of `row_at`; of an array an array of numbers."""
+    if isinstance(t, float | int) or not hasattr(t, "__array_namespace__"):
+        # bisect_right takes the right piece at a break; at the last break the left one is meant
+        return bisect_right(breaks, t) - (1 if t == breaks[-1] else 0)
+    xp = t.__array_namespace__()
+    return xp.searchsorted(xp.asarray(breaks), t, side="right") - (t == breaks[-1])
 
 
 # Curves of a rise: s(u) from s(0) = 0 to s(1) = 1, without a dimension; drives and cams use them.

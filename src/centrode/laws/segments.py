@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+import re
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -11,8 +13,10 @@ from itertools import pairwise
 from typing import Any
 
 from centrode.errors import InputError
-from centrode.laws.rises import CURVES, Number, Piece, Pieces, plain
+from centrode.laws.rises import CURVES, Number, Piece, Pieces, TextPiece, plain
 from centrode.locale import _
+from centrode.numerics.operations import FUNCTIONS
+from centrode.numerics.text_formula import TextFormula, compile_formula
 
 # The polynomial that has given values and derivatives at given times.
 
@@ -295,7 +299,15 @@ POLYNOMIAL = "polynomial"
 B_SPLINE = "b-spline"
 THROUGH_POINTS = (POLYNOMIAL, B_SPLINE)
 """Curves by conditions: values on the way, derivatives at the ends."""
+FORMULA = "formula"
+"""A segment that is written as text."""
 SEGMENT_CURVES = (*CURVES, DWELL, *THROUGH_POINTS)
+LIFT_CURVES = (*SEGMENT_CURVES, FORMULA)
+"""Of a cam: a drive has formulas of time instead."""
+VARIABLES = ("phi", "beta", "h", "s0", "s1")
+"""Of a formula: angle from the segment's start, angle of the segment, rise, value at its start and at its end."""
+SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log")
+"""Functions that a formula of a segment may use: inside a segment all derivatives are continuous."""
 CURVE_SYNONYMS = {
     "linear": "uniform",
     "constant velocity": "uniform",
@@ -339,11 +351,13 @@ class LawSegment:
         Of a polynomial or a B-spline: values on the way, at times from the segment's start.
     degree : int
         Of a B-spline.
+    text : str
+        Of a formula in `VARIABLES`, whose value is that of the law.
 
     Raises
     ------
     InputError
-        Numbers that are not finite, or times that do not increase.
+        Numbers that are not finite, times that do not increase, a text that is no formula.
     """
 
     time: float
@@ -353,14 +367,17 @@ class LawSegment:
     at_end: tuple[float, ...] = ()
     through: tuple[tuple[float, float], ...] = ()
     degree: int = DEGREE
+    text: str = ""
 
     def __post_init__(self) -> None:
+        if self.curve == FORMULA:
+            segment_formula(self.text)
         numbers = [self.time, self.to or 0.0, *self.at_start, *self.at_end]
         if not all(math.isfinite(number) for number in (*numbers, *(v for row in self.through for v in row))):
             raise InputError("", _("a segment holds finite numbers only"), _("correct them"))
         if self.time <= 0:
             raise InputError("", _("the time of a segment must be positive"), _("correct it"))
-        if self.curve not in SEGMENT_CURVES or (self.to is None) != (self.curve == DWELL):
+        if self.curve not in LIFT_CURVES or (self.to is None) != (self.curve == DWELL):
             raise InputError("", _("a segment has a known curve, and a value at its end unless it dwells"))
         times = (0.0, *(time for time, _value in self.through), self.time)
         if not all(before < after for before, after in pairwise(times)):
@@ -387,8 +404,17 @@ class LawSegment:
             return self.degree if count > self.degree + 1 else None
         return INNER_JUMPS.get(self.curve)
 
+    def text_piece(self, start: float, before: float) -> TextPiece:
+        """The formula of a segment that is written as text, from `start` [s] and the law's value there on."""
+        after = before if self.to is None else self.to
+        numbers = {"beta": self.time, "h": after - before, "s0": before, "s1": after}
+        return TextPiece(start, segment_formula(self.text), self.time, numbers)
+
     def pieces(self, start: float, before: float) -> list[tuple[float, Piece]]:
-        """Formulas of the segment, each with the time [s] of its end; `before` is the law's value at `start` [s]."""
+        """Formulas of the segment, each with the time [s] of its end; `before` is the law's value at `start` [s].
+
+        Of a segment that is written as text see `text_piece`.
+        """
         if self.curve in THROUGH_POINTS:
             asked = self._conditions(before)
             formulas = polynomial(asked) if self.curve == POLYNOMIAL else b_spline(asked, self.degree)
@@ -403,6 +429,27 @@ class LawSegment:
         """Derivatives that are requested of the polynomial or the B-spline, at times from the segment's start."""
         way: list[Condition] = [(time, (value,)) for time, value in self.through]
         return [(0.0, (before, *self.at_start)), *way, (self.time, (self.to or 0.0, *self.at_end))]
+
+
+@functools.lru_cache(maxsize=256)
+def segment_formula(text: str) -> TextFormula:
+    """The formula of a segment from its text; raises InputError for any other text, and for a function with kinks."""
+    formula = compile_formula(text, VARIABLES, "")
+    for name in sorted(FUNCTIONS.difference(SMOOTH)):
+        if re.search(rf"\b{name}\b", text):
+            what = _("the function {name} is not allowed in the formula of a segment").format(
+                name=f'"{name}"'
+            )
+            repair = _("use {names}, and a segment for each part of the law")
+            raise InputError("", what, repair.format(names=" ".join(SMOOTH)))
+    return formula
+
+
+def _placed(segment: LawSegment, start: float, before: float) -> Sequence[tuple[float, Piece | TextPiece]]:
+    """Formulas of a segment behind others, each with its end."""
+    if segment.curve == FORMULA:
+        return [(start + segment.time, segment.text_piece(start, before))]
+    return segment.pieces(start, before)
 
 
 @dataclass(frozen=True)
@@ -428,9 +475,10 @@ class SegmentedLaw:
     def __post_init__(self) -> None:
         if not self.segments:
             raise InputError("", _("a law of segments needs at least one"), _("add a segment"))
-        breaks, pieces, value, ends = [0.0], [], 0.0, []
+        breaks, value, ends = [0.0], 0.0, list[float]()
+        pieces: list[Piece | TextPiece] = []
         for number, segment in enumerate(self.segments, 1):
-            for end, piece in segment.pieces(breaks[-1], value):
+            for end, piece in _placed(segment, breaks[-1], value):
                 if not end > breaks[-1]:
                     what = _("segment {number} is too short compared with those before it").format(
                         number=number
@@ -443,7 +491,9 @@ class SegmentedLaw:
         # A turn may lack a rounding error of the period: the formulas at its ends then go on.
         # a law that repeats has its own formulas before 0 and behind the end: a place may lie there by
         # rounding
-        before, after = (pieces[0], pieces[-1]) if self.repeat else (Piece(0.0, 0.0), Piece(0.0, value))
+        before, after = pieces[0], pieces[-1]
+        if not self.repeat:
+            before, after = Piece(0.0, 0.0), Piece(0.0, value)
         object.__setattr__(self, "whole", Pieces.of(breaks, (before, *pieces, after)))
         object.__setattr__(self, "ends", tuple(ends))
         object.__setattr__(self, "gain", value)

@@ -20,10 +20,13 @@ from pydantic import (
 from centrode import laws
 from centrode.errors import InputError
 from centrode.laws import SegmentedLaw
+from centrode.laws.rises import TextPiece, plain
+from centrode.laws.segments import segment_formula
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Material, Size, Steepness, Stress
 from centrode.model.reading import (
+    KEY,
     DescriptionPart,
     Problem,
     Problems,
@@ -36,6 +39,8 @@ from centrode.model.reading import (
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
 from centrode.model.settings import CamReportWishes, Display, read_samples
 from centrode.model.values import Angle, Flag, Text, not_negative, positive, quantity, si
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.operations import SCALARS
 from centrode.quantities import terminal_unit
 
 # Parts of a cam with a follower: cam, follower, spring, bounds, tool, study.
@@ -169,6 +174,17 @@ def _belongs(
     ]
 
 
+def read_ratio(value: object, kind: str) -> float:
+    """A part of a whole: positive, at most 1."""
+    ratio = positive(value, kind)
+    if ratio > 1:
+        raise Problem(_("{key} must be at most 1, got {value}").format(key=KEY, value=value_text(value)))
+    return ratio
+
+
+Ratio = Annotated[float, quantity("ratio", read_ratio)]
+
+
 class FollowerBounds(DescriptionPart):
     """What is admissible: table [bounds].
 
@@ -180,6 +196,9 @@ class FollowerBounds(DescriptionPart):
         Greatest one where the follower falls; that of the rise if left out.
     curvature_radius : float [m]
         Least radius of curvature of the profile where it is convex.
+    roller_to_curvature, roller_to_radius : float, at most 1
+        Greatest ratios of a roller's radius to the least radius of curvature of the path of its centre, and to the
+        least distance of this path from the cam's centre.
     stress : float [Pa]
         Greatest contact stress.
     """
@@ -187,6 +206,8 @@ class FollowerBounds(DescriptionPart):
     pressure_angle: Steepness | None = None
     return_pressure_angle: Steepness | None = None
     curvature_radius: Size | None = None
+    roller_to_curvature: Ratio | None = None
+    roller_to_radius: Ratio | None = None
     stress: Stress | None = None
 
 
@@ -259,6 +280,19 @@ def _read_angle(value: object) -> float:
     return angle
 
 
+def read_lift(value: object) -> str:
+    """The formula of a lift, as text."""
+    if not isinstance(value, str):
+        raise Problem(
+            _("{key} must be a formula in quotes, got {value}").format(key=KEY, value=value_text(value))
+        )
+    try:
+        segment_formula(value)
+    except InputError as error:
+        raise Problem(error.what, error.repair) from None
+    return value
+
+
 class LiftSegment(DescriptionPart):
     """A stretch of a turn, over which the follower rises, falls or dwells.
 
@@ -271,7 +305,10 @@ class LiftSegment(DescriptionPart):
     to : float [m or rad]
         Lift at its end; a dwell has none.
     curve : str
-        A curve by its name, "dwell", "polynomial" or "b-spline".
+        A curve by its name, "dwell", "polynomial" or "b-spline"; "formula" where there is a `lift`.
+    lift : str
+        The lift [m or rad] as a formula of `phi`, the angle [rad] from the segment's start; `beta` is the segment's
+        angle, `s0` the lift at its start, `s1` = `to` that at its end, `h` = s1 - s0.
     at_start, at_end : tuple of float [m/rad or rad/rad, then by rad^2, ...]
         Of a polynomial or a B-spline: first, second, ... derivative of the lift there, as far as they are given.
     through : tuple of (angle [rad], lift [m or rad])
@@ -283,7 +320,8 @@ class LiftSegment(DescriptionPart):
     angle: Annotated[float, PlainValidator(_read_angle)]
     start: Annotated[float | None, Field(alias="from")] = None
     to: float | None = None
-    curve: Annotated[str, choice(*laws.SEGMENT_CURVES, other_names=laws.CURVE_SYNONYMS)]
+    curve: Annotated[str, choice(*laws.LIFT_CURVES, other_names=laws.CURVE_SYNONYMS)] = laws.FORMULA
+    lift: Annotated[str, PlainValidator(read_lift)] = ""
     at_start: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
     at_end: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
     through: tuple[tuple[float, float], ...] = ()
@@ -298,6 +336,13 @@ class LiftSegment(DescriptionPart):
             wrong.append(Problem(_("the lift stays constant in a dwell, so it has no `to`"), _("remove it")))
         if curve != laws.DWELL and given.get("to") is None:
             wrong.append(missing_key("to"))
+        if curve is None and not given.get("lift"):
+            wrong.append(missing_key("curve"))
+        if curve == laws.FORMULA and not given.get("lift"):
+            wrong.append(missing_key("lift"))
+        if curve not in (None, laws.FORMULA) and given.get("lift"):
+            what, repair = _("the lift is given by a curve and by a formula"), _("leave one of them out")
+            wrong.append(Problem(what, repair))
         return wrong + foreign_keys(given, ("at_start", "at_end", "through"))
 
     @field_validator("start", mode="plain")
@@ -320,7 +365,7 @@ class LiftSegment(DescriptionPart):
         """The segment of the law, over angles instead of times; raises InputError where it makes none."""
         degree = laws.DEGREE if self.degree is None else self.degree
         return laws.LawSegment(
-            self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree
+            self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree, self.lift
         )
 
 
@@ -373,7 +418,7 @@ def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
 def _swells(segment: LiftSegment) -> bool:
     """Whether a segment that ends where it began is asked to move on its way."""
     lifts = [lift for _angle, lift in segment.through]
-    return any((*lifts, *segment.at_start, *segment.at_end))
+    return any((*lifts, *segment.at_start, *segment.at_end, segment.lift))
 
 
 def _lift_bound(pieces: Sequence[tuple[float, laws.Piece]]) -> float:
@@ -427,9 +472,78 @@ def _check_formulas(segment: LiftSegment, before: float) -> None:
         what = _("the angles of `through` must increase and lie inside the segment, counted from its start")
         raise Problem(what, _("correct them, or the segment's angle"))
     try:
-        reached = _lift_bound(segment.law.pieces(0.0, before))
+        law = segment.law
+        if segment.curve == laws.FORMULA:
+            check_formula(law.text_piece(0.0, before))
+            return
+        reached = _lift_bound(law.pieces(0.0, before))
     except InputError as error:
         raise Problem(error.what, error.repair) from None
+    _check_reach(reached)
+
+
+NODES = 721
+"""Places at which a formula is looked at."""
+SEAM = 1e-12
+"""Share of the greatest lift by which a formula may miss the lift at an end: rounding."""
+
+
+class _Watching(JetFunctions):
+    """Jets that keep the divisors of a formula, which must not pass through zero."""
+
+    def __init__(self) -> None:
+        super().__init__(SCALARS)
+        self.divisors: list[float] = []
+
+    def divisor(self, x: Any) -> Any:
+        self.divisors.append(float(plain(x)))
+        return x
+
+    def tan(self, x: Any) -> Any:
+        return self.sin(x) / self.divisor(self.cos(x))
+
+
+def check_formula(piece: TextPiece) -> None:
+    """Raise the problem of a formula without finite derivatives, beyond reach, or that misses the lift at an end."""
+    lifts, before = [], list[bool]()
+    for node in range(NODES):
+        phi = piece.length * node / (NODES - 1)
+        watching = _Watching()
+        try:
+            found = piece.jet(watching, Jet.variable(piece.origin + phi, 2))
+            numbers = [float(found.derivative(order)) for order in range(3)]
+        except (ArithmeticError, ValueError):
+            numbers = [math.nan]
+        sides = [divisor > 0 for divisor in watching.divisors]
+        passes = node > 0 and len(sides) == len(before) and sides != before
+        if not all(map(math.isfinite, numbers)) or passes:
+            what = _("its formula has no finite value with two derivatives at {angle:.6g} deg of the segment")
+            raise Problem(
+                what.format(angle=math.degrees(phi)), _("correct the formula, or the segment's angle")
+            )
+        before = sides
+        lifts.append(numbers[0])
+    _check_reach(max(map(abs, lifts)))
+    scale = max(map(abs, lifts))
+    unit = terminal_unit(UNITS[DRIVEN.get()])
+    repair = _("correct the formula, or the lift where the segments meet")
+    for what, given, found_lift in (
+        (
+            _("the lift jumps: its formula begins at {found:.9g} {unit}, not at {given:.9g} {unit}"),
+            "s0",
+            lifts[0],
+        ),
+        (
+            _("the lift jumps: its formula ends at {found:.9g} {unit}, not at {given:.9g} {unit}"),
+            "s1",
+            lifts[-1],
+        ),
+    ):
+        if abs(found_lift - piece.numbers[given]) > SEAM * scale:
+            raise Problem(what.format(found=found_lift, given=piece.numbers[given], unit=unit), repair)
+
+
+def _check_reach(reached: float) -> None:
     if not reached <= MOST_LIFT:
         what = _("the lift grows too large: with these conditions it may reach {lift:.3g} {unit}")
         repair = _("give smaller lifts and rates, or points that lie further apart")
@@ -495,10 +609,21 @@ class PlateCam(DescriptionPart):
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        problems = segment_problems(self.segments)
+        problems = [*segment_problems(self.segments), *self._ratios_without_roller()]
         if problems:
             raise Problems(problems)
         return self
+
+    def _ratios_without_roller(self) -> list[Problem]:
+        """Ratios of a roller's radius that are given for another follower."""
+        if self.follower.contact == "roller":
+            return []
+        what, repair = _("{key} is used with {whose} only"), _("remove it")
+        return [
+            Problem(what.format(key=value_text(key), whose=_("a roller")), repair, ("bounds",))
+            for key in ("roller_to_curvature", "roller_to_radius")
+            if getattr(self.bounds, key) is not None
+        ]
 
     @property
     def swings(self) -> bool:

@@ -58,11 +58,11 @@ class MotionVariable:
         return read_quantity(text, self.kind, where, refuses_bare=self.refuses_bare)
 
     def read_all(self, values: Any, where: str) -> Any:
-        """Values [s, rad or m] where some of them are texts, or one text alone; anything else as it is.
+        """Values [s, rad or m] of numbers in SI and texts with a unit, several or one alone; anything else as it is.
 
         Raises InputError as `read`.
         """
-        if isinstance(values, str):
+        if isinstance(values, str | int | float):
             return [self.read(values, where)]
         # an array of numbers is not walked through
         if (

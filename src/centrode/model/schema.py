@@ -71,6 +71,7 @@ from centrode.model.settings import (
 )
 from centrode.model.simulation import MOST_STEPS, SCHEMES, Motor, Simulation
 from centrode.model.units import KINDS as QUANTITIES
+from centrode.numerics.text_formula import TEXT_LENGTH
 
 # What schemas of descriptions are made of: quantities, names, lists, tables, and the whole of one.
 
@@ -372,7 +373,8 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "angle": above_zero("angle"),
         "from": quantity_schema("angle"),
         "to": AMOUNT,
-        "curve": {"enum": list(laws.SEGMENT_CURVES)},
+        "curve": {"enum": list(laws.LIFT_CURVES)},
+        "lift": {"type": "string", "minLength": 1, "maxLength": TEXT_LENGTH},
         "at_start": _RATES,
         "at_end": _RATES,
         "through": list_of(list_of(AMOUNT, 2, 2), 0, max(MOST_THROUGH.values())),
@@ -382,6 +384,8 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "pressure_angle": above_zero("angle"),
         "return_pressure_angle": above_zero("angle"),
         "curvature_radius": above_zero("length"),
+        "roller_to_curvature": above_zero("ratio"),
+        "roller_to_radius": above_zero("ratio"),
         "stress": above_zero("pressure"),
     },
     Tool: {"radius": above_zero("length")},

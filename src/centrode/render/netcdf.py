@@ -21,8 +21,10 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     """Write a dataset as netCDF through scipy; the same dataset gives the same bytes.
 
     A dimension without entries (no events, no guides) cannot be told from an unlimited one in the file format: what
-    has such a dimension stands in an attribute.
+    has such a dimension stands in an attribute. The values of each drive by its name are those of `drive_value`, and
+    are left out: a name may hold signs that a file refuses.
     """
+    dataset = dataset.drop_vars(_drives_by_name(dataset))
     empty = [name for name, size in dataset.sizes.items() if size == 0]
     kept = dataset.drop_dims(empty)
     absent = {
@@ -38,6 +40,11 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     if absent:
         kept = kept.assign_attrs({WITHOUT_ENTRIES: json.dumps(absent)})
     kept.to_netcdf(path, engine="scipy")
+
+
+def _drives_by_name(dataset: xarray.Dataset) -> list[str]:
+    drives = dataset["drive"].values.tolist() if "drive" in dataset.coords else []
+    return [str(name) for name in drives if name in dataset.coords]
 
 
 def read_dataset(path: Path) -> xarray.Dataset:

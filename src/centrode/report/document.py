@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from typing import Literal, TypeAlias
@@ -36,6 +36,7 @@ def report(
     description: DescriptionSource,
     options: ReportOptions | None = None,
     *,
+    at: Sequence[float | str] | float | str | None = None,
     language: str | None = None,
     name: str = "",
     said: Said | None = None,
@@ -47,6 +48,8 @@ def report(
     description : Mechanism, Cam or PlateCam
     options : ReportOptions, optional
         Go before the wishes of the description.
+    at : values of the drive [rad or m; s with several drives], angles of a cam, or texts with a unit ("120 deg")
+        Instants of tables, diagrams and forces, in place of those of `options`.
     language : "en", "ru" or "uk", optional
         The language spoken at the moment by default.
     name : str
@@ -73,8 +76,11 @@ def report(
     ['structure']
     """
     description = description_of(description)
+    options = options or ReportOptions()
+    if at is not None:
+        options = replace(options, instants=at)
     with nullcontext() if language is None else speaking(language):
-        study = ReportStudy(description, settle_options(description, options or ReportOptions(), CHAPTERS))
+        study = ReportStudy(description, settle_options(description, options, CHAPTERS))
         study.assemble()
         wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
         chapters = tuple(_chapters(wanted, study, said))

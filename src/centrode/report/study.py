@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar, cast
 
@@ -38,7 +38,8 @@ class ReportOptions:
     Attributes
     ----------
     chapters : names of chapters, in any order; all that apply if nobody chooses
-    instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives]
+    instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives],
+        or texts with a unit ("120 deg")
     points : names of points whose velocities and paths are given
     digits : significant digits of numbers
     full : everything there is to show; otherwise the compact form, with the checks in one table at the end.
@@ -52,7 +53,7 @@ class ReportOptions:
     """
 
     chapters: tuple[str, ...] | None = None
-    instants: tuple[float, ...] | None = None
+    instants: Sequence[float | str] | float | str | None = None
     points: tuple[str, ...] | None = None
     digits: int | None = None
     full: bool | None = None
@@ -81,7 +82,7 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     full = _first(options.full, asked.full)
     found = Wishes(
         chapters,
-        _first(options.instants, asked.instants or description.study.instants) or (),
+        _first(_instants(description, options.instants), asked.instants or description.study.instants) or (),
         _first(options.points, points),
         options.digits if options.digits is not None else asked.digits or DIGITS,
         chapters is not None if full is None else full,
@@ -110,6 +111,18 @@ def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> f
     if isinstance(description, Mechanism):
         return description.motion_parameter.variable.read(text, where)
     return read_quantity(text, "angle", where, refuses_bare=description.display.refuses_bare_angles)
+
+
+def _instants(
+    description: Mechanism | AnyCam, given: Sequence[float | str] | float | str | None
+) -> tuple[float, ...] | None:
+    """Instants in SI, of several or one alone."""
+    if given is None:
+        return None
+    listed: Sequence[Any] = [given] if isinstance(given, str | int | float) else given
+    # a number of an array is one, as no text is
+    numbers = (one if isinstance(one, str) else float(one) for one in listed)
+    return tuple(instant(description, one, "at") for one in numbers)
 
 
 def _first(wish: Wished | None, other: Wished | None) -> Wished | None:

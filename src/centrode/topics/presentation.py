@@ -33,6 +33,7 @@ PARSERS = {
     "cam": Lazily("centrode.model.cam_files", "parse_cam"),
 }
 """What reads the description of a dataset."""
+WITH_DRIVES = Lazily("centrode.kinematics.sample_index", "with_drive_coordinates")
 WHOLE = mark("show a dataset as it was computed, with its attributes")
 RESTORED = {topic.name: topic for topic in TOPICS if topic.restore is not None}
 """Topics whose results are made from their datasets."""
@@ -235,4 +236,4 @@ def open(path: str | Path) -> xarray.Dataset:
     if not is_result(dataset):
         what = _("it is not a result: it names no topic, or no description")
         raise InputError(str(path), what, _("name a netCDF file that a command has written"))
-    return dataset
+    return cast("xarray.Dataset", WITH_DRIVES(dataset))

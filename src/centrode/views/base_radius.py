@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.base_circle import admissible_of, has_bounds
+from centrode.cams.followers.base_circle import chosen_admissible, has_bounds
 from centrode.cams.followers.base_radius_results import NEAR, is_least, least_body, sized_cams, with_least
 from centrode.cams.followers.closed_forms import TURN, ClosedForms
 from centrode.cams.followers.motion_results import ROUNDED
@@ -45,7 +45,13 @@ STILL = 1e-9
 DECIDES = {
     "pressure angle": Sentence("the pressure angle"),
     "curvature": Sentence("the radius of curvature"),
+    "roller to curvature": Sentence(
+        "the ratio of the roller's radius to the radius of curvature of its path"
+    ),
+    "roller to radius": Sentence("the ratio of the roller's radius to the least radius of its path"),
 }
+EVERYWHERE = ("roller to radius",)
+"""What does not decide at an angle."""
 
 
 def sheet(results: BaseRadiusResults) -> Sheet:
@@ -65,7 +71,10 @@ def sheet(results: BaseRadiusResults) -> Sheet:
 
 def _facts(results: BaseRadiusResults) -> Iterator[Fact]:
     """What is admissible, the least cam that keeps it, the best offset."""
-    yield Fact(Sentence("admissible"), Joined(tuple(_admissible(results))))
+    if bounds := tuple(_admissible(results)):
+        yield Fact(Sentence("admissible"), Joined(bounds))
+    if ratios := tuple(_admissible_roller(results)):
+        yield Fact(Sentence("admissible roller"), Joined(ratios))
     label = Sentence("least base radius")
     if results.is_free:
         yield Fact(label, Sentence("none: no bound limits it"))
@@ -82,7 +91,7 @@ def _facts(results: BaseRadiusResults) -> Iterator[Fact]:
 
 
 def _admissible(results: BaseRadiusResults) -> Iterator[Text]:
-    admissible, given = admissible_of(results.cam), results.cam.bounds
+    admissible, given = chosen_admissible(results.cam), results.cam.bounds
     if given.pressure_angle is not None:
         yield Sentence("pressure angle up to {angle}", angle=angle(admissible.pressure_angle))
     if given.return_pressure_angle is not None:
@@ -91,7 +100,24 @@ def _admissible(results: BaseRadiusResults) -> Iterator[Text]:
         yield Sentence("radius of curvature from {radius}", radius=length(admissible.bend))
 
 
+def _admissible_roller(results: BaseRadiusResults) -> Iterator[Text]:
+    """The ratios that the roller keeps."""
+    admissible = chosen_admissible(results.cam)
+    if not results.cam.follower.roller_radius:
+        return
+    if admissible.roller_to_curvature < 1.0:
+        ratio = Number(admissible.roller_to_curvature)
+        yield Sentence("radius up to {ratio} of the radius of curvature of its path", ratio=ratio)
+    if admissible.roller_to_radius < 1.0:
+        ratio = Number(admissible.roller_to_radius)
+        yield Sentence("radius up to {ratio} of the least radius of its path", ratio=ratio)
+
+
 def _decided(least: Least) -> Text:
+    if least.by in EVERYWHERE:
+        return Sentence(
+            "{radius}, determined by {bound}", radius=length(least.base_radius), bound=DECIDES[least.by]
+        )
     return Sentence(
         "{radius}, determined by {bound} at {at}",
         radius=length(least.base_radius),
@@ -126,6 +152,8 @@ def _failure(results: BaseRadiusResults) -> Failure | None:
     what = Sentence(
         "{bound} is not admissible at {at}", bound=DECIDES[results.margin.by], at=angle(results.margin.at)
     )
+    if results.margin.by in EVERYWHERE:
+        what = Sentence("{bound} is not admissible", bound=DECIDES[results.margin.by])
     if results.least is None or results.is_free:
         return Failure(what)
     return Failure(
@@ -199,15 +227,33 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
             "The least base radius is {radius}. The pressure angle determines it, at $phi$ = {angle}:",
             **decided,
         )
-    else:
+    elif least.by == "curvature":
         text = Sentence(
             "The least base radius is {radius}. The radius of curvature determines it, at $phi$ = {angle}:",
             **decided,
         )
+    elif least.by == "roller to curvature":
+        text = Sentence(
+            "The least base radius is {radius}. The roller determines it: at $phi$ = {angle} its radius is {ratio} of "
+            "the radius of curvature of its path:",
+            **decided,
+            ratio=Number(chosen_admissible(results.cam).roller_to_curvature),
+        )
+    else:
+        text = Sentence(
+            "The least base radius is {radius}. The roller determines it: its radius is {ratio} of the least radius "
+            "of its path:",
+            radius=decided["radius"],
+            ratio=Number(chosen_admissible(results.cam).roller_to_radius),
+        )
     yield Paragraph(text)
     formulas = FollowerFormulas(least_body(results), place)
-    decisive = formulas.pressure() if least.by == "pressure angle" else formulas.radius()
-    yield Formula((("r_0", length(least.base_radius)), *formulas.start(), *formulas.lift(), *decisive))
+    if least.by == "roller to radius":
+        ratio = Number(chosen_admissible(results.cam).roller_to_radius)
+        yield Formula((("r_0", length(least.base_radius)), *formulas.start(), ("frac(r, r_0 + r)", ratio)))
+    else:
+        decisive = formulas.pressure() if least.by == "pressure angle" else formulas.radius()
+        yield Formula((("r_0", length(least.base_radius)), *formulas.start(), *formulas.lift(), *decisive))
     statement = Sentence(
         "A base radius smaller by a fraction {part} violates a bound; one larger by the same fraction violates none.",
         part=Number(NEAR, digits=".1e"),

@@ -114,6 +114,16 @@ def _bounds(cam: PlateCam) -> Iterator[Fact]:
             "rad",
         ),
         (Sentence("least radius of curvature of the profile"), bounds.curvature_radius, "m"),
+        (
+            Sentence("greatest ratio of the roller's radius to the radius of curvature of its path"),
+            bounds.roller_to_curvature,
+            "1",
+        ),
+        (
+            Sentence("greatest ratio of the roller's radius to the least radius of its path"),
+            bounds.roller_to_radius,
+            "1",
+        ),
         (Sentence("greatest contact stress"), None if bounds.stress is None else MEGA * bounds.stress, "MPa"),
     )
 

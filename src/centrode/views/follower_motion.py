@@ -44,6 +44,7 @@ from centrode.sheets.texts import (
     Factor,
     Joined,
     Leaf,
+    Name,
     Number,
     Sentence,
     Symbol,
@@ -385,10 +386,21 @@ def _segment_blocks(results: FollowerMotionResults) -> Iterator[Block]:
                     last=Number(last, "rad", digits=""),
                 )
             )
+        if segment.lift:
+            yield Paragraph(_lift_formula(segment.lift))
         if after != before:
             yield Formula(tuple(_segment_lines(results, number, before, after)))
         if segment.curve in THROUGH_POINTS:
             yield from _pieces(results, number, before)
+
+
+def _lift_formula(text: str) -> Sentence:
+    """The formula of a segment as it is given."""
+    return Sentence(
+        "In SI units its lift is {formula}, with phi the angle from its start, beta the angle of the segment, s0 and "
+        "s1 the lift at its start and at its end, h = s1 - s0.",
+        formula=Name(text),
+    )
 
 
 def _segment_lines(results: FollowerMotionResults, number: int, before: float, after: float) -> Lines:

@@ -27,6 +27,7 @@ CURVE_NAMES = {
     "modified sine": Sentence("modified sine"),
     "modified trapezoid": Sentence("modified trapezoid"),
     "dwell": Sentence("dwell"),
+    "formula": Sentence("formula"),
     "polynomial": Sentence("polynomial"),
     "b-spline": Sentence("b-spline"),
     "its own": Sentence("its own"),

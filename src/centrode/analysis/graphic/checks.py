@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from centrode.analysis.graphic.diagrams import Diagram, Diagrams, diagrams
@@ -92,10 +93,10 @@ class GraphicCheck:
 
 def graphic_check(
     mechanism: Mechanism,
-    at: float | str,
+    at: npt.ArrayLike,
     angle_step: float | str | None = None,
     length_step: float | str | None = None,
-    scales: Mapping[str, float] | None = None,
+    scales: Mapping[str, float | str] | None = None,
 ) -> GraphicCheck:
     """Velocities and accelerations of an instant by the drawing, beside those of the motion.
 

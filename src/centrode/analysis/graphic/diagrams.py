@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from numbers import Real
+from typing import Any, TypeAlias, cast
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from centrode.analysis.graphic.construction import construct
@@ -22,7 +24,7 @@ from centrode.analysis.graphic.stage import (
 from centrode.errors import InputError, MotionError, Status
 from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import JETS, SampleGrid, grid_at
+from centrode.kinematics.path import JETS, SampleGrid, grid_at, place_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
@@ -39,6 +41,7 @@ from centrode.structure.plan import Structure
 # Scales of drawings that a person gives instead of the round ones.
 
 NAMES = ("length", "velocity", "acceleration")
+KINDS_OF_SCALES = {"length": "length", "velocity": "speed", "acceleration": "acceleration"}
 PAGE = 120.0
 """Longest side of a drawing that goes on a page A5 [mm]."""
 
@@ -228,10 +231,10 @@ def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | st
 
 def diagrams(
     mechanism: Mechanism,
-    at: float | str,
+    at: npt.ArrayLike,
     angle_step: float | str | None = None,
     length_step: float | str | None = None,
-    scales: Mapping[str, float] | None = None,
+    scales: Mapping[str, float | str] | None = None,
 ) -> Diagrams:
     """Both diagrams of an instant, with the instant centres.
 
@@ -244,8 +247,8 @@ def diagrams(
     length_step : float [m] or text ("0.5 mm"), optional
         Lengths on paper are read to this.
     scales : mapping, optional
-        What a millimetre stands for: "length" [m], "velocity" [m/s], "acceleration" [m/s^2]; round ones that make good
-        use of the page where left out.
+        What a millimetre stands for: "length" [m], "velocity" [m/s], "acceleration" [m/s^2], or texts with a unit
+        ("50 mm"); round ones that make good use of the page where left out.
 
     Raises
     ------
@@ -264,11 +267,12 @@ def diagrams(
     refuses_bare = mechanism.display.refuses_bare_angles
     board = DrawingBoard(_step(angle_step, "angle", refuses_bare=refuses_bare), _step(length_step, "length"))
     prepared = ready(mechanism)
-    at = prepared.parameter.instant.read(at, "at") if isinstance(at, str) else at
+    at = place_of(prepared.parameter.instant, at)
     span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
-    exact_drawing = _construct_diagrams(prepared, exact, span, board, scales or {})
+    numbers = {name: _scale(name, scale) for name, scale in (scales or {}).items()}
+    exact_drawing = _construct_diagrams(prepared, exact, span, board, numbers)
     if board.paper_step is None:
         return exact_drawing
     # scales are chosen by the exact drawing, then lengths on paper are read
@@ -291,6 +295,14 @@ def diagrams(
 def _step(step: float | str | None, kind: str, *, refuses_bare: bool = False) -> float | None:
     """A reading step in SI."""
     return None if step is None else read_quantity(step, kind, f"{kind}_step", refuses_bare=refuses_bare)
+
+
+def _scale(name: str, scale: Any) -> float:
+    """What a millimetre stands for, in SI; the names of scales are looked at with the drawing."""
+    kind = KINDS_OF_SCALES.get(name)
+    if kind is None or isinstance(scale, Real):
+        return cast(float, scale)
+    return read_quantity(scale, kind, f"scales, {name}")
 
 
 def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:

@@ -37,10 +37,10 @@ class GraphicResults(PrintsSummary):
 def graphic_analysis(
     mechanism: MechanismSource,
     *,
-    instants: Sequence[float | str] = (),
+    instants: Sequence[float | str] | float | str = (),
     angle_step: float | str | None = None,
     length_step: float | str | None = None,
-    scales: Mapping[str, float] | None = None,
+    scales: Mapping[str, float | str] | None = None,
     incomplete: bool = False,
 ) -> GraphicResults:
     """Velocities and accelerations at some instants by the drawing, beside those of the motion.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TypeAlias
+from numbers import Real
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -23,13 +24,14 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.motion import (
     attributes_of,
-    coordinates_of,
+    coordinates_along,
     judgements_of,
     labels_of,
     vocabulary_variable,
 )
 from centrode.kinematics.path import JETS, SampleGrid
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import start_of
 from centrode.kinematics.solve import fit_for, grid_of, solve
 from centrode.locale import _
@@ -37,6 +39,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
+from centrode.model.units import read_quantity
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
@@ -49,7 +52,7 @@ def curvature(
     link: str,
     at: npt.ArrayLike | None = None,
     against: str = "frame",
-    points: Local | None = None,
+    points: Mapping[str, tuple[float | str, float | str]] | None = None,
 ) -> xr.Dataset:
     """Curvature of the paths of a link's points, at given places of a motion.
 
@@ -61,7 +64,7 @@ def curvature(
         Bodies: links, "frame", sliders ("slider C"); the paths are those that `against` sees.
     at : (n,) values of the drive [rad or m], times [s] where it is a law or there are several, or texts with a unit
         Of a motion its samples by default.
-    points : name -> (x, y) [m], optional
+    points : name -> (x, y) [m], or texts with a unit, optional
         Further points of the link, in its own axes.
 
     Returns
@@ -117,16 +120,24 @@ def curvature(
     # behind a limit the motion does not get there, but the mechanism has its position
     present = np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
     seen = _pose_derivatives(mechanism, positions, link, against, present)
-    own = _local_points(mechanism, link) | dict(points or {})
+    own = _local_points(mechanism, link) | {name: _place(name, at) for name, at in (points or {}).items()}
     scale = float(prepared.kinematics.numbers.scale)
     with np.errstate(all="ignore"):
         variables = _of_pole(seen, scale) | _of_points(seen, own, scale)
-    coordinates = coordinates_of(solved)
-    kept = {name: coordinates[name] for name in ("time", "drive_value", "drive", "axis")}
+    kept = {**coordinates_along(solved), "axis": labels_of(solved.layout.space.axes)}
     variables["status"] = judgements_of(solved, ())["status"]
     coordinate = {"point": labels_of(tuple(own)), "coefficient": labels_of(("a", "b"))}
     facts = attributes_of(solved, "centrodes") | {"link": link, "against": against}
-    return xr.Dataset(variables, coords=kept | coordinate, attrs=facts)
+    return selectable(xr.Dataset(variables, coords=kept | coordinate, attrs=facts))
+
+
+def _place(name: str, at: Any) -> tuple[float, float]:
+    """Coordinates [m] of a point in the axes of its link, of numbers or of texts with a unit."""
+    where = f"points, {name}"
+    if isinstance(at, str) or len(at) != 2:
+        raise InputError(where, _("expected two coordinates, got {value}").format(value=value_text(at)))
+    x, y = (one if isinstance(one, Real) else read_quantity(one, "length", where) for one in at)
+    return float(x), float(y)
 
 
 def _source_mechanism(

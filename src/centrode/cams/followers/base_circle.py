@@ -142,11 +142,16 @@ class Admissible:
         Greatest pressure angles where the follower rises, where it falls; where it dwells both.
     bend : float [m]
         Least radius of curvature of the profile where it bulges; at 0 it must not be undercut.
+    roller_to_curvature, roller_to_radius : float
+        Greatest ratios of a roller's radius to the least radius of curvature of the path of its centre where that
+        bulges, and to the least distance of this path from the cam's centre.
     """
 
     pressure_angle: float = math.pi / 2
     return_angle: float = math.pi / 2
     bend: float = 0.0
+    roller_to_curvature: float = 1.0
+    roller_to_radius: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -161,8 +166,10 @@ class Margin:
 def margin(contact: FollowerContact, slope: Array, layout: FollowerLayout, kept: Admissible) -> Margin:
     """What is left at the worst of some contacts, `slope` (n) the lift's there.
 
-    Of pressure angles in radians; of curvature 1 - (r + bend) K of a roller, (R - bend)/r0 of a flat face.
+    Of pressure angles in radians; of curvature 1 - (r + bend) K of a roller, (R - bend)/r0 of a flat face; where the
+    roller's ratio asks for more, 1 - r K/ratio.
     """
+    curved = "curvature"
     still = STILL * float(np.abs(slope).max())
     steepness = np.abs(contact.pressure_angle)
     pressure = np.minimum(
@@ -173,19 +180,43 @@ def margin(contact: FollowerContact, slope: Array, layout: FollowerLayout, kept:
         size = float(np.abs(contact.place).max())
         bent = np.where(contact.pace > 0.0, (contact.bend - kept.bend) / size, -math.inf)
     else:
-        bent = 1.0 - (layout.touch.roller + kept.bend) * contact.path_curvature
+        radius, by_ratio = (
+            layout.touch.roller + kept.bend,
+            layout.touch.roller / kept.roller_to_curvature,
+        )
+        if by_ratio > radius:
+            radius, curved = by_ratio, "roller to curvature"
+        bent = 1.0 - radius * contact.path_curvature
     bent = np.where(np.isfinite(bent), bent, -math.inf)
     first, second = int(np.argmin(pressure)), int(np.argmin(bent))
     if pressure[first] <= bent[second]:
         return Margin(float(pressure[first]), float(contact.phi[first]), "pressure angle")
-    return Margin(float(bent[second]), float(contact.phi[second]), "curvature")
+    return Margin(float(bent[second]), float(contact.phi[second]), curved)
+
+
+def size_margin(layout: FollowerLayout, base_radius: float, kept: Admissible) -> Margin:
+    """What is left of a roller's ratio to the least distance of the path of its centre: 1 - r/(ratio (r0 + r))."""
+    roller = layout.touch.roller
+    if layout.flat or roller == 0.0 or kept.roller_to_radius >= 1.0:
+        return Margin(math.inf, 0.0, "roller to radius")
+    return Margin(1.0 - roller / (kept.roller_to_radius * (base_radius + roller)), 0.0, "roller to radius")
+
+
+def least_size(layout: FollowerLayout, kept: Admissible) -> float:
+    """The base radius [m] with which a roller has just its ratio to the least distance of the path of its centre."""
+    roller = layout.touch.roller
+    return 0.0 if layout.flat else roller / kept.roller_to_radius - roller
 
 
 def exact_margin(cam: FollowerCam, layout: FollowerLayout, kept: Admissible) -> Margin:
     """`margin` over the whole turn, extremes found to rounding."""
     names = ("pressure", "stretch" if layout.flat else "path_curvature")
     phi = np.concatenate([nodes_of(cam.edges), *(cam.turns(name) for name in names)])
-    found = margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept)
+    found = min(
+        margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept),
+        size_margin(layout, cam.base_radius, kept),
+        key=lambda one: one.least,
+    )
     sharp = [one.at for one in cam.corners if breaks(one, layout, kept)]
     return Margin(-math.inf, sharp[0], "curvature") if sharp else found
 
@@ -269,7 +300,8 @@ class BaseCircleTrial:
             return Margin(-math.inf, 0.0, "reach")
         with np.errstate(divide="ignore", invalid="ignore"):
             contact = self.layout.touch.contact(guide, self.phi, self.lift, self.layout.sense)
-        return margin(contact, self.lift[1], self.layout, self.kept)
+        found = margin(contact, self.lift[1], self.layout, self.kept)
+        return min(found, size_margin(self.layout, base, self.kept), key=lambda one: one.least)
 
     def reaches(self, base: float) -> bool:
         return self.margin(base).least > -math.inf
@@ -310,7 +342,8 @@ class BaseCircleTrial:
 
     def _lowest(self) -> float:
         """A radius below which none keeps the bounds."""
-        layout, small = self.layout, SMALLEST * self.size
+        layout = self.layout
+        small = max(SMALLEST * self.size, least_size(layout, self.kept) * (1.0 - REACHED))
         if layout.kind == "oscillating":
             return max(small, self._least_base_radius())
         if layout.flat:
@@ -333,6 +366,10 @@ class BaseCircleTrial:
         bounds = {
             "pressure angle": _("the pressure angle"),
             "curvature": _("the radius of curvature"),
+            "roller to curvature": _(
+                "the ratio of the roller's radius to the radius of curvature of its path"
+            ),
+            "roller to radius": _("the ratio of the roller's radius to the least radius of its path"),
             "reach": _("the follower's reach"),
         }
         told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
@@ -354,9 +391,9 @@ class Least:
     base_radius : float [m]
     at : float [rad]
         The angle that decides it.
-    by : "pressure angle", "curvature" or "nothing"
-        What decides it there; where nothing does, smaller cams keep the bounds too, and the radius is the least that
-        was tried.
+    by : "pressure angle", "curvature", "roller to curvature", "roller to radius" or "nothing"
+        What decides it there, of the last two the ratio of the roller's radius; where nothing does, smaller cams keep
+        the bounds too, and the radius is the least that was tried.
     offset : float [m]
         Of a translating follower.
     """
@@ -477,7 +514,7 @@ def _body(cam: PlateCam) -> FollowerCam:
         if not has_bounds(cam):
             what = _("a profile needs the cam's base radius")
             raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it must satisfy"))
-        least = least_base_radius(layout, motion, admissible_of(cam))
+        least = least_base_radius(layout, motion, chosen_admissible(cam))
         if least.by == "nothing":
             what = _("no bound limits the base radius: every base radius satisfies them all")
             raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
@@ -503,12 +540,19 @@ def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
     """
     plate = with_follower(cam)
     find = best_offset if offset else least_base_radius
-    return find(layout_of(plate), follower_motion(plate), admissible_of(plate))
+    return find(layout_of(plate), follower_motion(plate), chosen_admissible(plate))
 
 
 def has_bounds(cam: PlateCam) -> bool:
     """Whether the description says what is admissible of the profile."""
-    given = (cam.bounds.pressure_angle, cam.bounds.return_pressure_angle, cam.bounds.curvature_radius)
+    bounds = cam.bounds
+    given = (
+        bounds.pressure_angle,
+        bounds.return_pressure_angle,
+        bounds.curvature_radius,
+        bounds.roller_to_curvature,
+        bounds.roller_to_radius,
+    )
     return any(one is not None for one in given)
 
 
@@ -533,8 +577,38 @@ def has_profile(cam: AnyCam) -> bool:
 
 def admissible_of(cam: PlateCam) -> Admissible:
     """What a description admits; what it leaves out is not bound, except that the profile is not undercut."""
-    steep = cam.bounds.pressure_angle or math.pi / 2
-    return Admissible(steep, cam.bounds.return_pressure_angle or steep, cam.bounds.curvature_radius or 0.0)
+    bounds = cam.bounds
+    steep = bounds.pressure_angle or math.pi / 2
+    return Admissible(
+        steep,
+        bounds.return_pressure_angle or steep,
+        bounds.curvature_radius or 0.0,
+        bounds.roller_to_curvature or 1.0,
+        bounds.roller_to_radius or 1.0,
+    )
+
+
+ROLLER_TO_CURVATURE, ROLLER_TO_RADIUS = 0.8, 0.4
+"""Ratios that a roller keeps where a base radius is chosen and the description gives none: those of course projects.
+
+With the first the cam is not pointed; with the second the roller's pin has room, and the cam a shaft.
+"""
+
+
+def chosen_admissible(cam: PlateCam) -> Admissible:
+    """What the least cam of a description keeps: its bounds, and for a roller the customary ratios of its radius.
+
+    Where bounds are given at all. A least radius of curvature stands in place of the ratio to that of the path.
+    """
+    found = admissible_of(cam)
+    if not has_bounds(cam):
+        return found
+    bounds = cam.bounds
+    if bounds.roller_to_curvature is None and bounds.curvature_radius is None:
+        found = replace(found, roller_to_curvature=ROLLER_TO_CURVATURE)
+    if bounds.roller_to_radius is None:
+        found = replace(found, roller_to_radius=ROLLER_TO_RADIUS)
+    return found
 
 
 def stretches_text(undercuts: list[Undercut]) -> str:

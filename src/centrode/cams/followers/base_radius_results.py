@@ -12,6 +12,7 @@ from centrode.cams.followers.base_circle import (
     Least,
     Margin,
     admissible_of,
+    chosen_admissible,
     exact_margin,
     follower_cam,
     has_bounds,
@@ -121,6 +122,8 @@ def choose_base_radius(
     found = with_least(replace(found, margin=margin))
     if found.least is None or plate.swings or (found.is_free and plate.follower.contact != "flat"):
         return found
+    if found.least.by == "roller to radius":
+        return found  # no offset makes the cam smaller
     try:
         return replace(found, best=least_cam(plate, offset=True))
     except MotionError as refusal:
@@ -149,7 +152,8 @@ def least_body(results: BaseRadiusResults) -> FollowerCam:
 def is_least(results: BaseRadiusResults) -> bool:
     """Whether a cam smaller than the least one by `NEAR` breaks the bounds, and one so much greater keeps them."""
     assert results.least is not None
-    layout, admissible, least = layout_of(results.cam), admissible_of(results.cam), results.least.base_radius
+    layout, admissible = layout_of(results.cam), chosen_admissible(results.cam)
+    least = results.least.base_radius
 
     def keeps(base_radius: float) -> bool:
         try:

@@ -20,6 +20,7 @@ from centrode.cams.followers.geometry import FollowerCam, Oscillating
 from centrode.cams.roller_path import angles_of
 from centrode.errors import Status
 from centrode.kinematics.motion import Variable, vocabulary_variable
+from centrode.kinematics.sample_index import selectable
 from centrode.model.cam import Material as DescribedMaterial
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.examples.catalogue import CamSource, cam_of
@@ -626,7 +627,7 @@ def dataset_of_forces(cam: PlateCam, forces: FollowerForces, phi: Array) -> xr.D
     data = {name: vocabulary_variable(name, ("sample",), one) for name, one in values.items()}
     data["status"] = _status(forces, found)
     coordinates = {"cam_angle": vocabulary_variable("cam_angle", ("sample",), phi)}
-    return xr.Dataset(data, coords=coordinates, attrs=_facts(cam, forces))
+    return selectable(xr.Dataset(data, coords=coordinates, attrs=_facts(cam, forces)))
 
 
 def _status(forces: FollowerForces, found: ActingForces) -> Variable:

@@ -17,6 +17,7 @@ import xarray as xr
 from centrode.cams.nodes import mesh
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
+from centrode.kinematics.sample_index import selectable
 from centrode.laws import CURVES, LawSegment, SegmentedLaw
 from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
@@ -466,7 +467,9 @@ def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.D
         "cam_angle": vocabulary_variable("cam_angle", ("sample",), phi),
         "derivative": list(range(ORDER + 1)),
     }
-    return xr.Dataset(data | _joints(motion) | _curve(motion), coords=coordinates, attrs=_facts(cam, motion))
+    return selectable(
+        xr.Dataset(data | _joints(motion) | _curve(motion), coords=coordinates, attrs=_facts(cam, motion))
+    )
 
 
 def _joints(motion: FollowerMotion) -> dict[str, Variable]:

@@ -20,18 +20,21 @@ from centrode.errors import InputError, MotionError, NotComputedYet
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
-    coordinates_of,
+    coordinates_along,
     judgements_of,
+    labels_of,
     vocabulary_variable,
 )
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
+from centrode.model.units import read_quantity
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import tops
 
@@ -519,7 +522,7 @@ def _halve_panels(panels: Panels) -> Panels:
     return Panels(np.sort(np.concatenate([panels.edges, middles])))
 
 
-About = str | tuple[float, float]
+About = str | tuple[float | str, float | str]
 ORDERS, MOST_ORDERS = 8, 60
 
 
@@ -590,7 +593,7 @@ def shaking(
         del variables["drive_rate"]
     attributes = attributes_of(solved, "shaking") | {"about": list(centre), "speed": speed} | facts
     coordinates = _coordinates(solved, found)
-    return xr.Dataset(variables | found, coords=coordinates, attrs=attributes)
+    return selectable(xr.Dataset(variables | found, coords=coordinates, attrs=attributes))
 
 
 def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
@@ -602,7 +605,10 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
         x, y = mechanism.frame.coordinates[about]
         return x, y
     try:
-        x, y = (float(number) for number in about)
+        x, y = (
+            read_quantity(number, "length", "about") if isinstance(number, str) else float(number)
+            for number in about
+        )
     except (TypeError, ValueError):
         x = y = np.nan
     if not np.isfinite([x, y]).all():
@@ -656,8 +662,8 @@ def _curves(effects: Effects, unit: str, *, several: bool) -> dict[str, Variable
 
 
 def _coordinates(solved: Solved, found: dict[str, Variable]) -> dict[str, Any]:
-    kept = {name: value for name, value in coordinates_of(solved).items() if name in ("drive", "axis")}
-    kept |= {name: coordinates_of(solved)[name] for name in ("time", "drive_value")}
+    along = coordinates_along(solved)
+    kept = {"drive": along.pop("drive"), "axis": labels_of(solved.layout.space.axes), **along}
     return kept | ({"order": found.pop("order")} if "order" in found else {})
 
 

@@ -12,6 +12,7 @@ import xarray as xr
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.motion import labels_of, motion, vocabulary_variable
+from centrode.kinematics.sample_index import drives_along, selectable
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 
@@ -109,7 +110,8 @@ def bearings(
         name: vocabulary_variable(name, dimensions, data) for name, (dimensions, data) in values.items()
     }
     coordinates: dict[str, Any] = {
-        name: reactions.coords[name].variable for name in ("time", "drive_value", "drive", "axis")
+        name: reactions.coords[name].variable
+        for name in ("time", "drive_value", "drive", "axis", *drives_along(reactions))
     } | {
         "bearing": labels_of(tuple(one.label for one in found)),
         "surface": labels_of(SURFACES),
@@ -121,7 +123,7 @@ def bearings(
         names = np.array([getattr(one, part) for one in found], dtype=str)
         coordinates[f"bearing_{part}"] = (("bearing",), names)
     title = reactions.attrs.get("title", "")
-    return xr.Dataset(variables, coordinates, {"title": title, "wear_arc": float(arc)})
+    return selectable(xr.Dataset(variables, coordinates, {"title": title, "wear_arc": float(arc)}))
 
 
 def _check(sectors: int, arc: float) -> None:

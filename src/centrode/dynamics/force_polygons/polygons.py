@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from centrode.analysis.graphic.construction import construct
@@ -41,7 +42,7 @@ from centrode.dynamics.reduction import Reducer, reduce_state
 from centrode.dynamics.state import DriveMotion, State
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import grid_at
+from centrode.kinematics.path import grid_at, place_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
@@ -387,13 +388,13 @@ class ForcePolygons(PrintsSummary):
         return self.levers[0]
 
 
-def force_polygons(mechanism: MechanismSource, at: float | str, paper: str = "A4") -> ForcePolygons:
+def force_polygons(mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "A4") -> ForcePolygons:
     """Reactions and balancing moment at an instant by force polygons, group by group, and by Zhukovsky's lever.
 
     Parameters
     ----------
-    at : float [rad or m, or s], or a text with a unit
-        A value of the drive, or a time, as in `motion(at=...)`.
+    at : float [rad or m, or s], or a text with a unit ("120 deg")
+        A value of the drive, or a time, as in `motion(at=...)`; a list may hold one.
     paper : "A5", "A4" or "A3"
         The sheet that scales of forces are chosen for.
 
@@ -417,7 +418,7 @@ def force_polygons(mechanism: MechanismSource, at: float | str, paper: str = "A4
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)
     prepared = ready(mechanism)
-    at = prepared.parameter.instant.read(at, "at") if isinstance(at, str) else at
+    at = place_of(prepared.parameter.instant, at)
     solved = solve(prepared, grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
     exact = dataset_of(solved)
     _refuse_where_it_is_not(exact, at)

@@ -55,12 +55,14 @@ from centrode.errors import InputError, NotComputedYet, Status
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
+    coordinates_along,
     coordinates_of,
     judgements_of,
     labels_of,
     vocabulary_variable,
 )
 from centrode.kinematics.preparation import ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -403,7 +405,7 @@ def reactions_dataset(
         variables |= friction_variables(solved, rubbed, powers, whole)
         coordinates |= friction_coordinates(rubbed.contacts)
         attributes |= friction_attributes(solved, rubbed, powers, whole)
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes))
 
 
 def _dimensions(name: str, values: Array) -> tuple[str, ...]:
@@ -429,7 +431,7 @@ def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
 
 def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionSolution) -> dict[str, Any]:
     known, mechanism = coordinates_of(solved), solved.ready.mechanism
-    wanted = ("time", "drive_value", "drive", "axis", "guide", "rolling")
+    wanted = (*coordinates_along(solved), "axis", "guide", "rolling")
     coordinates = {
         name: known[name] for name in wanted if name in known and (name != "guide" or mechanism.guides)
     }

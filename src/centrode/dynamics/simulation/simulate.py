@@ -37,15 +37,16 @@ from centrode.errors import InputError, MotionError
 from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
     attributes_of,
-    coordinates_of,
+    coordinates_along,
     dataset_of,
     judgements_of,
     vocabulary_variable,
 )
-from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.path import SampleGrid, places_of
 from centrode.kinematics.plan_evaluation import layout_of
 from centrode.kinematics.preparation import Ready, ready
-from centrode.kinematics.solve import Solved, check_size, solve
+from centrode.kinematics.sample_index import selectable
+from centrode.kinematics.solve import check_size, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text
@@ -232,12 +233,7 @@ def simulation_dataset(
     if motion:
         return dataset_of(solved).assign(curves_named | occasions).assign_attrs(facts)
     variables = {**curves_named, **occasions, **judgements_of(solved, ())}
-    return xr.Dataset(variables, _coordinates(solved), attributes_of(solved) | facts)
-
-
-def _coordinates(solved: Solved) -> dict[str, object]:
-    known = coordinates_of(solved)
-    return {name: known[name] for name in ("time", "drive_value", "drive")}
+    return selectable(xr.Dataset(variables, coordinates_along(solved), attributes_of(solved) | facts))
 
 
 def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> DriveForces:
@@ -441,7 +437,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
 def _times(setting: Setting, course: Trajectory, at: npt.ArrayLike | None) -> Array:
     """The instants of the result, no later than the end."""
     if at is not None:
-        times = np.asarray(TIME.read_all(at, "at"), dtype=np.float64)
+        times = places_of(TIME, at)
         if times.ndim != 1 or not len(times) or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
             raise InputError("at", _("a one-dimensional array of finite, increasing times is required"))
         if times[0] < 0.0:

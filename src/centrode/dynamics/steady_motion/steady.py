@@ -35,7 +35,7 @@ from centrode.dynamics.steady_motion.speed import (
 )
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import dataset_of, vocabulary_variable
-from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.path import SampleGrid, places_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.locale import _
@@ -350,8 +350,7 @@ def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLi
                 _("give 1 to {most}").format(most=reading.SAMPLES),
             )
         return np.linspace(0.0, cycle.period, count)
-    instant = found.prepared.parameter.instant
-    values = np.asarray(instant.read_all(at, "at"), dtype=np.float64)
+    values = places_of(found.prepared.parameter.instant, at)
     if values.ndim != 1 or not 1 <= len(values) <= reading.SAMPLES or not np.isfinite(values).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
     turned = cycle.sense * (values - cycle.first)

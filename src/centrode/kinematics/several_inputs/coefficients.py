@@ -28,6 +28,7 @@ from centrode.kinematics.motion import (
 )
 from centrode.kinematics.path import JETS, unit_of
 from centrode.kinematics.preparation import ready
+from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import ORDERS, SampleJudging, fill_columns, fill_number, start_of
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, fit_for, grid_of, solve
 from centrode.locale import _
@@ -223,7 +224,7 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
             )
     coordinates = coordinates_of(solved)
     coordinates["drive_2"] = labels_of(tuple(coefficients.units))
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "run"))
+    return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved, "run")))
 
 
 def most_samples(solved: Solved) -> int:
