@@ -77,6 +77,30 @@ def test_decimal_commas_and_units_without_quotes_are_named(text: str, told: str)
 
 
 @pytest.mark.parametrize(
+    ("text", "repair"),
+    [
+        ("[links.кулиса]", 'write "кулиса"'),
+        ("a = { кулиса = 1 }", 'write "кулиса"'),
+        ("[links.\u041e\u0410]", "the Cyrillic letters \u041e, \u0410"),
+        ("[links.B\u0421]", "the Cyrillic letter \u0421"),
+        ("\u041e = [0, 0]", "the Cyrillic letter \u041e"),
+    ],
+)
+def test_letters_of_other_alphabets_in_keys_are_named(text: str, repair: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_mechanism(text)
+    assert "a key without quotes has Latin letters" in caught.value.what
+    assert repair in caught.value.repair
+
+
+@pytest.mark.parametrize("text", ["kind = сила", "a = [диск]", "[links.OA] кривошип"])
+def test_values_in_other_alphabets_are_not_taken_for_keys(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_mechanism(text)
+    assert not caught.value.repair
+
+
+@pytest.mark.parametrize(
     "text", ["a = 1 b = 2", "a = { b = 1 c = 2 }", "a = [1,5", "a = 5.", "a = 1/2", "a = { b = 1, 5 = }"]
 )
 def test_other_mistakes_beside_numbers_are_not_taken_for_these(text: str) -> None:

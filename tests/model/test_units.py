@@ -127,6 +127,31 @@ def test_refusals(value: object, kind: str, message: str) -> None:
     assert message in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "kind", "named"),
+    [
+        ("140 мм", "length", "140 mm"),
+        ("75 об/мин", "angular speed", "75 rpm"),
+        ("72 град", "angle", "72 deg"),
+        ("2.2 кН", "force", "2.2 kN"),
+        ("1.4 кг·м²", "inertia", "1.4 kg*m^2"),
+        ("9,81 м/с²", "acceleration", "9.81 m/s^2"),
+    ],
+)
+def test_units_in_cyrillic_are_repaired(text: str, kind: str, named: str) -> None:
+    with pytest.raises(InputError) as caught:
+        to_si(text, kind)
+    assert caught.value.repair.endswith(f'write "{named}"')
+    to_si(named, kind)  # the repair can be read
+
+
+@pytest.mark.parametrize("text", ["5 мм", "5 коп", "5 °/с"])
+def test_cyrillic_units_of_other_kinds_have_no_such_repair(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        to_si(text, "mass")
+    assert "international" not in caught.value.repair
+
+
 @pytest.mark.parametrize("unit", ["", "m m m", "1/s", "m;", "kg", "m" * 41])
 def test_units_of_display_are_lengths(unit: str) -> None:
     with pytest.raises(InputError):

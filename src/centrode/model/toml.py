@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
+from centrode.model.look_alikes import in_latin, letters_note
 from centrode.model.reading import DescriptionPart, input_error, value_text
 from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
 
@@ -63,6 +64,8 @@ _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NES
 _COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
 _NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
 _UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
+# A key as people write it who forget that TOML wants other letters than Latin ones in quotes.
+_BARE_KEY = re.compile(r"[\w-]++(?=[ \t]*+[.=\]])")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -133,7 +136,8 @@ def _not_toml(message: str, text: str, where: str) -> InputError:
     if match and match.group(2):
         line, column = int(match.group(2)), int(match.group(3))
         # Lines as the parser counts them: `splitlines` would part a text at other characters too.
-        reason, repair = _mistyped_number(text.split("\n")[line - 1], column - 1) or (reason, repair)
+        written, at = text.split("\n")[line - 1], column - 1
+        reason, repair = _mistyped_number(written, at) or _bare_key(written, at) or (reason, repair)
     else:
         lines = text.splitlines() or [""]
         line, column = len(lines), len(lines[-1]) + 1
@@ -156,6 +160,20 @@ def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
         written = value_text(f"{number_before.group(1)} {unit.group()}")
         return _("a number with a unit is a text in quotes"), _("write {number}").format(number=written)
     return None
+
+
+def _bare_key(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped in a key without quotes, at a letter that is not Latin."""
+    key = next((found.group() for found in _BARE_KEY.finditer(line) if found.start() <= at < found.end()), "")
+    if not key or key.isascii() or re.search(r"=[^{]*$", line[:at]):
+        return None
+    latin = in_latin(key)
+    repair = (
+        letters_note(key, [(key, latin)])
+        if latin.isascii()
+        else _("write {number}").format(number=f'"{key}"')
+    )
+    return _("a key without quotes has Latin letters, digits, hyphens and underscores only"), repair
 
 
 def _depth(value: object) -> int:

@@ -16,6 +16,7 @@ from centrode.model import reading
 from centrode.model.reading import value_text
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.text_formula import compile_formula
+from centrode.quantities import UNIT_SYMBOLS
 
 # Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
 _pint = functools.partial(lazy_loader.load, "pint")
@@ -79,12 +80,34 @@ COMMON: dict[str, dict[str, float]] = {
 }
 """SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
 
+SPELLED_OTHERWISE = {
+    symbol: unit
+    for unit, symbols in UNIT_SYMBOLS.items()
+    for symbol in symbols
+    if not symbol.isascii() and symbol.isalpha()
+} | {
+    "об/мин": "rpm",
+    "об/хв": "rpm",
+    "об": "turn",
+    "град": "deg",
+    "мин": "min",
+    "хв": "min",
+    "мс": "ms",
+    "г": "g",
+    "т": "t",
+    "кН": "kN",
+    "кПа": "kPa",
+    "Гц": "Hz",
+}
+"""Cyrillic symbol of a unit -> the name that descriptions use: for the repair of a text such as "140 мм"."""
+
 ANGULAR = ("angle", "arc")
 """Kinds of quantity that are angles."""
 
 _NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
 _UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
+_LETTERS = re.compile(r"[^\W\d_²³]+")
 _DECIMAL_COMMA = re.compile(r"([+-]?[0-9]+),([0-9][^,]*)")
 
 
@@ -165,8 +188,30 @@ def _text_to_si(text: str, kind: str) -> float:
     try:
         factor = unit_factor(unit, kind)
     except InputError as error:
-        raise InputError("", _wrong(text, kind).what, error.repair) from None
+        repair = _international_repair(text.strip(), unit, kind) or error.repair
+        raise InputError("", _wrong(text, kind).what, repair) from None
     return _finite(_scale(number, factor), text)
+
+
+def _international_repair(text: str, unit: str, kind: str) -> str:
+    """Repair of a text whose unit is spelled in Cyrillic letters, as "140 мм"; empty for other texts."""
+    named = _international(unit)
+    if named == unit or not named.isascii():
+        return ""
+    try:
+        unit_factor(named, kind)
+    except InputError:
+        return ""
+    number = value_text(f"{text.removesuffix(unit).strip()} {named}")
+    return _("units have their international names: write {number}").format(number=number)
+
+
+def _international(text: str) -> str:
+    """A text with the names that descriptions use in place of Cyrillic symbols of units."""
+    for turns in ("об/мин", "об/хв"):
+        text = text.replace(turns, SPELLED_OTHERWISE[turns])
+    text = _LETTERS.sub(lambda found: SPELLED_OTHERWISE.get(found.group(), found.group()), text)
+    return text.replace("·", "*").replace("²", "^2").replace("³", "^3")
 
 
 def _split_unit(text: str, kind: str) -> tuple[float, str]:
@@ -223,7 +268,7 @@ def decimal_point_repair(text: str) -> str:
     comma = _DECIMAL_COMMA.fullmatch(text.strip())
     if comma is None:
         return ""
-    number = value_text(f"{comma.group(1)}.{comma.group(2)}")
+    number = value_text(f"{comma.group(1)}.{_international(comma.group(2))}")
     return _("decimals have a point, not a comma: write {number}").format(number=number)
 
 
