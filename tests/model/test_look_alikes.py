@@ -125,6 +125,33 @@ def test_latin_letters_among_cyrillic_names_are_named_too() -> None:
         )
 
 
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        # one name against one: either may be mistyped
+        (
+            ["\u0412"],
+            "B is written with the Latin letter B, \u0412, which looks the same, with Cyrillic ones: type both",
+        ),
+        # the guide's point has the letters of most names: the link's was mistyped
+        (
+            ["\u0412", "C", "D"],
+            "\u0412 is written with the Cyrillic letter \u0412, the other names with Latin ones: ",
+        ),
+    ],
+)
+def test_the_mistyped_one_of_two_names_that_look_alike_is_named(points: list[str], message: str) -> None:
+    piston = {"points": {point: [0.1 * place, 0] for place, point in enumerate(points)}}
+    with pytest.raises(InputError) as caught:
+        ct.Mechanism(
+            frame={"points": {"O": [0, 0]}},
+            links={"OA": {"length": 1}, "AB": {"length": 3}, "piston": piston},
+            guides=[{"point": "B", "through": "O", "direction": [1, 0], "link": "piston"}],
+            drives=[{"link": "OA", "speed": 1}],
+        )
+    assert message in str(caught.value)
+
+
 MOBILITY = "[[drives]]: 1 drive is given, but the mobility (by rank) is 3; "
 
 

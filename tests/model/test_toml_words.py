@@ -61,7 +61,7 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
         ("a = -3.5mm", 'a number with a unit is a text in quotes; write "-3.5 mm"'),
         ("a = { b = 3500 mm, c = 1 }", 'a number with a unit is a text in quotes; write "3500 mm"'),
         ("a = 60°", 'a number with a unit is a text in quotes; write "60 °"'),
-        ("a = 5 мм/с^2", 'a number with a unit is a text in quotes; write "5 мм/с^2"'),
+        ("a = 5 мм/с^2", 'a number with a unit is a text in quotes; write "5 mm/s^2"'),
         (
             "a = [\n  1e-3 m, 0\n]",
             'line 2, column 8: not TOML: a number with a unit is a text in quotes; write "1e-3 m"',
@@ -70,6 +70,43 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
     ],
 )
 def test_decimal_commas_and_units_without_quotes_are_named(text: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_mechanism(text, "press.toml")
+    assert str(caught.value).startswith("press.toml, line")
+    assert str(caught.value).endswith(told)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "a = “60 mm”",
+            'line 1, column 5: not TOML: “ is not a quotation mark of TOML; write "60 mm" with straight quotes',
+        ),
+        ("a = [«б»]", 'not TOML: « is not a quotation mark of TOML; write "б" with straight quotes'),
+        ("[links.шатун]", 'not TOML: a name with letters other than Latin ones needs quotes; write "шатун"'),
+        (
+            "[links]\nшатун.length = 1",
+            'not TOML: a name with letters other than Latin ones needs quotes; write "шатун"',
+        ),
+        (
+            "a = { Г1 = [0, 0] }",
+            'not TOML: a name with letters other than Latin ones needs quotes; write "Г1"',
+        ),
+        (
+            "a = { О = [0, 0] }",
+            "О is written with the Cyrillic letter О, the other names with Latin ones: type it with one keyboard"
+            " layout",
+        ),
+        (
+            "[links.OА]",
+            "OА is written with the Cyrillic letter А, the other names with Latin ones: type it with one keyboard"
+            " layout",
+        ),
+        ("a = ліворуч", "line 1, column 5: not TOML: a value is missing, or a text without quotes"),
+    ],
+)
+def test_printed_quotes_and_names_in_other_letters_are_named(text: str, told: str) -> None:
     with pytest.raises(InputError) as caught:
         parse_mechanism(text, "press.toml")
     assert str(caught.value).startswith("press.toml, line")

@@ -16,7 +16,7 @@ from centrode.model import reading
 from centrode.model.files import kind_at, with_values
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
-from centrode.model.reading import Problem, nearest, read_file, read_name, value_text
+from centrode.model.reading import Problem, csv_separator, nearest, read_file, read_name, value_text
 from centrode.model.units import read_quantity, unit_factor
 
 # Columns of a table of variants: which numbers of a mechanism a header names.
@@ -144,7 +144,6 @@ def _hint(mechanism: Mechanism) -> str:
 
 
 Table: TypeAlias = str | Path | Sequence[Mapping[str, object]]
-SEPARATORS = ",;\t"
 FORMULAS = ("=", "+", "-", "@")
 """With these begins what a spreadsheet computes when it opens a summary."""
 
@@ -206,7 +205,7 @@ Row: TypeAlias = tuple[int, list[object]]
 def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
     """Headers and rows of a CSV file; blank lines count but hold nothing."""
     text = read_file(path)
-    separator = max(SEPARATORS, key=text.partition("\n")[0].count)
+    separator = csv_separator(text)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         lines = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,7 @@ from centrode.model import reading
 from centrode.model.reading import value_text
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.text_formula import compile_formula
+from centrode.quantities import UNIT_SYMBOLS
 
 # Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
 _pint = functools.partial(lazy_loader.load, "pint")
@@ -79,12 +81,26 @@ COMMON: dict[str, dict[str, float]] = {
 }
 """SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
 
+TYPED = {
+    "град": "deg",
+    "г": "g",
+    "т": "t",
+    "мс": "ms",
+    "мин": "min",
+    "хв": "min",
+    "кН": "kN",
+    "кПа": "kPa",
+    "Гц": "Hz",
+}
+"""Units in Russian and Ukrainian that results do not print but people type, with their names in files."""
+
 ANGULAR = ("angle", "arc")
 """Kinds of quantity that are angles."""
 
 _NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
 _UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
+_FACTOR_NAME = re.compile(r"[^\W\d_]+(?:/[^\W\d_]+)?")
 _DECIMAL_COMMA = re.compile(r"([+-]?[0-9]+),([0-9][^,]*)")
 
 
@@ -165,7 +181,8 @@ def _text_to_si(text: str, kind: str) -> float:
     try:
         factor = unit_factor(unit, kind)
     except InputError as error:
-        raise InputError("", _wrong(text, kind).what, error.repair) from None
+        repair = _latin_repair(text, unit, kind) or error.repair
+        raise InputError("", _wrong(text, kind).what, repair) from None
     return _finite(_scale(number, factor), text)
 
 
@@ -223,8 +240,40 @@ def decimal_point_repair(text: str) -> str:
     comma = _DECIMAL_COMMA.fullmatch(text.strip())
     if comma is None:
         return ""
-    number = value_text(f"{comma.group(1)}.{comma.group(2)}")
+    number = value_text(f"{comma.group(1)}.{latin_unit(comma.group(2))}")
     return _("decimals have a point, not a comma: write {number}").format(number=number)
+
+
+def latin_unit(unit: str) -> str:
+    """A unit with the names that files know in place of those that Russian and Ukrainian readers print or type."""
+    names = _latin_names()
+
+    def factor(match: re.Match[str]) -> str:
+        # "об/хв" has one name in files, "рад/с" has two
+        name = match.group()
+        return names.get(name) or "/".join(names.get(part, part) for part in name.split("/"))
+
+    return _FACTOR_NAME.sub(factor, unit)
+
+
+def _latin_repair(text: str, unit: str, kind: str) -> str:
+    """Repair of a number with a unit as readers print it, such as "65 об/хв"; empty for other units."""
+    latin = latin_unit(unit).replace("·", "*")
+    if latin == unit:
+        return ""
+    try:
+        unit_factor(latin, kind)
+    except InputError:
+        return ""
+    written = value_text(f"{text.strip().removesuffix(unit).strip()} {latin}")
+    return _("units have Latin letters in files: write {number}").format(number=written)
+
+
+@functools.cache
+def _latin_names() -> Mapping[str, str]:
+    """Units as Russian and Ukrainian readers print or type them, with their names in files."""
+    printed = {symbol: unit for unit, symbols in UNIT_SYMBOLS.items() for symbol in symbols[1:]}
+    return printed | TYPED
 
 
 def _other_kind(unit: str, kind: str, frequency: bool = False) -> InputError:
