@@ -392,7 +392,7 @@ def _routes(found: ForcePolygons, caption: Text = NOTHING) -> Table:
         ("drive", Sentence("drive")),
         ("unit", Sentence("unit")),
         ("polygons", Sentence("force polygons")),
-        ("lever", Sentence("Zhukovsky's lever")),
+        ("lever", Sentence("lever")),
         ("work", Sentence("virtual work")),
         ("apart", Sentence("difference")),
     )
