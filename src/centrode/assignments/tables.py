@@ -29,6 +29,8 @@ from centrode.model.units import read_quantity, unit_factor
 
 NAME = "variant"
 """Header of the column that names the variants."""
+NAMES = (NAME, "вариант", "варіант")
+"""The same in every language of the messages."""
 
 _BRACKET = re.compile(r"(.*?)\s*\[([^\[\]]*)\]\s*")
 _SHORT = re.compile(r"(l|phi|φ|omega|ω)(\d{1,4})(_0)?(?:_([a-zA-Z°]\w*))?")
@@ -64,7 +66,7 @@ def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColu
     found: list[VariantColumn | None] = []
     named: dict[str, str] = {}
     for header in headers:
-        column = None if header.strip().casefold() == NAME else _column(mechanism, header)
+        column = None if header.strip().casefold() in NAMES else _column(mechanism, header)
         for path in (NAME,) if column is None else column.paths:
             if path in named:
                 both = _("columns {one} and {other} refer to the same number")
@@ -125,7 +127,10 @@ def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...
     if kind == "length":
         if mechanism.links[link].length is None:
             what = _("link {link} has no length, its points have coordinates").format(link=link)
-            raise InputError("", what, _("name one of them: links.{link}.points.P.x").format(link=link))
+            repair = _("name one of them: links.{link}.points.{point}.x")
+            raise InputError(
+                "", what, repair.format(link=link, point=list(mechanism.links[link].coordinates)[-1])
+            )
         return (f"links.{link}.length",)
     if kind == "speed":
         if drive is None:
@@ -137,9 +142,10 @@ def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...
 
 
 def _hint(mechanism: Mechanism) -> str:
-    link = mechanism.link_names[-1]
+    names = mechanism.link_names
+    link = next((name for name in reversed(names) if mechanism.links[name].length is not None), names[-1])
     return _("write a path such as links.{link}.length, or l{n}, phi{n}_0 for the {n}th link").format(
-        link=link, n=len(mechanism.link_names)
+        link=link, n=names.index(link) + 1
     )
 
 
@@ -231,7 +237,7 @@ def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
             (
                 number,
                 [
-                    cells[k] if header.strip().casefold() == NAME else points[k]
+                    cells[k] if header.strip().casefold() in NAMES else points[k]
                     for k, header in enumerate(headers)
                 ],
             )
