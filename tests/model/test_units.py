@@ -90,13 +90,13 @@ def test_numbers_in_si_keep_every_bit(number: float) -> None:
         ("2 deg", "angular speed", "expected an angular speed"),
         ("20 degC", "length", "expected a length"),
         ("5 wibble", "length", "is not a known unit"),
-        ("730 об/хв", "angular speed", 'units have Latin letters in files: write "730 rpm"'),
-        ("730 об/мин", "angular speed", 'units have Latin letters in files: write "730 rpm"'),
-        ("pi/2 рад", "angle", 'units have Latin letters in files: write "pi/2 rad"'),
-        ("60 град", "angle", 'units have Latin letters in files: write "60 deg"'),
-        ("450 кг·мм^2", "inertia", 'units have Latin letters in files: write "450 kg*mm^2"'),
-        ("9.81 м/с^2", "acceleration", 'units have Latin letters in files: write "9.81 m/s^2"'),
-        ("9 кН", "force", 'units have Latin letters in files: write "9 kN"'),
+        ("730 об/хв", "angular speed", 'units have their international names: write "730 rpm"'),
+        ("730 об/мин", "angular speed", 'units have their international names: write "730 rpm"'),
+        ("pi/2 рад", "angle", 'units have their international names: write "pi/2 rad"'),
+        ("60 град", "angle", 'units have their international names: write "60 deg"'),
+        ("450 кг·мм^2", "inertia", 'units have their international names: write "450 kg*mm^2"'),
+        ("9.81 м/с^2", "acceleration", 'units have their international names: write "9.81 m/s^2"'),
+        ("9 кН", "force", 'units have their international names: write "9 kN"'),
         ("3,5 мм", "length", 'decimals have a point, not a comma: write "3.5 mm"'),
         ("5 мм", "angle", '"мм" is not a known unit, write a number in rad'),
         ("5 m^9999999", "length", "expected a length"),
@@ -134,6 +134,31 @@ def test_refusals(value: object, kind: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         to_si(value, kind)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "named"),
+    [
+        ("140 мм", "length", "140 mm"),
+        ("75 об/мин", "angular speed", "75 rpm"),
+        ("72 град", "angle", "72 deg"),
+        ("2.2 кН", "force", "2.2 kN"),
+        ("1.4 кг·м²", "inertia", "1.4 kg*m^2"),
+        ("9,81 м/с²", "acceleration", "9.81 m/s^2"),
+    ],
+)
+def test_units_in_cyrillic_are_repaired(text: str, kind: str, named: str) -> None:
+    with pytest.raises(InputError) as caught:
+        to_si(text, kind)
+    assert caught.value.repair.endswith(f'write "{named}"')
+    to_si(named, kind)  # the repair can be read
+
+
+@pytest.mark.parametrize("text", ["5 мм", "5 коп", "5 °/с"])
+def test_cyrillic_units_of_other_kinds_have_no_such_repair(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        to_si(text, "mass")
+    assert "international" not in caught.value.repair
 
 
 @pytest.mark.parametrize("unit", ["", "m m m", "1/s", "m;", "kg", "m" * 41])

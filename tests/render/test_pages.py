@@ -165,6 +165,7 @@ def test_symbols_are_typeset() -> None:
     assert symbol("a", "BA", "normal") == "$a^{n}_{BA}$"
     assert typeset("v_A = v_AO (⊥ AO)") == "$v_{A}$ = $v_{AO}$ (⊥ AO)"
     assert typeset("cost $") == r"cost \$"
+    assert symbol("P", "кулиса") == r"$P_{\mathrm{кулиса}}$"
 
 
 def test_transmission_angles_are_drawn_in_degrees() -> None:

@@ -15,7 +15,7 @@ from centrode.locale import _, mark
 from centrode.model import reading
 from centrode.model.look_alikes import in_latin, letters_note
 from centrode.model.reading import DescriptionPart, input_error, value_text
-from centrode.model.units import latin_unit
+from centrode.model.units import international
 from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
 
 # What the parser of TOML complains about, in sentences of ours: its own are for programmers, and English
@@ -65,9 +65,10 @@ _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NES
 _COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
 _NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
 _UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
-# What word processors make of quotation marks, and names in the letters of one's own language without any.
+# What word processors make of quotation marks.
 _PRINTED_QUOTES = re.compile(r"([“”„‟«»‘’‚])([^“”„‟«»‘’‚\"']*+)")
-_BARE_NAME = re.compile(r"[\w-]++(?=[ \t]*+[\].=])")
+# A key as people write it who forget that TOML wants other letters than Latin ones in quotes.
+_BARE_KEY = re.compile(r"[\w-]++(?=[ \t]*+[.=\]])")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -138,8 +139,9 @@ def _not_toml(message: str, text: str, where: str) -> InputError:
     if match and match.group(2):
         line, column = int(match.group(2)), int(match.group(3))
         # Lines as the parser counts them: `splitlines` would part a text at other characters too.
-        typed, at = text.split("\n")[line - 1], column - 1
-        reason, repair = _mistyped_number(typed, at) or _mistyped_text(typed, at) or (reason, repair)
+        written, at = text.split("\n")[line - 1], column - 1
+        found = _mistyped_number(written, at) or _printed_quotes(written, at) or _bare_key(written, at)
+        reason, repair = found or (reason, repair)
     else:
         lines = text.splitlines() or [""]
         line, column = len(lines), len(lines[-1]) + 1
@@ -154,31 +156,37 @@ def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
         if comma.start() < at <= comma.end():
             number = f"{comma.group(1)}.{comma.group(2)}"
             behind = _UNIT.match(line, comma.end())
-            written = value_text(f"{number} {latin_unit(behind.group())}") if behind else number
+            written = value_text(f"{number} {international(behind.group())}") if behind else number
             return _("decimals have a point, not a comma"), _("write {number}").format(number=written)
     number_before = _NUMBER.search(line, 0, at)
     unit = _UNIT.match(line, at)
     if number_before and unit:
-        written = value_text(f"{number_before.group(1)} {latin_unit(unit.group())}")
+        written = value_text(f"{number_before.group(1)} {international(unit.group())}")
         return _("a number with a unit is a text in quotes"), _("write {number}").format(number=written)
     return None
 
 
-def _mistyped_text(line: str, at: int) -> tuple[str, str] | None:
-    """Reason and repair where the parser stopped at printed quotation marks, or at a bare name in other letters."""
+def _printed_quotes(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped at a quotation mark as word processors print it."""
     printed = _PRINTED_QUOTES.match(line, at)
-    if printed:
-        reason = _("{mark} is not a quotation mark of TOML").format(mark=printed.group(1))
-        return reason, _("write {text} with straight quotes").format(text=value_text(printed.group(2)))
-    names = (match.group() for match in _BARE_NAME.finditer(line) if match.start() <= at < match.end())
-    name = next(names, "")
-    if name.isascii():
+    if printed is None:
         return None
-    reason = _("a name with letters other than Latin ones needs quotes")
-    latin = in_latin(name)
-    if latin.isascii():
-        return reason, letters_note(name, [(name, latin)])
-    return reason, _("write {name}").format(name=value_text(name))
+    reason = _("{mark} is not a quotation mark of TOML").format(mark=printed.group(1))
+    return reason, _("write {text} with straight quotes").format(text=value_text(printed.group(2)))
+
+
+def _bare_key(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped in a key without quotes, at a letter that is not Latin."""
+    key = next((found.group() for found in _BARE_KEY.finditer(line) if found.start() <= at < found.end()), "")
+    if not key or key.isascii() or re.search(r"=[^{]*$", line[:at]):
+        return None
+    latin = in_latin(key)
+    repair = (
+        letters_note(key, [(key, latin)])
+        if latin.isascii()
+        else _("write {number}").format(number=f'"{key}"')
+    )
+    return _("a key without quotes has Latin letters, digits, hyphens and underscores only"), repair
 
 
 def _depth(value: object) -> int:

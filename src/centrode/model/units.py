@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,18 +80,26 @@ COMMON: dict[str, dict[str, float]] = {
 }
 """SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
 
-TYPED = {
+SPELLED_OTHERWISE = {
+    symbol: unit
+    for unit, symbols in UNIT_SYMBOLS.items()
+    for symbol in symbols
+    if not symbol.isascii() and symbol.isalpha()
+} | {
+    "об/мин": "rpm",
+    "об/хв": "rpm",
+    "об": "turn",
     "град": "deg",
-    "г": "g",
-    "т": "t",
-    "мс": "ms",
     "мин": "min",
     "хв": "min",
+    "мс": "ms",
+    "г": "g",
+    "т": "t",
     "кН": "kN",
     "кПа": "kPa",
     "Гц": "Hz",
 }
-"""Units in Russian and Ukrainian that results do not print but people type, with their names in files."""
+"""Cyrillic symbol of a unit -> the name that descriptions use: for the repair of a text such as "140 мм"."""
 
 ANGULAR = ("angle", "arc")
 """Kinds of quantity that are angles."""
@@ -100,7 +107,7 @@ ANGULAR = ("angle", "arc")
 _NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
 _UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
-_FACTOR_NAME = re.compile(r"[^\W\d_]+(?:/[^\W\d_]+)?")
+_LETTERS = re.compile(r"[^\W\d_²³]+")
 _DECIMAL_COMMA = re.compile(r"([+-]?[0-9]+),([0-9][^,]*)")
 
 
@@ -181,9 +188,30 @@ def _text_to_si(text: str, kind: str) -> float:
     try:
         factor = unit_factor(unit, kind)
     except InputError as error:
-        repair = _latin_repair(text, unit, kind) or error.repair
+        repair = _international_repair(text.strip(), unit, kind) or error.repair
         raise InputError("", _wrong(text, kind).what, repair) from None
     return _finite(_scale(number, factor), text)
+
+
+def _international_repair(text: str, unit: str, kind: str) -> str:
+    """Repair of a text whose unit is spelled in Cyrillic letters, as "140 мм"; empty for other texts."""
+    named = international(unit)
+    if named == unit or not named.isascii():
+        return ""
+    try:
+        unit_factor(named, kind)
+    except InputError:
+        return ""
+    number = value_text(f"{text.removesuffix(unit).strip()} {named}")
+    return _("units have their international names: write {number}").format(number=number)
+
+
+def international(text: str) -> str:
+    """A text with the names that descriptions use in place of Cyrillic symbols of units."""
+    for turns in ("об/мин", "об/хв"):
+        text = text.replace(turns, SPELLED_OTHERWISE[turns])
+    text = _LETTERS.sub(lambda found: SPELLED_OTHERWISE.get(found.group(), found.group()), text)
+    return text.replace("·", "*").replace("²", "^2").replace("³", "^3")
 
 
 def _split_unit(text: str, kind: str) -> tuple[float, str]:
@@ -240,40 +268,8 @@ def decimal_point_repair(text: str) -> str:
     comma = _DECIMAL_COMMA.fullmatch(text.strip())
     if comma is None:
         return ""
-    number = value_text(f"{comma.group(1)}.{latin_unit(comma.group(2))}")
+    number = value_text(f"{comma.group(1)}.{international(comma.group(2))}")
     return _("decimals have a point, not a comma: write {number}").format(number=number)
-
-
-def latin_unit(unit: str) -> str:
-    """A unit with the names that files know in place of those that Russian and Ukrainian readers print or type."""
-    names = _latin_names()
-
-    def factor(match: re.Match[str]) -> str:
-        # "об/хв" has one name in files, "рад/с" has two
-        name = match.group()
-        return names.get(name) or "/".join(names.get(part, part) for part in name.split("/"))
-
-    return _FACTOR_NAME.sub(factor, unit)
-
-
-def _latin_repair(text: str, unit: str, kind: str) -> str:
-    """Repair of a number with a unit as readers print it, such as "65 об/хв"; empty for other units."""
-    latin = latin_unit(unit).replace("·", "*")
-    if latin == unit:
-        return ""
-    try:
-        unit_factor(latin, kind)
-    except InputError:
-        return ""
-    written = value_text(f"{text.strip().removesuffix(unit).strip()} {latin}")
-    return _("units have Latin letters in files: write {number}").format(number=written)
-
-
-@functools.cache
-def _latin_names() -> Mapping[str, str]:
-    """Units as Russian and Ukrainian readers print or type them, with their names in files."""
-    printed = {symbol: unit for unit, symbols in UNIT_SYMBOLS.items() for symbol in symbols[1:]}
-    return printed | TYPED
 
 
 def _other_kind(unit: str, kind: str, frequency: bool = False) -> InputError:

@@ -86,10 +86,17 @@ HARMONICS = (
 )
 GREATEST_FORCE = Sentence("greatest shaking force")
 GREATEST_ON_DRIVE = Sentence("greatest moment of the drive due to inertia forces")
+EFFECTS = ("shaking_force_size", "shaking_moment", "inertia_on_drive")
+OVER_THE_CYCLE = Sentence(
+    "Shaking force {force}, shaking moment {moment} and moment of the drive {drive} over the cycle, before and after",
+    force=Symbol(QUANTITIES["shaking_force_size"].symbol),
+    moment=Symbol(QUANTITIES["shaking_moment"].symbol),
+    drive=Symbol(QUANTITIES["inertia_on_drive"].symbol),
+)
 CAPTIONS = {
     "counterweights": Sentence("The mechanism with its counterweights"),
     "shaking-hodograph": Sentence("Hodograph of the shaking force, before and after"),
-    "shaking-cycle": Sentence("Shaking force, shaking moment and the drive over the cycle, before and after"),
+    "shaking-cycle": OVER_THE_CYCLE,
     "shaking-harmonics": Sentence("Harmonics before and after"),
 }
 DETAILS = ("shaking-hodograph", "shaking-harmonics")
@@ -448,9 +455,9 @@ def _hodograph(balance: Balance) -> Hodograph:
 def _cycle(balance: Balance) -> Plot:
     """Size of the force, moment, and what the drive gives, over the cycle."""
     rows = []
-    for number, name in enumerate(("shaking_force_size", "shaking_moment", "inertia_on_drive")):
-        label = AxisLabel(
-            Sentence(QUANTITIES[name].long_name),
+    for number, name in enumerate(EFFECTS):
+        label = AxisLabel(  # the caption says what the letter is: words are longer than a low panel
+            symbol=Symbol(QUANTITIES[name].symbol),
             unit=str(balance.before[name].attrs["units"]),
             unit_fixed=True,
         )
@@ -460,7 +467,7 @@ def _cycle(balance: Balance) -> Plot:
         scale = max(float(np.nanmax(np.abs(curve.values))) for curve in curves)
         rows.append((CurvePanel(label, curves, scale, legend=number == 0),))
     return Plot(
-        Sentence("Effect of the inertia forces on the frame and the drive"),
+        OVER_THE_CYCLE,
         Title(balance.mechanism.title),
         motion_abscissa(balance.mechanism, balance.before),
         tuple(rows),

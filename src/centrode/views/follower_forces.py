@@ -458,8 +458,7 @@ def _jump_lines(results: FollowerForceResults, place: float, speed: float) -> It
         {"rest": numbers, "I": _si(results.forces.burden.inertia), "a": Factor(_si(lift[2]))},
         {"rest": letters, "I": "J" if swings else "m", "a": rate(swings, 2)},
     )
-    turns = Expression('{turns} thin "min"^(-1)', turns=Number(speed * 30.0 / math.pi))
-    yield 'n_"j"', 'frac(30, pi) omega_"j"', turns
+    yield 'n_"j"', 'frac(30, pi) omega_"j"', turns_a_minute(speed)
 
 
 def _torques(results: FollowerForceResults) -> Iterator[Block]:

@@ -17,7 +17,7 @@ from centrode.dynamics.force_polygons.steps import (
     Unknown,
 )
 from centrode.sheets.sheet import Block, Formula, Paragraph
-from centrode.sheets.texts import Expression, Joined, Leaf, Name, Number, Sentence, Text
+from centrode.sheets.texts import Counted, Expression, Joined, Leaf, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.polygons import Lever
@@ -56,7 +56,14 @@ def step_equations(step: Step, sentence: Text) -> Iterator[Block]:
             )
             yield _moments(about, unknown, terms, outcome)
         case ClosedPolygon(links, forces, lines, last):
-            yield Paragraph(Sentence("The polygon of forces on {links} closes:", links=_numbers(links)))
+            yield Paragraph(
+                Counted(
+                    "The polygon of forces on link {links} closes:",
+                    "The polygon of forces on links {links} closes:",
+                    len(links),
+                    links=_numbers(links),
+                )
+            )
             closed: tuple[Leaf, ...] = (_sum([force_symbol(force, vector=True) for force in forces]), "0")
             yield Formula((closed, *(() if last is None else (_outcome(last),))))
             if lines:
@@ -169,7 +176,8 @@ def _directions(lines: Sequence[ForceLine]) -> Leaf:
     for number, line in enumerate(lines):
         holes[f"force{number}"] = force_symbol(line.symbol, vector=True)
         if line.guide:
-            holes[f"line{number}"] = Sentence("guide {guide}", guide=Name(line.guide))
+            # a sentence of its own: behind the sign languages with cases do not use the nominative
+            holes[f"line{number}"] = Sentence("the guide {guide}", guide=Name(line.guide))
             parts.append(f"{{force{number}}} perp {{line{number}}}")
         else:
             short = all(joint.kind == "hinge" and len(joint.name) <= 2 for joint in line.through)

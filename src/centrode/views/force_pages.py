@@ -14,7 +14,7 @@ from centrode.sheets.force_pages import (
     GuideSign,
     LeverPage,
 )
-from centrode.sheets.texts import Number, Sentence
+from centrode.sheets.texts import Name, Number, Sentence
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.polygons import (
@@ -76,7 +76,7 @@ def lever_page(found: ForcePolygons, lever: Lever, lines: tuple[Text, ...]) -> L
     if lever.unit == "N m" and abs(lever.balancing) > TINY * greatest:
         moments.append(ForceSign("Mb", 0j, moment=lever.balancing))
     return LeverPage(
-        Sentence("Zhukovsky's lever"),
+        Sentence("Zhukovsky's lever of drive {drive}", drive=Name(lever.drive)),
         Sentence("Velocity diagram turned by {angle} clockwise", angle=RIGHT_ANGLE),
         found.mechanism,
         found.exact,

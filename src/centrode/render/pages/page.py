@@ -237,7 +237,7 @@ COLUMNS = 49
 MARKS = {"normal": "ⁿ", "tangential": "ᵗ", "coriolis": "ᵏ", "driven": "ʳ", "sliding": "ʳ"}
 LETTERS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 GREEK = {"ω": r"\omega", "ε": r"\varepsilon", "μ": r"\mu"}
-TERM = re.compile(r"(?<!\w)([vapωεμP])([ⁿᵗᵏʳ]?)_([A-Za-z0-9′]+)")
+TERM = re.compile(r"(?<!\w)([vapωεμP])([ⁿᵗᵏʳ]?)_([A-Za-zЀ-ӿ0-9′]+)")
 
 
 def flat(places: Sequence[complex]) -> Array:
@@ -277,7 +277,8 @@ def typeset(text: str) -> str:
 
 def _typeset(found: re.Match[str]) -> str:
     letter, mark, name = found.groups()
-    below = name.replace("′", r"{}^{\prime}")
+    below = name if name.replace("′", "").isascii() else rf"\mathrm{{{name}}}"  # Cyrillic words stand upright
+    below = below.replace("′", r"{}^{\prime}")
     above = f"^{{{LETTERS[mark]}}}" if mark else ""
     return rf"${GREEK.get(letter, letter)}{above}_{{{below}}}$"
 
