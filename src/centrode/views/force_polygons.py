@@ -392,7 +392,7 @@ def _routes(found: ForcePolygons, caption: Text = NOTHING) -> Table:
         ("drive", Sentence("drive")),
         ("unit", Sentence("unit")),
         ("polygons", Sentence("force polygons")),
-        ("lever", Sentence("lever")),
+        ("lever", Sentence("Zhukovsky's lever")),
         ("work", Sentence("virtual work")),
         ("apart", Sentence("difference")),
     )
