@@ -8,8 +8,10 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
+from centrode.locale import speaking
 from centrode.model.files import parse_mechanism
 from centrode.model.look_alikes import in_latin, look_alike, look_alike_pairs
+from centrode.model.reading import Problem, read_choice
 
 RIGHT = """
 [frame.points]
@@ -193,3 +195,13 @@ def test_a_guide_that_holds_no_point_leaves_its_slide_loose() -> None:
 
 def test_where_every_end_is_joined_no_point_is_named() -> None:
     assert told("[links.CD]", "[links.CE]\nlength = 1\n[links.ED]").endswith("constrain what moves freely")
+
+
+@pytest.mark.parametrize(
+    ("language", "typed", "meant"),
+    [("uk", "циклоїдальний", "cycloidal"), ("ru", "Модифицированный синусоидальный", "modified sine")],
+)
+def test_words_of_results_are_known_where_they_are_typed(language: str, typed: str, meant: str) -> None:
+    with speaking(language), pytest.raises(Problem) as caught:
+        read_choice(typed, ("uniform", "cycloidal", "modified sine"))
+    assert f'"{meant}"' in caught.value.repair

@@ -346,7 +346,9 @@ def read_choice(
     words = ", ".join(value_text(option) for option in options)
     repair = ""
     if isinstance(value, str):
-        meant = (other_names or {}).get(value.strip().casefold())
+        typed = value.strip().casefold()
+        spoken = {_(option).casefold(): option for option in options}  # as results print them
+        meant = (other_names or {}).get(typed) or spoken.get(typed)
         repair = likely(meant or value, options)
     raise Problem(
         _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair
