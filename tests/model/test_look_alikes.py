@@ -11,7 +11,7 @@ from centrode.errors import InputError
 from centrode.locale import speaking
 from centrode.model.files import parse_mechanism
 from centrode.model.look_alikes import in_latin, look_alike, look_alike_pairs
-from centrode.model.reading import Problem, read_choice
+from centrode.model.reading import Problem, likely, read_choice
 
 RIGHT = """
 [frame.points]
@@ -41,6 +41,10 @@ def told(old: str, new: str) -> str:
         ct.check(parse_mechanism(RIGHT.replace(old, new, 1), "f.toml"))
     assert caught.value.exit_code == 2
     return str(caught.value)
+
+
+def test_a_name_is_near_another_whatever_its_letters() -> None:
+    assert likely("\u0410\u041e", ["OA", "BD"]) == likely("AO", ["OA", "BD"]) == 'did you mean "OA"?'
 
 
 def test_the_linkage_itself_is_right() -> None:

@@ -16,7 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, mo
 from centrode.errors import InputError
 from centrode.files.inputs import note
 from centrode.locale import _, ngettext
-from centrode.model.look_alikes import letters_note, likeness_note, look_alike, look_alike_pairs
+from centrode.model.look_alikes import in_latin, letters_note, likeness_note, look_alike, look_alike_pairs
 
 # What a file may ask for at most: a text that asks for more is refused before anything is built from it.
 
@@ -123,7 +123,9 @@ def likely(name: str, known: Iterable[str]) -> str:
         return letters_note(odd, [(odd, common)])
     folded = [other for other in names if other.casefold() == name.casefold()]
     cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
-    close = folded or difflib.get_close_matches(name[:NAME_LENGTH], names, n=1, cutoff=cutoff)
+    looks = {in_latin(other): other for other in reversed(names)}
+    near = difflib.get_close_matches(in_latin(name[:NAME_LENGTH]), [*looks], n=1, cutoff=cutoff)
+    close = folded or [looks[other] for other in near]
     return _("did you mean {name}?").format(name=value_text(close[0])) if close else ""
 
 
