@@ -9,6 +9,9 @@ from typing import Any
 
 import pytest
 
+import centrode as ct
+from centrode.model.examples.catalogue import load, load_either
+
 Refused = Callable[..., str]
 
 
@@ -35,6 +38,15 @@ def test_no_such_mechanism(refused: Refused, mechanism: str, message: str) -> No
 def test_a_folder_instead_of_a_file(refused: Refused, folder: Path) -> None:
     (folder / "press.toml").mkdir()
     assert refused(None) == "press.toml: this is not a file; give the path of a file"
+
+
+def test_a_folder_does_not_hide_the_example_of_its_name(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`centrode run kite --out kite` works a second time as well."""
+    monkeypatch.chdir(folder)
+    (folder / "kite").mkdir()
+    assert load("kite") == load_either("kite") == ct.example("kite")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")

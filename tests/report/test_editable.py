@@ -210,10 +210,11 @@ def test_what_is_no_formula_is_refused() -> None:
 
 def test_decimals_of_a_language_are_no_punctuation() -> None:
     with speaking("ru"):
-        found = latex_formulas(['"2,84" dot.op x', '"No 1.5"', 'sin "54,3°"'])
+        found = latex_formulas(['"2,84" dot.op x', '"No 1.5"', 'sin "54,3°"', 'op("tg") alpha'])
     assert found.inline('"2,84" dot.op x') == r"2{,}84 \cdot x"
     assert found.inline('"No 1.5"') == r"\text{No 1.5}"
     assert found.inline('sin "54,3°"') == r"\sin54{,}3^{\circ}"
+    assert found.inline('op("tg") alpha') == r"\operatorname{tg}\alpha"
 
 
 def test_wide_tables_are_dealt_to_several_that_begin_with_the_first_column() -> None:

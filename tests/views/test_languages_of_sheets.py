@@ -12,7 +12,7 @@ from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.sheet import Sheet, SymbolList, Table
-from centrode.sheets.texts import Place, Sentence, Text
+from centrode.sheets.texts import Expression, Name, Number, Place, Sentence, Text
 from centrode.structure.constraints import NoTurning
 from centrode.topics.presentation import sheet_of
 from centrode.views.equations import constraint_text
@@ -96,6 +96,20 @@ def test_names_that_look_like_kinds_stay() -> None:
     text = PlainSpelling(None).text(sheet_of(ct.check(mechanism)).facts[5].value)
     assert text.startswith("RRP: ")
     assert "AB, PB: класс II, порядок 2, ВВВ" in ct.summary(ct.check(mechanism))
+
+
+TANGENTS = {"en": ("tan alpha", "arctan (2)"), "ru": ('op("tg") alpha', 'op("arctg") (2)')}
+
+
+@pytest.mark.parametrize("language", TANGENTS)
+def test_functions_have_their_names_of_the_language(language: str) -> None:
+    """Readers of Russian and Ukrainian write tg; what a user calls tan stays."""
+    ct.choose_language(language)
+    spelling = DocumentSpelling(Numbers(ct.example("crank-rocker").display))
+    tangent, angle = TANGENTS[language]
+    assert spelling.mathematics("tan alpha") == tangent
+    assert spelling.mathematics(Expression("arctan ({size})", size=Number(2.0))) == angle
+    assert spelling.mathematics(Name("tan")) == '"tan"'
 
 
 # The frame among links, in the case of its sentence.

@@ -176,8 +176,7 @@ def _directions(lines: Sequence[ForceLine]) -> Leaf:
     for number, line in enumerate(lines):
         holes[f"force{number}"] = force_symbol(line.symbol, vector=True)
         if line.guide:
-            # a sentence of its own: behind the sign languages with cases do not use the nominative
-            holes[f"line{number}"] = Sentence("the guide {guide}", guide=Name(line.guide))
+            holes[f"line{number}"] = _guide(line.guide)
             parts.append(f"{{force{number}}} perp {{line{number}}}")
         else:
             short = all(joint.kind == "hinge" and len(joint.name) <= 2 for joint in line.through)
@@ -191,4 +190,9 @@ def _numbers(numbers: Iterable[int]) -> Text:
 
 
 def _joint(joint: StaticJoint) -> Text:
-    return Sentence("guide {guide}", guide=Name(joint.name)) if joint.kind == "guide" else Name(joint.name)
+    return _guide(joint.name) if joint.kind == "guide" else Name(joint.name)
+
+
+def _guide(name: str) -> Sentence:
+    """A guide that something is about or square to: languages with cases do not use the nominative there."""
+    return Sentence("the guide {guide}", guide=Name(name))

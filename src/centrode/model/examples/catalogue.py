@@ -112,11 +112,13 @@ def _file(file_or_example: str | Path) -> Path | None:
     """The file that is meant; None where it is a built-in example."""
     path = Path(file_or_example)
     name = str(file_or_example)
-    if path.suffix == ".toml" or path.name != name or path.exists():
+    if path.suffix == ".toml" or path.name != name or path.is_file():
         return path
     names = (*example_names(), *example_names("cam"))
-    if name in names:
+    if name in names:  # a folder of this name, such as one of results, does not hide it
         return None
+    if path.exists():
+        return path
     near = likely(name, names)
     raise InputError(
         value_text(name)[1:-1],

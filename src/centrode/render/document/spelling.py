@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.locale import coordinate_separator
+from centrode.locale import chosen_language, coordinate_separator
 from centrode.quantities import DEGREES, spelled_unit, with_unit
 from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number
@@ -31,6 +32,7 @@ from centrode.sheets.texts import (
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Column
 
+TANGENT = re.compile(r"\b(arc)?tan\b")
 ROUNDING = 1e-12
 """What is below this share of the greatest of a column is zero."""
 
@@ -114,9 +116,11 @@ class DocumentSpelling(Spelling):
             return spell_symbolic(leaf, self._letters(leaf))
         match leaf:
             case str():
-                return leaf
+                return spelled_functions(leaf)
             case Expression(notation, values):
-                return notation.format(**{name: self.mathematics(value) for name, value in values.items()})
+                return spelled_functions(notation).format(
+                    **{name: self.mathematics(value) for name, value in values.items()}
+                )
             case Number():
                 size, label = self._size(leaf)
                 if leaf.unit_hidden or not label:
@@ -159,6 +163,11 @@ class DocumentSpelling(Spelling):
     def of_column(self, column: Column) -> Numbers:
         """How the numbers of a column are spelled: in the units of the display, or in SI."""
         return in_si(self.numbers) if column.unit_fixed else self.numbers
+
+
+def spelled_functions(notation: str) -> str:
+    """Mathematics with the names of functions that readers of the language write: tg and arctg, but tan in English."""
+    return notation if chosen_language() == "en" else TANGENT.sub(r'op("\1tg")', notation)
 
 
 def shorten(mantissa: str, digits: int) -> str:

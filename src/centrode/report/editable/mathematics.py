@@ -22,7 +22,9 @@ INDENT = 4
 _STRING = re.compile(r'"((?:[^"\\]|\\.)*)"')
 _ESCAPE = re.compile(r"\\u\{([0-9a-fA-F]+)\}|\\(.)")
 _DECIMAL = re.compile(r"(\d+),(\d+)(°?)")
-_PLACE = re.compile(r"\\(mathit|mathrm)\{\\text\{(zq[a-z]+)\}\}|\\text\{ ?(zq[a-z]+) ?\}")
+_PLACE = re.compile(
+    r"\\(mathit|mathrm)\{\\text\{(zq[a-z]+)\}\}|\\text\{ ?(zq[a-z]+) ?\}|\\operatorname\{(zq[a-z]+)\}"
+)
 _MENDED = (
     (re.compile(r"\{\\overset\{\\rightarrow\}\{(\w|\\\w+)\}\}"), r"\\vec{\1}"),
     (re.compile(r"\{\^\\circ\}"), r"^{\\circ}"),
@@ -158,7 +160,13 @@ def _latex(inlines: Sequence[Mapping[str, object]], strings: Sequence[str]) -> s
     text = str(latex[1])
     for pattern, replacement in _MENDED:
         text = pattern.sub(replacement, text)
-    return _PLACE.sub(lambda found: _string(strings[_number(found[2] or found[3])], found[1] or ""), text)
+
+    def string(found: re.Match[str]) -> str:
+        kind, letters, word, function = found.groups()
+        text = strings[_number(letters or word or function)]
+        return f"\\operatorname{{{text}}}" if function else _string(text, kind or "")
+
+    return _PLACE.sub(string, text)
 
 
 def _string(text: str, kind: str) -> str:
