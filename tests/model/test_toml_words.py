@@ -53,6 +53,22 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
             "b = 1\na = -3,05 # m",
             "line 2, column 7: not TOML: decimals have a point, not a comma; write -3.05",
         ),
+        (
+            "[links.O1А]",
+            'А in "O1А" only looks like a Latin letter; type O1A with the Latin keyboard layout, or put the name in'
+            ' quotes: "O1А"',
+        ),
+        (
+            "points = { В = [0, 0] }",
+            'В in "В" only looks like a Latin letter; type B with the Latin keyboard layout, or put the name in'
+            ' quotes: "В"',
+        ),
+        (
+            "[links.рычаг]",
+            "column 8: not TOML: a name with letters other than a to z stands in quotes;"
+            ' put the name in quotes: "рычаг"',
+        ),
+        ("a = “3 mm”", 'column 5: not TOML: these quotes are typographic; type straight ones: "..."'),
         ("a = { b = 3,5, c = 1 }", "decimals have a point, not a comma; write 3.5"),
         ("a = { b = 3,5 }", "decimals have a point, not a comma; write 3.5"),
         ("a = { b = 3,5 mm }", 'decimals have a point, not a comma; write "3.5 mm"'),

@@ -34,8 +34,7 @@ from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.table_spelling import TableSpelling
 from centrode.render.terminal import sheet_text, table_text
-from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer, WheelPlayer
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import Abscissa, AxisLabel
 from centrode.sheets.sheet import Column, Illustration, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
+from centrode.model.look_alikes import in_latin
 from centrode.model.reading import DescriptionPart, input_error, value_text
 from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
 
@@ -63,6 +64,8 @@ _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NES
 _COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
 _NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
 _UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
+_WORD = re.compile(r"[\w-]+")
+TYPOGRAPHIC = tuple("“”„‟«»‘’‚")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -133,7 +136,8 @@ def _not_toml(message: str, text: str, where: str) -> InputError:
     if match and match.group(2):
         line, column = int(match.group(2)), int(match.group(3))
         # Lines as the parser counts them: `splitlines` would part a text at other characters too.
-        reason, repair = _mistyped_number(text.split("\n")[line - 1], column - 1) or (reason, repair)
+        written, at = text.split("\n")[line - 1], column - 1
+        reason, repair = _mistyped_number(written, at) or _unquoted_letter(written, at) or (reason, repair)
     else:
         lines = text.splitlines() or [""]
         line, column = len(lines), len(lines[-1]) + 1
@@ -156,6 +160,26 @@ def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
         written = value_text(f"{number_before.group(1)} {unit.group()}")
         return _("a number with a unit is a text in quotes"), _("write {number}").format(number=written)
     return None
+
+
+def _unquoted_letter(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped at typographic quotes, or in a bare key at a letter beyond a to z."""
+    if line[at : at + 1] in TYPOGRAPHIC:
+        return _("these quotes are typographic"), _('type straight ones: "..."')
+    key = next((one for one in _WORD.finditer(line) if one.start() <= at < one.end()), None)
+    is_key = key and (line.lstrip().startswith("[") or line[key.end() :].lstrip()[:1] in ("=", "."))
+    if not key or not is_key or key.group().isascii() or line[at].isascii():
+        return None
+    name = key.group()
+    latin = in_latin(name)
+    quoted = _('put the name in quotes: "{name}"').format(name=name)
+    if not latin.isascii():
+        return _("a name with letters other than a to z stands in quotes"), quoted
+    letters = ", ".join(dict.fromkeys(letter for letter in name if letter != in_latin(letter)))
+    return (
+        _('{letters} in "{name}" only looks like a Latin letter').format(letters=letters, name=name),
+        _("type {latin} with the Latin keyboard layout, or {quoted}").format(latin=latin, quoted=quoted),
+    )
 
 
 def _depth(value: object) -> int:
