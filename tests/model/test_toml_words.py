@@ -53,6 +53,21 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
             "b = 1\na = -3,05 # m",
             "line 2, column 7: not TOML: decimals have a point, not a comma; write -3.05",
         ),
+        (
+            "[links.O1А]",
+            "O1А is written with the Cyrillic letter А, the other names with Latin ones: type it with one keyboard"
+            " layout",
+        ),
+        (
+            "points = { В = [0, 0] }",
+            "В is written with the Cyrillic letter В, the other names with Latin ones: type it with one keyboard"
+            " layout",
+        ),
+        (
+            "[links.рычаг]",
+            "column 8: not TOML: a key without quotes has Latin letters, digits, hyphens and underscores only;"
+            ' write "рычаг"',
+        ),
         ("a = { b = 3,5, c = 1 }", "decimals have a point, not a comma; write 3.5"),
         ("a = { b = 3,5 }", "decimals have a point, not a comma; write 3.5"),
         ("a = { b = 3,5 mm }", 'decimals have a point, not a comma; write "3.5 mm"'),
