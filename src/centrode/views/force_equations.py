@@ -55,9 +55,7 @@ def step_equations(step: Step, sentence: Text) -> Iterator[Block]:
             yield Formula((_outcome(outcome),))
             if beside is not None:
                 arm = Number(beside[1], "m", ".5g", unit_fixed=True)
-                offset = Sentence(
-                    "{symbol} acts at an offset of {arm}", symbol=force_symbol(beside[0]), arm=arm
-                )
+                offset = Sentence("{symbol} acts at an offset of {arm}", symbol=Name(beside[0]), arm=arm)
                 yield Paragraph(offset, clause=True)
         case MomentsOfGroup(links, about, unknown, terms, outcome):
             yield Paragraph(
