@@ -43,12 +43,14 @@ class SchemePicture:
     title : what it shows, and where
     mechanism, motion : of which motion, without batch dimensions
     sample : of the motion, that is drawn
+    sliders : guides of sliders that no link is named for; they are numbered behind the links
     """
 
     title: Sentence
     mechanism: Mechanism
     motion: xarray.Dataset
     sample: int
+    sliders: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

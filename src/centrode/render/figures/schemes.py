@@ -49,7 +49,7 @@ MOST_LEVELS = 5
 CIRCLE = 2.0
 """Radius of the circle of a link's number, in the size of the signs."""
 DIMENSION = "dimension"
-"""Name of the lines on which dimensions are written."""
+"""Name of the lines of dimensions, which texts keep clear of."""
 SAME = 1e-9
 """Part of the extent by which coordinates differ that are the same."""
 
@@ -61,6 +61,12 @@ def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     figure = Figure(figsize=(size[0] + KEY, size[1]))
     axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + KEY), 1.0))
     tags = list(_draw(axes, scene, picture.sample, display))
+    sliders = picture.sliders if isinstance(scene, LinkageScene) else ()
+    numbers = dict(enumerate(sliders, start=len(scene.mechanism.links) + 1))
+    points = {guide.id: guide.point for guide in scene.mechanism.guides}
+    for number, guide in numbers.items():
+        place = scene.at(picture.sample)[points[guide]]
+        _write_number(axes, place + scene.sign * np.array([3.0, 3.0]), number)
     axes.set_axis_off()
     solid = list(
         arcs_on_paper(scene, picture.sample) if isinstance(scene, Globe) else lines(scene, picture.sample)
@@ -73,6 +79,13 @@ def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     key = frame * isinstance(scene, LinkageScene) + [
         (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
         for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
+    ]
+    key += [
+        (
+            Line2D([], [], color=INK, linewidth=1.2),
+            f"{number}  " + _("slider {point}").format(point=plain(guide)),
+        )
+        for number, guide in numbers.items()
     ]
     write_legend(axes, key, inches=size[1] - 0.2)
     return figure
@@ -256,11 +269,11 @@ def _chain(axes: Axes, places: Sequence[Array], axis: int, base: float, scene: L
         if axis:
             head[0] = place[0] - 3.0 * scene.sign
         if head[1 - axis] > foot[1 - axis]:
-            axes.plot(*np.array([foot, head]).T, color=MUTED, linewidth=0.5, zorder=1.2)
+            axes.plot(*np.array([foot, head]).T, color=MUTED, linewidth=0.5, zorder=1.2, gid=DIMENSION)
         tick = np.array([[-stroke, -stroke], [stroke, stroke]])
         centre = np.array(place)
         centre[1 - axis] = base
-        axes.plot(*(centre + tick).T, color=GROUND, linewidth=1.0, zorder=1.3)
+        axes.plot(*(centre + tick).T, color=GROUND, linewidth=1.0, zorder=1.3, gid=DIMENSION)
     for first, second in pairwise(known):
         ends = np.array([first, second])
         ends[:, 1 - axis] = base
