@@ -171,6 +171,12 @@ def test_rows_that_are_refused(rows: list[dict[str, object]], message: str) -> N
     assert message in str(refused.value)
 
 
+@pytest.mark.parametrize("header", ["variant", "вариант", "Варіант"])
+def test_names_stand_in_a_column_with_a_header_in_any_language(header: str) -> None:
+    assert [one.name for one in read_variants(WORKED, [{header: "7а", "l2": 1.0}])] == ["7а"]
+
+
 def test_links_with_coordinates_have_no_length() -> None:
-    with pytest.raises(ct.InputError, match="link AB has no length, its points have coordinates"):
+    complaint = "link AB has no length, its points have coordinates; name one of them: links.AB.points.S2.x"
+    with pytest.raises(ct.InputError, match=complaint):
         read_variants(ct.example("six-bar-press"), [{"variant": 1, "l2": 1.0}])

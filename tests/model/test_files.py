@@ -141,6 +141,23 @@ def test_tables_of_drives_lie_beside_the_file(tmp_path: Path) -> None:
         read_mechanism(tmp_path / "press.toml")
 
 
+def test_tables_of_spreadsheets_with_decimal_commas_are_read(tmp_path: Path) -> None:
+    """What spreadsheets of countries with decimal commas save as CSV: semicolons, and a byte-order mark."""
+    (tmp_path / "press.toml").write_text(
+        FOUR_BAR.replace("speed = 1", 'table = "crank.csv"'), encoding="utf-8"
+    )
+    table = tmp_path / "crank.csv"
+    table.write_text(
+        "час [ms];кут [deg]\r\n0;0\r\n500;90,5\r\n1000;360\r\n", encoding="utf-8-sig", newline=""
+    )
+    rows = read_mechanism(tmp_path / "press.toml").drives[0].table or ()
+    assert [time for time, _ in rows] == [0, 0.5, 1]
+    assert [value for _, value in rows] == pytest.approx([0, math.radians(90.5), 2 * math.pi], rel=4e-16)
+    table.write_text("0;0\n1;2;3\n", encoding="utf-8")
+    with pytest.raises(InputError, match="has 3 values"):
+        read_mechanism(tmp_path / "press.toml")
+
+
 def test_placed_is_written_with_its_place() -> None:
     mechanism = parse_mechanism(FULL)
     assert isinstance(mechanism.frame.points["D"], Placed)

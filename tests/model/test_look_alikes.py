@@ -8,8 +8,10 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
+from centrode.locale import speaking
 from centrode.model.files import parse_mechanism
 from centrode.model.look_alikes import in_latin, look_alike, look_alike_pairs
+from centrode.model.reading import Problem, likely, read_choice
 
 RIGHT = """
 [frame.points]
@@ -39,6 +41,10 @@ def told(old: str, new: str) -> str:
         ct.check(parse_mechanism(RIGHT.replace(old, new, 1), "f.toml"))
     assert caught.value.exit_code == 2
     return str(caught.value)
+
+
+def test_a_name_is_near_another_whatever_its_letters() -> None:
+    assert likely("\u0410\u041e", ["OA", "BD"]) == likely("AO", ["OA", "BD"]) == 'did you mean "OA"?'
 
 
 def test_the_linkage_itself_is_right() -> None:
@@ -125,6 +131,33 @@ def test_latin_letters_among_cyrillic_names_are_named_too() -> None:
         )
 
 
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        # one name against one: either may be mistyped
+        (
+            ["\u0412"],
+            "B is written with the Latin letter B, \u0412, which looks the same, with Cyrillic ones: type both",
+        ),
+        # the guide's point has the letters of most names: the link's was mistyped
+        (
+            ["\u0412", "C", "D"],
+            "\u0412 is written with the Cyrillic letter \u0412, the other names with Latin ones: ",
+        ),
+    ],
+)
+def test_the_mistyped_one_of_two_names_that_look_alike_is_named(points: list[str], message: str) -> None:
+    piston = {"points": {point: [0.1 * place, 0] for place, point in enumerate(points)}}
+    with pytest.raises(InputError) as caught:
+        ct.Mechanism(
+            frame={"points": {"O": [0, 0]}},
+            links={"OA": {"length": 1}, "AB": {"length": 3}, "piston": piston},
+            guides=[{"point": "B", "through": "O", "direction": [1, 0], "link": "piston"}],
+            drives=[{"link": "OA", "speed": 1}],
+        )
+    assert message in str(caught.value)
+
+
 MOBILITY = "[[drives]]: 1 drive is given, but the mobility (by rank) is 3; "
 
 
@@ -164,5 +197,50 @@ def test_a_guide_that_holds_no_point_leaves_its_slide_loose() -> None:
     assert ct.check(ct.Mechanism(**parts, guides=[guide], assembly={"sides": {"B": "ahead"}})).mobility == 1
 
 
+LEVER: dict[str, object] = {
+    "frame": {"points": {"O": [0, 0], "D": [0, -2]}},
+    "links": {"OA": {"length": 1}, "lever": {"points": {"D": [0, 0], "B": [4, 0]}}, "BE": {"length": 1.5}},
+    "guides": [
+        {"point": "A", "on": "lever", "through": "D", "direction": [1, 0]},
+        {"point": "E", "through": [0, 1.6], "direction": [1, 0]},
+    ],
+    "drives": [{"link": "OA", "start": 0, "speed": 1}],
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"frame": {"points": {"O": [0, 0]}}},
+            "point D of link lever is joined to nothing: is it a point of the frame?",
+        ),
+        (
+            {
+                "guides": [
+                    {"point": "Q", "on": "lever", "through": "D", "direction": [1, 0]},
+                    LEVER["guides"][1],
+                ]
+            },
+            "no link has point Q of guide Q: is it spelled as in its link?",
+        ),
+    ],
+)
+def test_the_pivot_and_the_pin_of_a_slotted_lever_are_named(change: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        ct.check(ct.Mechanism(**(LEVER | change)))
+    assert str(caught.value).startswith(MOBILITY + message)
+
+
 def test_where_every_end_is_joined_no_point_is_named() -> None:
     assert told("[links.CD]", "[links.CE]\nlength = 1\n[links.ED]").endswith("constrain what moves freely")
+
+
+@pytest.mark.parametrize(
+    ("language", "typed", "meant"),
+    [("uk", "циклоїдальний", "cycloidal"), ("ru", "Модифицированный синусоидальный", "modified sine")],
+)
+def test_words_of_results_are_known_where_they_are_typed(language: str, typed: str, meant: str) -> None:
+    with speaking(language), pytest.raises(Problem) as caught:
+        read_choice(typed, ("uniform", "cycloidal", "modified sine"))
+    assert f'"{meant}"' in caught.value.repair

@@ -53,6 +53,21 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
             "b = 1\na = -3,05 # m",
             "line 2, column 7: not TOML: decimals have a point, not a comma; write -3.05",
         ),
+        (
+            "[links.O1А]",
+            "O1А is written with the Cyrillic letter А, the other names with Latin ones: type it with one keyboard"
+            " layout",
+        ),
+        (
+            "points = { В = [0, 0] }",
+            "В is written with the Cyrillic letter В, the other names with Latin ones: type it with one keyboard"
+            " layout",
+        ),
+        (
+            "[links.рычаг]",
+            "column 8: not TOML: a key without quotes has Latin letters, digits, hyphens and underscores only;"
+            ' write "рычаг"',
+        ),
         ("a = { b = 3,5, c = 1 }", "decimals have a point, not a comma; write 3.5"),
         ("a = { b = 3,5 }", "decimals have a point, not a comma; write 3.5"),
         ("a = { b = 3,5 mm }", 'decimals have a point, not a comma; write "3.5 mm"'),
@@ -61,7 +76,7 @@ def test_every_complaint_has_its_sentence(text: str, sentence: str) -> None:
         ("a = -3.5mm", 'a number with a unit is a text in quotes; write "-3.5 mm"'),
         ("a = { b = 3500 mm, c = 1 }", 'a number with a unit is a text in quotes; write "3500 mm"'),
         ("a = 60°", 'a number with a unit is a text in quotes; write "60 °"'),
-        ("a = 5 мм/с^2", 'a number with a unit is a text in quotes; write "5 мм/с^2"'),
+        ("a = 5 мм/с^2", 'a number with a unit is a text in quotes; write "5 mm/s^2"'),
         (
             "a = [\n  1e-3 m, 0\n]",
             'line 2, column 8: not TOML: a number with a unit is a text in quotes; write "1e-3 m"',
@@ -73,6 +88,23 @@ def test_decimal_commas_and_units_without_quotes_are_named(text: str, told: str)
     with pytest.raises(InputError) as caught:
         parse_mechanism(text, "press.toml")
     assert str(caught.value).startswith("press.toml, line")
+    assert str(caught.value).endswith(told)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "a = “60 mm”",
+            'line 1, column 5: not TOML: “ is not a quotation mark of TOML; write "60 mm" with straight quotes',
+        ),
+        ("a = [«б»]", 'not TOML: « is not a quotation mark of TOML; write "б" with straight quotes'),
+        ("a = „Прес“", 'not TOML: „ is not a quotation mark of TOML; write "Прес" with straight quotes'),
+    ],
+)
+def test_printed_quotes_are_named(text: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_mechanism(text, "press.toml")
     assert str(caught.value).endswith(told)
 
 

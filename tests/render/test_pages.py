@@ -17,9 +17,11 @@ import centrode as ct
 from boxes import boxes, outside, overlapping
 from centrode.analysis.graphic.checks import graphic_check
 from centrode.analysis.transmission import transmission_results
-from centrode.render.drawing.style import darkened, house_style
+from centrode.render.drawing.style import LEAST_POINTS, darkened, house_style
 from centrode.render.figures.files import save_figures
 from centrode.render.pages.page import (
+    COLUMN,
+    COLUMNS,
     CORNER,
     INCH,
     SIZE,
@@ -67,6 +69,21 @@ def test_no_text_covers_another_or_leaves_the_page(
     assert outside(figure, measured) == []
     size = INCH * np.array(figure.get_size_inches())
     assert size == pytest.approx([210, 148])
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "drive crank: balancing moment or force: 260.31 N m, at the crank's own angle",
+        "привод кривошип: зрівноважувальний момент (сила): 260,31 Н·м за кутом повороту",
+        "моменты относительно полюса, приходящиеся на единицу скорости привода OA",
+    ],
+)
+def test_lines_of_the_column_stay_on_the_page(line: str) -> None:
+    page = new_page()
+    page.write_lines(COLUMN, 100.0, [line], letters=COLUMNS, step=4.0, size=LEAST_POINTS, indent=4)
+    assert outside(page.figure) == []
+    assert " ".join(text.get_text().strip() for text in page.overlay.texts) == line
 
 
 @pytest.mark.parametrize(

@@ -74,6 +74,9 @@ def opened(report: Report) -> docx.document.Document:
     return docx.Document(io.BytesIO(word_document(report)))
 
 
+CAPTION_WORDS = {"en": ("Figure", "Table"), "ru": ("Рисунок", "Таблица"), "uk": ("Рисунок", "Таблиця")}
+
+
 @pytest.mark.parametrize("language", ["en", "ru", "uk"])
 def test_word_has_the_formulas_headings_tables_and_language_of_the_report(language: str) -> None:
     report = crank_rocker(language)
@@ -95,6 +98,14 @@ def test_word_has_the_formulas_headings_tables_and_language_of_the_report(langua
     assert (page.page_width.mm, page.page_height.mm) == pytest.approx((210, 297), abs=0.1)
     numbers = re.findall(r"SEQ Formula", found.element.xml)
     assert len(numbers) == displayed
+    captions = [
+        "".join(text.text for text in one._p.iter(qn("w:t")))
+        for one in found.paragraphs
+        if one.style.name in ("Image Caption", "Table Caption")
+    ]
+    words = "|".join(CAPTION_WORDS[language])
+    assert captions
+    assert all(re.match(rf"(?:{words}) \d+\. \S", one) for one in captions)
 
 
 def test_another_reader_of_word_finds_the_same_formulas() -> None:

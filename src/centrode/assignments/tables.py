@@ -16,7 +16,7 @@ from centrode.model import reading
 from centrode.model.files import kind_at, with_values
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
-from centrode.model.reading import Problem, nearest, read_file, read_name, value_text
+from centrode.model.reading import Problem, csv_separator, nearest, read_file, read_name, value_text
 from centrode.model.units import read_quantity, unit_factor
 
 # Columns of a table of variants: which numbers of a mechanism a header names.
@@ -29,6 +29,8 @@ from centrode.model.units import read_quantity, unit_factor
 
 NAME = "variant"
 """Header of the column that names the variants."""
+NAMES = (NAME, "вариант", "варіант")
+"""The same in every language of the messages."""
 
 _BRACKET = re.compile(r"(.*?)\s*\[([^\[\]]*)\]\s*")
 _SHORT = re.compile(r"(l|phi|φ|omega|ω)(\d{1,4})(_0)?(?:_([a-zA-Z°]\w*))?")
@@ -64,7 +66,7 @@ def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColu
     found: list[VariantColumn | None] = []
     named: dict[str, str] = {}
     for header in headers:
-        column = None if header.strip().casefold() == NAME else _column(mechanism, header)
+        column = None if header.strip().casefold() in NAMES else _column(mechanism, header)
         for path in (NAME,) if column is None else column.paths:
             if path in named:
                 both = _("columns {one} and {other} refer to the same number")
@@ -125,7 +127,10 @@ def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...
     if kind == "length":
         if mechanism.links[link].length is None:
             what = _("link {link} has no length, its points have coordinates").format(link=link)
-            raise InputError("", what, _("name one of them: links.{link}.points.P.x").format(link=link))
+            repair = _("name one of them: links.{link}.points.{point}.x")
+            raise InputError(
+                "", what, repair.format(link=link, point=list(mechanism.links[link].coordinates)[-1])
+            )
         return (f"links.{link}.length",)
     if kind == "speed":
         if drive is None:
@@ -137,14 +142,14 @@ def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...
 
 
 def _hint(mechanism: Mechanism) -> str:
-    link = mechanism.link_names[-1]
+    names = mechanism.link_names
+    link = next((name for name in reversed(names) if mechanism.links[name].length is not None), names[-1])
     return _("write a path such as links.{link}.length, or l{n}, phi{n}_0 for the {n}th link").format(
-        link=link, n=len(mechanism.link_names)
+        link=link, n=names.index(link) + 1
     )
 
 
 Table: TypeAlias = str | Path | Sequence[Mapping[str, object]]
-SEPARATORS = ",;\t"
 FORMULAS = ("=", "+", "-", "@")
 """With these begins what a spreadsheet computes when it opens a summary."""
 
@@ -212,7 +217,7 @@ Row: TypeAlias = tuple[int, list[object]]
 def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
     """Headers and rows of a CSV file; blank lines count but hold nothing."""
     text = read_file(path)
-    separator = max(SEPARATORS, key=text.partition("\n")[0].count)
+    separator = csv_separator(text)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         lines = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
@@ -238,7 +243,7 @@ def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
             (
                 number,
                 [
-                    cells[k] if header.strip().casefold() == NAME else points[k]
+                    cells[k] if header.strip().casefold() in NAMES else points[k]
                     for k, header in enumerate(headers)
                 ],
             )

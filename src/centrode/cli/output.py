@@ -36,7 +36,9 @@ def folder_of(out: Path | None, source: str, kind: str) -> Path:
 
 
 def files_in(folder: Path, names: Sequence[str]) -> str:
-    """A paragraph that counts and names the files of a folder."""
+    """A paragraph that counts and names the files of a folder; of one file beside the reader just its name."""
+    if folder == Path() and len(names) == 1:
+        return _("wrote {file}").format(file=names[0])
     count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names))
     return paragraph(count.format(n=len(names), folder=folder) + ":", names)
 

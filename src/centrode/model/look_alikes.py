@@ -42,13 +42,29 @@ def look_alike_pairs(names: Iterable[str]) -> list[tuple[str, str]]:
 
 def letters_note(name: str, pairs: Sequence[tuple[str, str]]) -> str:
     """The sentence that says in which letters a name differs from others: those of pairs of look-alikes."""
+    letters, others = _letters(pairs)
+    return _(
+        "{name} is written with {letters}, the other names with {others}: type it with one keyboard layout"
+    ).format(name=name, letters=letters, others=others)
+
+
+def likeness_note(name: str, other: str) -> str:
+    """The sentence that says in which letters a name differs from one that looks like it, whichever is mistyped."""
+    letters, others = _letters([(name, other)])
+    return _(
+        "{name} is written with {letters}, {other}, which looks the same, with {others}: "
+        "type both with one keyboard layout"
+    ).format(name=name, other=other, letters=letters, others=others)
+
+
+def _letters(pairs: Sequence[tuple[str, str]]) -> tuple[str, str]:
+    """The letters in which names differ from others, with their alphabet, and the alphabet of the others."""
     apart = dict(
         (letter, other)
         for odd, common in pairs
         for letter, other in zip(odd, common, strict=True)
         if letter != other
     )
-    letters = ", ".join(apart)
     written = {
         "CYRILLIC": ngettext("the Cyrillic letter {letters}", "the Cyrillic letters {letters}", len(apart)),
         "GREEK": ngettext("the Greek letter {letters}", "the Greek letters {letters}", len(apart)),
@@ -56,11 +72,7 @@ def letters_note(name: str, pairs: Sequence[tuple[str, str]]) -> str:
     }
     others = {"CYRILLIC": _("Cyrillic ones"), "GREEK": _("Greek ones"), "LATIN": _("Latin ones")}
     first, second = next(iter(apart.items()))
-    return _(
-        "{name} is written with {letters}, the other names with {others}: type it with one keyboard layout"
-    ).format(
-        name=name, letters=written[_alphabet(first)].format(letters=letters), others=others[_alphabet(second)]
-    )
+    return written[_alphabet(first)].format(letters=", ".join(apart)), others[_alphabet(second)]
 
 
 def _alphabet(letter: str) -> str:

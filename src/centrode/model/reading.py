@@ -16,7 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, mo
 from centrode.errors import InputError
 from centrode.files.inputs import note
 from centrode.locale import _, ngettext
-from centrode.model.look_alikes import letters_note, look_alike
+from centrode.model.look_alikes import in_latin, letters_note, likeness_note, look_alike, look_alike_pairs
 
 # What a file may ask for at most: a text that asks for more is refused before anything is built from it.
 
@@ -117,10 +117,15 @@ def likely(name: str, known: Iterable[str]) -> str:
     names = list(known)
     alike = look_alike(name, names)
     if alike is not None:
-        return letters_note(name, [(name, alike)])
+        if len(names) == 1:  # either may be mistyped
+            return likeness_note(name, alike)
+        odd, common = next(pair for pair in look_alike_pairs([name, *names]) if name in pair)
+        return letters_note(odd, [(odd, common)])
     folded = [other for other in names if other.casefold() == name.casefold()]
     cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
-    close = folded or difflib.get_close_matches(name[:NAME_LENGTH], names, n=1, cutoff=cutoff)
+    looks = {in_latin(other): other for other in reversed(names)}
+    near = difflib.get_close_matches(in_latin(name[:NAME_LENGTH]), [*looks], n=1, cutoff=cutoff)
+    close = folded or [looks[other] for other in near]
     return _("did you mean {name}?").format(name=value_text(close[0])) if close else ""
 
 
@@ -198,6 +203,15 @@ def input_error(error: ValidationError, source: str) -> InputError:
     if first.repair:
         return InputError(first.where, first.what, first.repair + tail)
     return InputError(first.where, first.what + tail)
+
+
+CSV_SEPARATORS = ",;\t"
+"""What may part the columns of a CSV file: spreadsheets write semicolons where decimals have commas."""
+
+
+def csv_separator(text: str) -> str:
+    """What parts the columns of a CSV file: that of CSV_SEPARATORS which its first line has most of."""
+    return max(CSV_SEPARATORS, key=text.partition("\n")[0].count)
 
 
 def read_file(path: Path) -> str:
@@ -334,7 +348,9 @@ def read_choice(
     words = ", ".join(value_text(option) for option in options)
     repair = ""
     if isinstance(value, str):
-        meant = (other_names or {}).get(value.strip().casefold())
+        typed = value.strip().casefold()
+        spoken = {_(option).casefold(): option for option in options}  # as results print them
+        meant = (other_names or {}).get(typed) or spoken.get(typed)
         repair = likely(meant or value, options)
     raise Problem(
         _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair

@@ -15,6 +15,7 @@ from centrode.locale import _, mark
 from centrode.model import reading
 from centrode.model.look_alikes import in_latin, letters_note
 from centrode.model.reading import DescriptionPart, input_error, value_text
+from centrode.model.units import international
 from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
 
 # What the parser of TOML complains about, in sentences of ours: its own are for programmers, and English
@@ -64,6 +65,8 @@ _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NES
 _COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
 _NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
 _UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
+# What word processors make of quotation marks.
+_PRINTED_QUOTES = re.compile(r"([“”„‟«»‘’‚])([^“”„‟«»‘’‚\"']*+)")
 # A key as people write it who forget that TOML wants other letters than Latin ones in quotes.
 _BARE_KEY = re.compile(r"[\w-]++(?=[ \t]*+[.=\]])")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
@@ -137,7 +140,8 @@ def _not_toml(message: str, text: str, where: str) -> InputError:
         line, column = int(match.group(2)), int(match.group(3))
         # Lines as the parser counts them: `splitlines` would part a text at other characters too.
         written, at = text.split("\n")[line - 1], column - 1
-        reason, repair = _mistyped_number(written, at) or _bare_key(written, at) or (reason, repair)
+        found = _mistyped_number(written, at) or _printed_quotes(written, at) or _bare_key(written, at)
+        reason, repair = found or (reason, repair)
     else:
         lines = text.splitlines() or [""]
         line, column = len(lines), len(lines[-1]) + 1
@@ -152,14 +156,23 @@ def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
         if comma.start() < at <= comma.end():
             number = f"{comma.group(1)}.{comma.group(2)}"
             behind = _UNIT.match(line, comma.end())
-            written = value_text(f"{number} {behind.group()}") if behind else number
+            written = value_text(f"{number} {international(behind.group())}") if behind else number
             return _("decimals have a point, not a comma"), _("write {number}").format(number=written)
     number_before = _NUMBER.search(line, 0, at)
     unit = _UNIT.match(line, at)
     if number_before and unit:
-        written = value_text(f"{number_before.group(1)} {unit.group()}")
+        written = value_text(f"{number_before.group(1)} {international(unit.group())}")
         return _("a number with a unit is a text in quotes"), _("write {number}").format(number=written)
     return None
+
+
+def _printed_quotes(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped at a quotation mark as word processors print it."""
+    printed = _PRINTED_QUOTES.match(line, at)
+    if printed is None:
+        return None
+    reason = _("{mark} is not a quotation mark of TOML").format(mark=printed.group(1))
+    return reason, _("write {text} with straight quotes").format(text=value_text(printed.group(2)))
 
 
 def _bare_key(line: str, at: int) -> tuple[str, str] | None:

@@ -195,7 +195,7 @@ def _text_to_si(text: str, kind: str) -> float:
 
 def _international_repair(text: str, unit: str, kind: str) -> str:
     """Repair of a text whose unit is spelled in Cyrillic letters, as "140 мм"; empty for other texts."""
-    named = _international(unit)
+    named = international(unit)
     if named == unit or not named.isascii():
         return ""
     try:
@@ -206,7 +206,7 @@ def _international_repair(text: str, unit: str, kind: str) -> str:
     return _("units have their international names: write {number}").format(number=number)
 
 
-def _international(text: str) -> str:
+def international(text: str) -> str:
     """A text with the names that descriptions use in place of Cyrillic symbols of units."""
     for turns in ("об/мин", "об/хв"):
         text = text.replace(turns, SPELLED_OTHERWISE[turns])
@@ -268,7 +268,7 @@ def decimal_point_repair(text: str) -> str:
     comma = _DECIMAL_COMMA.fullmatch(text.strip())
     if comma is None:
         return ""
-    number = value_text(f"{comma.group(1)}.{_international(comma.group(2))}")
+    number = value_text(f"{comma.group(1)}.{international(comma.group(2))}")
     return _("decimals have a point, not a comma: write {number}").format(number=number)
 
 

@@ -23,6 +23,7 @@ from centrode.model.reading import (
     PLACED,
     FrozenMap,
     Problem,
+    csv_separator,
     likely,
     read_file,
     read_flag,
@@ -298,9 +299,10 @@ def _csv_rows(name: str, columns: TableColumns, folder: Path) -> Rows:
         what = _("{name} is not in the folder of the description").format(name=value_text(name))
         raise Problem(what, _("put the CSV file into the folder of the description"))
     try:
-        lines = [
-            row for row in csv.reader(read_file(folder / path).splitlines()) if any(c.strip() for c in row)
-        ]
+        text = read_file(folder / path)
+        separator = csv_separator(text)
+        rows = csv.reader(text.splitlines(), delimiter=separator)
+        lines = [row for row in rows if any(cell.strip() for cell in row)]
     except InputError as error:
         raise Problem(f"{value_text(name)}: {error.what}", error.repair) from None
     except csv.Error as error:
@@ -309,6 +311,8 @@ def _csv_rows(name: str, columns: TableColumns, folder: Path) -> Rows:
         ) from None
     factors = _header(lines[0], columns) if lines else None
     body = lines[1:] if factors else lines
+    if separator != ",":
+        body = [[cell.replace(",", ".") for cell in row] for row in body]
     _count(len(body))
     width = len(lines[0]) if lines and columns.fit(len(lines[0])) else columns.least
     units = factors or (None,) * width

@@ -187,7 +187,10 @@ def _announces(blocks: Sequence[Block]) -> bool:
         return not isinstance(others[0], ParagraphBlock | ReferenceBlock) or _announces(others)
     if not isinstance(block, ParagraphBlock) or not others or len(block.text) > ANNOUNCEMENT:
         return False
-    return not isinstance(others[0], ParagraphBlock | ReferenceBlock) or (
+    following = others[0]
+    if isinstance(following, Picture | Moving) and following.caption:
+        return False  # it stands where there is room, so the line stays with what is before it
+    return not isinstance(following, ParagraphBlock | ReferenceBlock) or (
         block.text.endswith(":") and _announces(others)
     )
 

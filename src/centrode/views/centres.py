@@ -65,7 +65,7 @@ MOST_MARKED = 6
 PRIMARY = ("hinge", "guide", "rolling")
 ALLOWED = float(np.finfo(float).eps) * (1 << 20)
 """Rounding times what lines that meet at an angle of 0.06 deg lose."""
-ABSENT, INFINITE, DEGREES = Name("-"), Name("∞ "), Name("°")
+ABSENT, INFINITE, DEGREES = Number(math.nan), Name("∞ "), Name("°")
 
 
 def sheet(results: CentreResults) -> Sheet:
@@ -126,7 +126,7 @@ def _table(results: CentreResults, centres: xr.Dataset, construction: Constructi
     bodies = tuple(pair_text(mechanism, first, second) for first, second in labels)
     spherical = mechanism.space == "sphere"
     places = tuple(_place(centres.isel(pair=number)) for number in range(len(pairs)))
-    speeds = tuple(map(_speed, centres["relative_speed"].values.tolist())) if spherical else ()
+    speeds = tuple(map(_speed, _speeds(centres))) if spherical else ()
     cases = tuple(Sentence(Case(int(number)).word) for number in centres["centre_case"].values)
     ways = tuple(NOTHING if step is None else step_text(step, len(names)) for step in steps)
     off = tuple(
@@ -145,7 +145,7 @@ def _table(results: CentreResults, centres: xr.Dataset, construction: Constructi
             *beside,
             Column("case", cases, head=Sentence("case")),
             Column("constructed from", ways, head=Sentence("constructed from")),
-            Column("off", off, head=Sentence("deviation")),
+            Column("off", off, head=Sentence("deviation"), detail=True),
         )
     )
 
@@ -168,6 +168,13 @@ def _place(centre: xr.Dataset) -> Text:
     if np.isfinite(direction).all():
         return Sentence("at infinity, {angle}", angle=Number(line_direction(direction.tolist()), "deg"))
     return place_text(centre["centre"].values)
+
+
+def _speeds(centres: xr.Dataset) -> list[float]:
+    """Relative angular velocities; what rounding has left of zero is zero."""
+    speeds = centres["relative_speed"].values
+    greatest = np.nanmax(np.abs(speeds), initial=0.0)
+    return np.where(np.abs(speeds) < 1e-12 * greatest, 0.0, speeds).tolist()  # type: ignore[no-any-return]
 
 
 def _speed(speed: float) -> Text:

@@ -11,6 +11,7 @@ from centrode.sheets.linkages import SchemePair, SchemePicture
 from centrode.sheets.sheet import Block, Check, Column, Fact, Illustration, Paragraph, Table
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Slanted, Text, Unit
 from centrode.views.instants import instant_title
+from centrode.views.schemes import slider_guides
 
 if TYPE_CHECKING:
     from centrode.analysis.redesign.single_changes import (
@@ -176,9 +177,10 @@ def pair_of_schemes(
             words=words,
             unit=Unit("m", shown=True),
         )
+    sliders = slider_guides(mechanism)
     schemes = (
-        SchemePicture(title, mechanism, dead.locked, 0),
-        SchemePicture(title, repaired, dead.repaired, 0, changed),
+        SchemePicture(title, mechanism, dead.locked, 0, sliders),
+        SchemePicture(title, repaired, dead.repaired, 0, sliders, changed),
     )
     return SchemePair(title, schemes)
 

@@ -209,7 +209,9 @@ def check_speed(speed: str) -> None:
 def on_sphere() -> NotComputedYet:
     """The refusal of a spherical mechanism."""
     return NotComputedYet(
-        "space", _("forces on the sphere are not computed yet"), _("describe a planar mechanism")
+        "space",
+        _("balancing is not available on the sphere"),
+        _("centrode reactions has the force and the moment on the frame"),
     )
 
 

@@ -16,7 +16,7 @@ from centrode.locale import _, ngettext
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe, draw_line
 from centrode.render.drawing.linkage import draw_mechanism
 from centrode.render.drawing.style import INK, LINK, MUTED, NAME, PAGE_WIDTH, SMALL, marked, pens
-from centrode.render.drawing.tags import Tag, lines, write_tags
+from centrode.render.drawing.tags import Tag, drive_arcs, lines, write_tags
 from centrode.render.drawing.texts import plain
 from centrode.render.drawing.window import carried_by, segments_of, widen, within
 from centrode.render.figures.curves import write_title
@@ -149,6 +149,7 @@ class _Drawing:
             self._placed_curve(curve, look)[::every] for look in looks for curve, every in framed if every
         ]
         places += [self._placed(mark).place[None] for mark in self.scene.marks]
+        places += drive_arcs(self.paper, initial_sample(self.paper, motion))
         room = (self.box[2] * PAGE_WIDTH - 0.3, self.box[3] * HEIGHT - 0.3)
         return widen(self.paper, np.concatenate([*places, np.empty((0, 2))]), room)
 

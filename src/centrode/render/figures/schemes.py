@@ -53,6 +53,10 @@ LEAST_SHARE = 0.045
 """Of the extent: a shorter piece of a link has no dimension of its own on paper, it is among the data."""
 MOST_LEVELS = 5
 """Points of the frame and guides at different places across or up, beyond which the frame has no dimensions."""
+CIRCLE = 2.0
+"""Radius of the circle of a link's number, in the size of the signs."""
+DIMENSION = "dimension"
+"""Name of the lines of dimensions, which texts keep clear of."""
 SAME = 1e-9
 """Part of the extent by which coordinates differ that are the same."""
 
@@ -64,7 +68,7 @@ def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     figure = Figure(figsize=(size[0] + KEY, size[1]))
     axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + KEY), 1.0))
     _draw_scheme(axes, scene, picture, display)
-    write_legend(axes, _key(scene), inches=size[1] - 0.2)
+    write_legend(axes, _key(scene, picture), inches=size[1] - 0.2)
     return figure
 
 
@@ -85,7 +89,7 @@ def pair_figure(pair: SchemePair, display: Display) -> Figure:
         )
     height = (levels[1] - levels[0]) / per_inch if levels else LEAST_HEIGHT
     width = sum(size[0] for _scene, size in drawn) + PAIR_GAP
-    key = _key(drawn[0][0])
+    key = _key(drawn[0][0], pictures[0])
     columns = columns_above([name for _line, name in key], width)
     below = MARK_INCHES + ROW_INCHES * -(-len(key) // columns)
     figure = Figure(figsize=(width, height + below))
@@ -114,20 +118,42 @@ def _draw_scheme(
     tags = [
         replace(tag, colour=INK) if tag.text in known else tag for tag in _draw(axes, scene, picture, display)
     ]
-    axes.set_axis_off()
     sample = picture.sample
-    solid = arcs_on_paper(scene, sample) if isinstance(scene, Globe) else lines(scene, sample)
-    circles = [_cross(np.array(text.get_position()), scene) for text in axes.texts]
-    write_tags(axes, tags, [*solid, *(stroke for cross in circles for stroke in cross)], [], TEXT, REACH)
+    if isinstance(scene, LinkageScene):
+        points = {guide.id: guide.point for guide in scene.mechanism.guides}
+        for number, guide in _slider_numbers(scene, picture):
+            place = scene.at(sample)[points[guide]]
+            _write_number(axes, place + scene.sign * np.array([3.0, 3.0]), number)
+    axes.set_axis_off()
+    solid = list(arcs_on_paper(scene, sample) if isinstance(scene, Globe) else lines(scene, sample))
+    for text in axes.texts:
+        solid += _cross(np.array(text.get_position()), scene)
+    solid += [_ends(line) for line in axes.lines if line.get_gid() == DIMENSION]
+    write_tags(axes, tags, solid, [], TEXT, REACH)
     return frozenset(tag.text for tag in tags)
 
 
-def _key(scene: Paper) -> list[tuple[Artist, str]]:
+def _slider_numbers(scene: Paper, picture: SchemePicture) -> Iterator[tuple[int, str]]:
+    """Numbers of the sliders that no link is named for, behind those of the links, with their guides."""
+    if isinstance(scene, LinkageScene):
+        yield from enumerate(picture.sliders, start=len(scene.mechanism.links) + 1)
+
+
+def _key(scene: Paper, picture: SchemePicture) -> list[tuple[Artist, str]]:
     """Entries of the key of the links."""
-    return [
+    frame: list[tuple[Artist, str]] = [(Line2D([], [], color=GROUND, linewidth=1.2), "0  " + _("frame"))]
+    links: list[tuple[Artist, str]] = [
         (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
         for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
     ]
+    sliders: list[tuple[Artist, str]] = [
+        (
+            Line2D([], [], color=INK, linewidth=1.2),
+            f"{number}  " + _("slider {point}").format(point=plain(guide)),
+        )
+        for number, guide in _slider_numbers(scene, picture)
+    ]
+    return frame * isinstance(scene, LinkageScene) + links + sliders
 
 
 def _on_paper(
@@ -159,9 +185,15 @@ def _on_paper(
 
 def _cross(place: Array, scene: Paper) -> list[tuple[Array, Array]]:
     """Strokes through the circle of a link's number, which texts keep clear of."""
-    radius = 1.6 * scene.sign
-    ways = radius * np.array([[1.0, 0.0], [0.0, 1.0]])
+    turns = 0.25 * np.pi * np.arange(4)
+    ways = CIRCLE * scene.sign * np.stack([np.cos(turns), np.sin(turns)], axis=1)
     return [(place - way, place + way) for way in ways]
+
+
+def _ends(line: Line2D) -> tuple[Array, Array]:
+    """Both ends of a straight line."""
+    ends = np.asarray(line.get_xydata())
+    return ends[0], ends[-1]
 
 
 def _held(scene: Paper, sample: int) -> Array:
@@ -190,10 +222,6 @@ def _draw(axes: Axes, scene: Paper, picture: SchemePicture, display: Display) ->
     places = scene.at(sample)
     for name, place in places.items():
         yield Tag(_flat(scene, place), plain(name))
-    if isinstance(scene, LinkageScene):
-        for name in scene.mechanism.frame.points:
-            if name in places and name in used_points(scene):
-                yield Tag(places[name] + scene.sign * np.array([3.2, -3.4]), "0")
     for number, name in enumerate(scene.mechanism.links, start=1):
         colour = CHANGED if name == picture.changed else INK
         for tag in _marked_link(axes, scene, sample, number, name, display):
@@ -324,14 +352,14 @@ def _chain(axes: Axes, places: Sequence[Array], axis: int, base: float, scene: L
         if axis:
             head[0] = place[0] - 3.0 * scene.sign
         if head[1 - axis] > foot[1 - axis]:
-            axes.plot(*np.array([foot, head]).T, color=MUTED, linewidth=0.5, zorder=1.2)
+            axes.plot(*np.array([foot, head]).T, color=MUTED, linewidth=0.5, zorder=1.2, gid=DIMENSION)
         tick = np.array([[-stroke, -stroke], [stroke, stroke]])
         centre = np.array(place)
         centre[1 - axis] = base
-        axes.plot(*(centre + tick).T, color=GROUND, linewidth=1.0, zorder=1.3)
+        axes.plot(*(centre + tick).T, color=GROUND, linewidth=1.0, zorder=1.3, gid=DIMENSION)
     for first, second in pairwise(known):
         ends = np.array([first, second])
         ends[:, 1 - axis] = base
-        axes.plot(*ends.T, color=GROUND, linewidth=0.6, zorder=1.3)
+        axes.plot(*ends.T, color=GROUND, linewidth=0.6, zorder=1.3, gid=DIMENSION)
         length = float(second[axis] - first[axis])
         yield Tag(ends.mean(axis=0), f"{length:.5g}")

@@ -99,7 +99,7 @@ class Page:
         wrapped = [
             part
             for line in lines
-            for part in textwrap.wrap(line, letters, subsequent_indent=indent * " ") or [""]
+            for part in textwrap.wrap(line, letters_of(line, letters), subsequent_indent=indent * " ") or [""]
         ]
         room = int((y - BELOW) / step)
         if len(wrapped) > room:
@@ -234,10 +234,18 @@ LINE = 3.8
 """From line to line of the column at the right [mm]."""
 COLUMNS = 49
 """Letters in a line of it."""
+CYRILLIC = re.compile(r"[\u0400-\u04ff]")
+NARROWER = 0.9
+"""Mean width of Latin letters over that of Cyrillic ones."""
 MARKS = {"normal": "ⁿ", "tangential": "ᵗ", "coriolis": "ᵏ", "driven": "ʳ", "sliding": "ʳ"}
 LETTERS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 GREEK = {"ω": r"\omega", "ε": r"\varepsilon", "μ": r"\mu"}
 TERM = re.compile(r"(?<!\w)([vapωεμP])([ⁿᵗᵏʳ]?)_([A-Za-zЀ-ӿ0-9′]+)")
+
+
+def letters_of(line: str, latin: int) -> int:
+    """How many letters of a line fit where so many Latin ones do."""
+    return int(NARROWER * latin) if CYRILLIC.search(line) else latin
 
 
 def flat(places: Sequence[complex]) -> Array:

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from centrode.locale import speaking
+from centrode.locale import _, speaking
 from centrode.render.document.blocks import Report
 from centrode.report.editable.pandoc import run_pandoc
 from centrode.report.editable.pictures import converted
@@ -28,6 +28,11 @@ NUMBER = 0.1
 HEADINGS = 4242
 """Number of the list that headings are numbered by; pandoc's own lists have others."""
 DECIMAL = re.compile(r"(\d+)\{,\}(\d+)")
+CAPTION = re.compile(
+    r"[^<>]*(</w:t></w:r><w:fldSimple w:instr=\"SEQ (Figure|Table) [^>]*>.{0,400}?</w:fldSimple>"
+    r"(?:<w:bookmarkEnd [^>]*/>)?<w:r><w:t[^>]*>):(?= )"
+)
+"""Pandoc's word for a figure or a table, and the colon behind its number."""
 
 
 def word_document(report: Report) -> bytes:
@@ -44,7 +49,8 @@ def word_document(report: Report) -> bytes:
             *(f"--reference-doc={REFERENCE}", "--output=-"),
             folder=folder,
         )
-    return _changed(made, FINISHED, {"word/footer-page.xml": FOOTER})
+    with speaking(report.language):
+        return _changed(made, FINISHED, {"word/footer-page.xml": FOOTER})
 
 
 def _numbered(latex: str, number: int) -> list[Element]:
@@ -116,6 +122,12 @@ def _numbering(text: str) -> str:
     return text.replace("</w:numbering>", f"{number}</w:numbering>")
 
 
+def _captions(text: str) -> str:
+    """Captions that begin as they do in PDF and on pages: pandoc's word is short in some languages, with a colon."""
+    words = {"Figure": _("Figure {number}"), "Table": _("Table {number}")}
+    return CAPTION.sub(lambda found: f"{words[found[2]].format(number='')}{found[1]}.", text)
+
+
 def _page(text: str, content: str) -> str:
     """The size and the margins of a page, and what stands on each."""
     start = text.rindex("<w:sectPr")
@@ -137,7 +149,7 @@ def _relations(text: str) -> str:
 
 FINISHED: Mapping[str, Callable[[str], str]] = {
     "word/numbering.xml": _numbering,
-    "word/document.xml": lambda text: _page(text, FOOT + PAGE),
+    "word/document.xml": lambda text: _captions(_page(text, FOOT + PAGE)),
     "[Content_Types].xml": _types,
     "word/_rels/document.xml.rels": _relations,
 }
