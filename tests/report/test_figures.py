@@ -105,9 +105,7 @@ def test_curves_are_described_by_their_axes_ranges_and_names() -> None:
         r"Horizontal axis: angle ω2 \\#. "
         r"""Vertical axis: $phi''$, ° from −0.25 to 2.5; $v_("BA")$, m/s from 0 to 3. Curves: AB, $x$ C."""
     )
-    assert spoken_text(described).startswith(
-        r"Horizontal axis: angle ω2 \#. Vertical axis: φ prime prime, °"
-    )
+    assert spoken_text(described).startswith(r"Horizontal axis: angle ω2 \#. Vertical axis: φ prime prime, °")
     upper.set_aspect("equal")
     lower.set_aspect("equal")
     assert describe_curves(figure) == ""  # a drawing

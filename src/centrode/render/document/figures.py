@@ -80,7 +80,7 @@ def describe_curves(figure: Figure) -> str:
 def _extent(axes: Any) -> tuple[str, str]:
     """The least and the greatest value of all curves, spelled; empty where there is none."""
     values = np.concatenate(
-        [np.asarray(line.get_ydata(), dtype=float).ravel() for line in axes.lines] or [[]]
+        [np.empty(0), *(np.asarray(line.get_ydata(), dtype=float).ravel() for line in axes.lines)]
     )
     values = values[np.isfinite(values)]
     if not values.size:
