@@ -1,4 +1,4 @@
-"""Make the picture of a report: its page in a browser beside two pages of its PDF, docs/images/report.png.
+"""Make the picture of a report: its page in a browser beside two pages of PDFs, docs/images/report.png.
 
 python -m tools.report_picture
 
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import typst
-from PIL import Image, ImageOps
+from PIL import Image, ImageChops, ImageOps
 from playwright.sync_api import sync_playwright
 
 import centrode as ct
@@ -23,13 +23,13 @@ from centrode.report.pdf_document import STYLE, Source
 FILE = Path(__file__).parents[1] / "docs" / "images" / "report.png"
 EXAMPLE = "six-bar-press"
 ON_PAGE = ("motion", "words")
-ON_PAPER = (("derivation", 1), ("force-polygons", 1))
-"""Chapters of which a page is shown, each with the index of that page (the first has the contents)."""
+ON_PAPER: tuple[tuple[tuple[str, ...] | None, int], ...] = ((None, 0), (("force-polygons",), 1))
+"""Chapters of two documents (all of the first), each with the index of the page that is shown."""
 SHARE = 0.7
 """Of the way through the motion, where the browser shows it."""
 HEIGHT, GAP, BORDER = 1020, 14, 1
 WIDTH = 800
-GROUND, EDGE = "#ECEEF1", "#C4C8CE"
+GROUND, EDGE = "#EEEEEE", "#C6C6C6"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -46,14 +46,15 @@ def page_in_browser() -> Image.Image:
         drive = window.locator("input[type=range]").first
         drive.fill(str(round(float(drive.get_attribute("max") or 0) * SHARE)))
         drive.blur()
+        window.evaluate("document.querySelector('main h2').scrollIntoView()")
         shown = window.screenshot()
         browser.close()
     return Image.open(io.BytesIO(shown)).convert("RGB")
 
 
-def page_of_paper(chapter: str, index: int) -> Image.Image:
-    """A page of the PDF with a chapter."""
-    source = Source(ct.report(ct.example(EXAMPLE), ct.ReportOptions(chapters=(chapter,))))
+def page_of_paper(chapters: tuple[str, ...] | None, index: int) -> Image.Image:
+    """A page of the PDF with these chapters, or of the compact report."""
+    source = Source(ct.report(ct.example(EXAMPLE), ct.ReportOptions(chapters=chapters)))
     files: Any = {"main": source.text.encode(), "style.typ": STYLE.read_bytes(), **source.files}
     pages: Any = typst.Compiler(ignore_system_fonts=True).compile(input=files, format="png", ppi=150)
     page = Image.open(io.BytesIO(pages[index])).convert("RGB")
@@ -73,9 +74,15 @@ def main() -> None:
         whole.paste(sheet, (left, GAP))
         left += sheet.width + GAP
     # all hues of the lines, few of the greys between them: the rule takes its colours from the greys alone
-    whole.quantize(method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-        FILE, format="png", optimize=True
-    )
+    few = whole.quantize(255, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).convert("RGB")
+    few.paste(GROUND, mask=ImageOps.invert(_mask(whole)))
+    few.quantize(256, dither=Image.Dither.NONE).save(FILE, format="png", optimize=True)
+
+
+def _mask(whole: Image.Image) -> Image.Image:
+    """White where there is a sheet, black where the ground is seen."""
+    ground = Image.new("RGB", whole.size, GROUND)
+    return ImageChops.difference(whole, ground).convert("L").point(lambda one: 255 if one else 0)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -24,6 +25,7 @@ from centrode.report.pdf_document import pdf_document
 from centrode.report.prose import prose_sections
 from centrode.report.spoken_formulas import LONGEST, spoken_formula, spoken_relations, spoken_text
 from centrode.report.texts import blocks_of
+from centrode.report.variants.files import write_variant_reports
 
 from .made import HOSTILE
 from .made import report as made_by_hand
@@ -72,6 +74,22 @@ def test_a_report_has_outline_language_and_descriptions(language: str) -> None:
 @pytest.mark.parametrize(("name", "language"), [("spherical-four-bar", "uk"), ("valve-cam", "ru")])
 def test_documents_of_the_sphere_and_of_cams_have_them(name: str, language: str) -> None:
     check_document(ct.report(name, ct.ReportOptions(full=False), language=language))
+
+
+def test_reports_and_answers_of_variants_have_them(tmp_path: Path) -> None:
+    topology = ct.parse_mechanism(
+        ct.mechanism_text(ct.example("slider-between-cranks")) + '\n[report]\nchapters = ["structure"]\n'
+    )
+    write_variant_reports(
+        topology, [{"variant": "long", "l2": 1.2}], tmp_path, formats=("pdf",), language="uk"
+    )
+    found = sorted(tmp_path.rglob("*.pdf"))
+    assert len(found) == 2
+    for file in found:
+        read = PdfFile(file.read_bytes())
+        assert (read.standards, read.language) == (BOTH, "uk")
+        assert read.outline
+        assert all(squeezed(title) in squeezed(read.text) for title in read.outline)
 
 
 def test_a_document_with_a_users_texts_has_them() -> None:

@@ -13,9 +13,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from centrode.locale import speaking
-from centrode.render.document.figures import FLAT, picture
+from centrode.render.document.figures import FLAT, describe_curves, picture
 from centrode.render.drawing.style import Decimals, house_style
 from centrode.render.figures.files import spell_decimals
+from centrode.report.spoken_formulas import spoken_text
 
 TITLE = "Press 2.5"
 
@@ -87,3 +88,24 @@ def test_letters_without_a_font_are_not_talked_about(
         picture(figure, "")
     assert not caplog.records
     assert not [one for one in recwarn if "Glyph" in str(one.message)]
+
+
+def test_curves_are_described_by_their_axes_ranges_and_names() -> None:
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    upper, lower = figure.subplots(2, 1)
+    upper.plot([0.0, 1.0], [-0.25, 2.5], label="AB")
+    upper.plot([0.0, 1.0], [np.nan, 0.0], label="$x$ C")
+    upper.set_ylabel(r"$\varphi''$, °")
+    upper.legend()
+    lower.plot([0.0, 1.0], [1e-17, 3.0])
+    lower.set_ylabel("${v}_{BA}$, m/s")
+    lower.set_xlabel(r"angle $\frac{\omega}{2}$ \#")
+    described = describe_curves(figure)
+    assert described == (
+        r"Horizontal axis: angle ω2 \\#. "
+        r"""Vertical axis: $phi''$, ° from −0.25 to 2.5; $v_("BA")$, m/s from 0 to 3. Curves: AB, $x$ C."""
+    )
+    assert spoken_text(described).startswith(r"Horizontal axis: angle ω2 \#. Vertical axis: φ prime prime, °")
+    upper.set_aspect("equal")
+    lower.set_aspect("equal")
+    assert describe_curves(figure) == ""  # a drawing

@@ -33,7 +33,7 @@ from centrode.render.document.blocks import (
 from centrode.render.document.numbering import number_blocks
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
-from centrode.report.spoken_formulas import spoken_formula, spoken_relations, spoken_system, spoken_text
+from centrode.report.spoken_formulas import spoken_formula, spoken_picture, spoken_relations, spoken_system
 from centrode.report.texts import parts_of
 
 # A report as the source of a typst document; everything a user wrote stands in it as a string.
@@ -159,7 +159,7 @@ class Source:
         name = f"pictures/{len(self.files) + 1}.svg"
         self.files[name] = block.svg
         where = f"{block.number}, floats: {'true' if floats else 'false'}"
-        words = quote(spoken_text(block.caption) or _("Figure"))
+        words = quote(spoken_picture(block))
         return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {words}, {where})"
 
     @_shown.register

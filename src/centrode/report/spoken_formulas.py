@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from centrode.locale import _, mark
-from centrode.render.document.blocks import FormulaBlock, SystemBlock
+from centrode.render.document.blocks import FormulaBlock, Picture, SystemBlock
 from centrode.report.mathematics import check_formula, relations_of
 from centrode.report.texts import parts_of
 
@@ -71,6 +71,13 @@ def spoken_text(marked: str) -> str:
     """A text whose mathematics, between dollar signs, is put into words."""
     return _shortened(
         "".join(spoken_formula(part.text) if part.mathematics else part.text for part in parts_of(marked))
+    )
+
+
+def spoken_picture(picture: Picture) -> str:
+    """What a figure shows, in words: its caption, and the curves that it has."""
+    return spoken_text(". ".join(part for part in (picture.caption, picture.description) if part)) or _(
+        "Figure"
     )
 
 

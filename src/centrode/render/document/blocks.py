@@ -137,7 +137,8 @@ class TableBlock:
 class Picture:
     """A figure as SVG, with its caption and its natural width [inches]; `to_scale` is kept at that width on paper.
 
-    Its `number` in the document counts from 1; it is 0 of a figure that has none.
+    Its `number` in the document counts from 1; it is 0 of a figure that has none. Its `description` tells those who do
+    not see it what curves it shows.
     """
 
     svg: bytes
@@ -145,6 +146,7 @@ class Picture:
     width: float
     to_scale: bool = False
     number: int = 0
+    description: str = ""
 
 
 @dataclass(frozen=True)

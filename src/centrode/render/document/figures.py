@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 import io
+import re
 import textwrap
+import unicodedata
 from typing import Any
 
+import numpy as np
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from centrode.render.document.blocks import Picture
+from centrode.locale import _
+from centrode.render.document.blocks import Picture, shown
+from centrode.render.document.numbers import spelled_number
+from centrode.render.document.typst import quote
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import METADATA, spell_decimals
 
 FLAT = {1: 0.36, 2: 0.44, 3: 0.52}
 """Height of curves by their width, by the number of panels above each other: of one panel three figures with their
 captions find room on a page, of three panels two and some text. More panels could not be read at such a height."""
+LETTER_WITH_INDEX = re.compile(
+    r"\{?(?P<letter>[A-Za-zΑ-ω]+)(?P<primes>'*)\}?(?:_(?:\{(?P<index>[^{}]+)\}|(?P<short>\w)))?"
+)
+NOISE = 1e-9
+"""Of the greatest value of curves: what is below it is zero."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12
 """Inches: a letter of a label, what titles and ticks take of a figure's height, and what is between panels."""
 
@@ -36,7 +47,66 @@ def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
         stream = io.BytesIO()
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(stream, metadata=METADATA["svg"])
-    return Picture(stream.getvalue(), caption, float(figure.get_figwidth()), to_scale)
+    words = describe_curves(figure)
+    return Picture(stream.getvalue(), caption, float(figure.get_figwidth()), to_scale, description=words)
+
+
+def describe_curves(figure: Figure) -> str:
+    """What a figure of curves plots, from where to where, and the names of its curves; nothing of a drawing.
+
+    Letters of its labels stand between dollar signs, as in captions.
+    """
+    panels = [axes for axes in figure.axes if axes.get_aspect() == "auto" and axes.name == "rectilinear"]
+    ranges = [(_label(axes.get_ylabel()), _extent(axes)) for axes in panels]
+    quantities = [
+        _("{quantity} from {least} to {greatest}").format(quantity=label, least=least, greatest=greatest)
+        for label, (least, greatest) in ranges
+        if label and least
+    ]
+    across = next((label for axes in reversed(panels) if (label := _label(axes.get_xlabel()))), "")
+    if not quantities or not across:
+        return ""
+    names: dict[str, None] = {}
+    for axes in panels:
+        legend = axes.get_legend()
+        names |= dict.fromkeys(_label(text.get_text()) for text in (legend.get_texts() if legend else ()))
+    plotted = _("Horizontal axis: {across}. Vertical axis: {quantities}.").format(
+        across=across, quantities="; ".join(quantities)
+    )
+    curves = _("Curves: {names}.").format(names=", ".join(names))
+    return f"{plotted} {curves}" if names else plotted
+
+
+def _extent(axes: Any) -> tuple[str, str]:
+    """The least and the greatest value of all curves, spelled; empty where there is none."""
+    values = np.concatenate(
+        [np.empty(0), *(np.asarray(line.get_ydata(), dtype=float).ravel() for line in axes.lines)]
+    )
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return "", ""
+    ends = np.array([values.min(), values.max()])
+    least, greatest = np.where(np.abs(ends) <= NOISE * np.abs(ends).max(), 0.0, ends).tolist()
+    return spelled_number(f"{least:.3g}"), spelled_number(f"{greatest:.3g}")
+
+
+def _label(text: str) -> str:
+    """A label whose letters, spelled for matplotlib, are mathematics of documents."""
+    parts = text.replace("\n", " ").split("$")
+    if len(parts) % 2 == 0:  # a dollar sign of its own
+        return shown(text)
+    return "".join(_letters(part) if place % 2 else shown(part) for place, part in enumerate(parts))
+
+
+def _letters(spelled: str) -> str:
+    """A letter with its primes and its index; what is more than that stands as its bare letters."""
+    plain = spelled.replace("\\mathrm", "").replace("\\var", "\\").replace(" ", "")
+    found = LETTER_WITH_INDEX.fullmatch(plain.replace("\\", ""))
+    if found is None:
+        return shown(re.sub(r"[{}^_\\]", "", re.sub(r"\\([a-z]+)", _greek, plain)))
+    below = found["index"] or found["short"]
+    index = f"_({quote(below)})" if below else ""
+    return f"${found['letter']}{index}{found['primes']}$"
 
 
 def _flatten(figure: Figure) -> None:
@@ -56,3 +126,11 @@ def _flatten(figure: Figure) -> None:
         label = one.get_ylabel().replace(" = ", "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}")
         if len(label) > room and "$" not in label:
             one.set_ylabel(textwrap.fill(label, max(room, 1), break_long_words=False))
+
+
+def _greek(found: re.Match[str]) -> str:
+    """The letter that a command of mathematics stands for; nothing where it is no letter."""
+    try:
+        return unicodedata.lookup(f"GREEK SMALL LETTER {found[1].upper()}")
+    except KeyError:
+        return ""

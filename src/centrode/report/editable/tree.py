@@ -30,6 +30,7 @@ from centrode.render.document.blocks import (
 from centrode.render.document.numbering import number_blocks
 from centrode.report.editable.mathematics import LatexFormulas, latex_formulas, spellings_of
 from centrode.report.pdf_document import picture_width
+from centrode.report.spoken_formulas import spoken_picture
 from centrode.report.texts import blocks_of, parts_of, texts_of
 
 Element: TypeAlias = dict[str, Any]
@@ -151,7 +152,7 @@ class Tree:
         self.pictures[name] = block.svg
         caption = self.inlines(block.caption)
         width = ("", (), (("width", f"{picture_width(block):.2f}in"),))
-        image = _node("Image", [width, [_text(_plain(block.caption))], [name, ""]])
+        image = _node("Image", [width, [_text(spoken_picture(block))], [name, ""]])
         if not caption:
             return [paragraph([image])]
         return [_node("Figure", [NO_ATTRIBUTES, _caption(caption), [_node("Plain", [image])]])]

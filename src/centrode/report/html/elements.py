@@ -26,6 +26,7 @@ from centrode.report.html.drawings import Drawings
 from centrode.report.html.mathematics import Formulas
 from centrode.report.html.stage import stage_of
 from centrode.report.mathematics import check_formula, fragments_of
+from centrode.report.spoken_formulas import spoken_picture
 from centrode.report.texts import parts_of, texts_of
 
 BREAK = "<wbr>"
@@ -144,8 +145,7 @@ class Elements:
 
     def drawing(self, block: Picture) -> str:
         """A figure alone."""
-        label = "".join(part.text for part in parts_of(block.caption))
-        return self.drawings.embedded(block.svg, label)
+        return self.drawings.embedded(block.svg, spoken_picture(block))
 
     def caption(self, block: Picture | Moving) -> str:
         """The number of a figure, and what it shows; nothing where nothing is said."""
