@@ -104,7 +104,9 @@ def test_tables_of_a_mechanism_that_locks_have_the_rows_it_reaches() -> None:
     said = [b.text for s in found.sections for b in s.blocks if isinstance(b, ParagraphBlock)]
     assert any("locks" in text and "1.7999 rad" in text for text in said)
     part = "0 rad to 1.7999 rad (103.13°) (dead position of group CB-BD (point B))"
-    assert any(f"Tables and plots cover what is reached: {part}." == text.replace(NARROW, " ") for text in said)
+    assert any(
+        f"Tables and plots cover what is reached: {part}." == text.replace(NARROW, " ") for text in said
+    )
 
 
 def test_rows_are_even_with_both_ends() -> None:
