@@ -109,10 +109,10 @@ def paths_of_lengths(mechanism: Mechanism) -> dict[str, str]:
         if link.length is not None:
             found[name] = f"links.{name}.length"
         elif mechanism.space == "plane" and len(link.coordinates) == 2:
-            origin, *others = sorted(link.coordinates.items(), key=lambda end: end[1] != (0.0, 0.0))
-            point, coordinates = others[0]
+            ends = link.coordinates.items()
+            (_name, origin), (point, coordinates) = sorted(ends, key=lambda end: end[1] != (0.0, 0.0))
             along = [axis for axis, value in zip("xy", coordinates, strict=True) if value]
-            if origin[1] == (0.0, 0.0) and len(along) == 1:
+            if origin == (0.0, 0.0) and len(along) == 1:
                 found[name] = f"links.{name}.points.{point}.{along[0]}"
     return found
 
