@@ -178,7 +178,7 @@ def test_a_cutter_larger_than_a_hollow_is_refused_with_the_greatest() -> None:
     assert 0.004 < most < math.inf
     follower_outlines(cam, 1e-5, most * (1 - 1e-9))
     with pytest.raises(
-        InputError, match=r"\[tool\] radius: a cutter of .* cuts away the hollow at .* take one"
+        InputError, match=r"\[tool\] radius: a cutter of .* cuts away the hollow at .* choose one"
     ):
         follower_outlines(cam, 1e-5, most * (1 + 1e-9))
     phi = np.linspace(0, TURN, 100_001)
@@ -188,7 +188,7 @@ def test_a_cutter_larger_than_a_hollow_is_refused_with_the_greatest() -> None:
 
 
 def test_too_many_points_are_refused() -> None:
-    with pytest.raises(InputError, match=r"chord_tolerance: .* asks for \d+ points"):
+    with pytest.raises(InputError, match=r"chord_tolerance: .* requires \d+ points"):
         follower_outlines(cams()["roller"], 1e-15)
 
 

@@ -188,7 +188,7 @@ def test_an_unsymmetric_arc_is_mirrored_at_both_ends() -> None:
 
 
 def test_mirror_images_that_do_not_close_are_refused_with_the_nearest_that_does() -> None:
-    with pytest.raises(InputError, match="an arc of 50 deg do not close; take 45 deg"):
+    with pytest.raises(InputError, match="an arc of 50 deg do not close; use 45 deg"):
         mirror_arc(working_arc(paper_path(), half=math.radians(50)))
 
 

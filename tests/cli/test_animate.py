@@ -28,7 +28,7 @@ def frames(path: Path) -> tuple[int, tuple[int, int], int]:
 def test_a_gif_of_an_example(centrode: Centrode, folder: Path) -> None:
     done = centrode("animate", "crank-rocker", "--frames", "6", "--duration", "1.5", "--size", "160x120")
     assert (done.code, done.err) == (0, "")
-    assert done.rows["frames"] == "6, 4 a second: 1.5 s"
+    assert done.rows["frames"] == "6, 4 per second: 1.5 s"
     assert done.rows["pixels"] == "160 x 120"
     assert done.rows["loop"] == "round, without a jump"
     assert "wrote crank-rocker.gif" in done.out

@@ -63,7 +63,7 @@ def arc(folder: Path) -> Path:
             "40 deg to 50 deg in 1 s",
         ),
         (["reactions", "arc.toml"], "0.174533 rad/s"),
-        (["reactions", "arc.toml", "--at", "45 deg"], "drive C gives        N·m"),
+        (["reactions", "arc.toml", "--at", "45 deg"], "drive C, balancing   N·m"),
         (["reduce", "arc.toml", "--from", "40 deg", "--to", "50 deg"], "0.174533 rad/s"),
         (["limits", "arc.toml", "--about", "50 deg"], "60 deg, limit of group AB-BC (point B)"),
         (["rotatability", "arc.toml"], "C = 60 deg"),

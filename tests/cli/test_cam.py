@@ -72,7 +72,7 @@ def test_the_example_is_printed(centrode: Centrode, folder: Path) -> None:
 def test_terms_and_samples_are_those_asked_for(centrode: Centrode, cam: Path) -> None:
     done = centrode("cam", "cam.toml", "--terms", "40", "--samples", "7")
     assert done.code == 0
-    assert "cut after a_40" in done.out
+    assert "truncated after a_40" in done.out
     table = done.out.splitlines()[-7:]
     assert [line.split()[0] for line in table] == ["0", "15", "30", "45", "60", "75", "90"]
 

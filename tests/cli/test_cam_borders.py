@@ -58,7 +58,7 @@ def test_both_stalls_are_told(centrode: Centrode, folder: Path) -> None:
     assert done.code == 3
     assert f"the follower stalls at -{at:.9g} deg and {at:.9g} deg" in done.err
     # neither of the two samples lies on the path: there is nothing to compare or to draw, and no failure
-    assert "cut after a_20: no sample to compare it at" in done.out
+    assert "truncated after a_20: no sample to compare it at" in done.out
     assert "nan" not in done.out and "Warning" not in done.err
 
 
@@ -90,7 +90,7 @@ def test_rollers_of_neighbouring_legs_do_not_overlap(centrode: Centrode, folder:
     written(folder, text.replace('"15 mm"', '"5 mm"'))
     done = centrode("cam", "cam.toml")
     assert done.code == 0
-    assert done.rows["neighbouring rollers"] == f"{1e3 * (room + 0.02):.6g} mm apart"
+    assert done.rows["neighbouring rollers"] == f"clearance {1e3 * (room + 0.02):.6g} mm"
 
 
 @pytest.mark.parametrize(

@@ -205,7 +205,7 @@ def test_undercut_is_refused_or_shown(
         ([('"8 mm"', '"41 mm"')], "", "[follower] offset: with an offset of 41 mm the follower's axis misses"),
         ([], '[tool]\nradius = "200 mm"\n', "[tool] radius: a cutter of 200 mm cuts away the hollow at 228.398 deg"),
         ([], '[tool]\nradius = "-1 mm"\n', "[tool]: radius must be positive"),
-        ([], '[study]\nchord_tolerance = "1e-12 mm"\n', "[study] chord_tolerance: a chord tolerance of 1e-12 mm asks"),
+        ([], '[study]\nchord_tolerance = "1e-12 mm"\n', "chord_tolerance: a chord tolerance of 1e-12 mm requires"),
         ([], '[study]\nchord_tolerance = "0 mm"\n', "[study]: chord_tolerance must be positive"),
         ([], '[study]\nshow_undercut = "yes"\n', "show_undercut"),
         ([], '[bounds]\nreturn_pressure_angle = "95 deg"\n', "[bounds]: return_pressure_angle must be smaller"),

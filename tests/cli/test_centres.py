@@ -160,7 +160,7 @@ def test_centrodes_of_links_against_each_other(centrode: Centrode, folder: Path)
         "--out", "r", "--no-figures",
     )  # fmt: skip
     assert done.code == 0, done.err
-    assert done.rows["bodies"] == "DB against OA"
+    assert done.rows["bodies"] == "DB relative to OA"
     assert sorted(path.name for path in (folder / "r").iterdir()) == ["centrodes.csv", "centrodes.nc"]
 
 

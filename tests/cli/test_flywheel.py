@@ -71,7 +71,7 @@ def test_a_spherical_machine(centrode: Centrode, folder: Path) -> None:
     machine = "\n[machine]\nmean_speed = 2.94\nfluctuation = 0.05\n"
     (folder / "s.toml").write_text(example_text("spherical-crank-rocker-rigid") + machine)
     said = centrode("flywheel", "s.toml").rows
-    assert said["work of the loads"].startswith("-11.7352 J a cycle")
+    assert said["work of the loads"].startswith("-11.7352 J per cycle")
     done = centrode("flywheel", "spherical-four-bar")
     assert (done.code, done.out) == (2, "")
     assert "[machine]: it is missing" in done.err
@@ -263,7 +263,7 @@ def test_only_masses_or_only_loads(centrode: Centrode, folder: Path) -> None:
     loads, machine = GIVEN.index("[[loads]]"), GIVEN.index("[machine]")
     (folder / "m.toml").write_text(GIVEN[:loads] + GIVEN[machine:])
     said = centrode("flywheel", "m.toml").rows
-    assert said["work of the loads"].startswith("0 J a cycle")
+    assert said["work of the loads"].startswith("0 J per cycle")
     assert said["mean driving moment"] == "0 N·m"
     (folder / "m.toml").write_text(without(GIVEN, *MASSES))
     done = centrode("flywheel", "m.toml")

@@ -264,7 +264,7 @@ def test_variants_with_reports(centrode: Centrode, folder: Path, table: Path, sh
     ("arguments", "message"),
     [
         (("--format", "pdf"), "--format: this option is used with --report only"),
-        (("--report", "--format", "docx"), "docx"),
+        (("--report", "--format", "odt"), "odt"),
         (("--report", "--format", ","), "no format is named"),
     ],
 )

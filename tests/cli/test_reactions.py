@@ -234,7 +234,7 @@ def test_several_drives_have_a_row_each(centrode: Centrode, folder: Path) -> Non
     (folder / "arm.toml").write_text(text)
     done = centrode("reactions", "arm.toml", "--samples", 5)
     assert done.code == 0, done
-    assert sum(line.startswith("drive ") and " gives " in line for line in done.out.splitlines()) == 2
+    assert sum(line.startswith("drive ") and " balancing " in line for line in done.out.splitlines()) == 2
     assert "speed of the drive" not in done.rows
 
 

@@ -36,6 +36,8 @@ ALLOWED = {
         "run",
         "equations",
     },
+    # every document opens with the scheme of its mechanism
+    "report/opening.py": {"centrode.views.schemes"},
     # a layer of a drawing at full size, not the topic
     "render/drafting/board.py": {"centrodes"},
     "render/drafting/sheet.py": {"centrodes"},

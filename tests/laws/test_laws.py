@@ -141,7 +141,7 @@ def test_outside_the_table_there_is_nothing() -> None:
         ((0.0,), (1.0,), "at least two rows"),
         ((), (), "at least two rows"),
         ((0.0, 1.0), (1.0,), "at least two rows"),
-        ((0.0, 1.0, 1.0), (0.0, 1.0, 2.0), "row 3 does not: 1.0, then 1.0"),
+        ((0.0, 1.0, 1.0), (0.0, 1.0, 2.0), "at row 3: 1.0, then 1.0"),
         ((0.0, math.nan), (0.0, 1.0), "finite"),
         ((0.0, 1.0), (0.0, math.inf), "finite"),
         ((0.0, 1e-300, 2e-300, 3e-300), (0.0, 1.0, -1.0, 1.0), "too close"),

@@ -49,7 +49,7 @@ def test_every_chapter_is_computed_anew_from_the_description_that_is_edited() ->
     changed = ct.parse_mechanism(report.description.text.replace("length = 1.0", "length = 2.6"))
     assert not ct.rotatability(changed).turns_fully
     assert ct.rotatability(ct.example("crank-rocker")).turns_fully
-    assert "2.6" in shown(book, "rotatability")
+    assert "6.6 m" in shown(book, "rotatability")
     assert "II" in shown(book, "check")
 
 
@@ -81,7 +81,7 @@ def test_what_users_wrote_is_neither_code_nor_mathematics(text: str) -> None:
     description = DescriptionText(f"title = '{text}'", "mechanism", (0.5,))
     chapters = (ChapterBlocks("structure", text, (own,)), ChapterBlocks("words", text, missing=text))
     book = nbformat.reads(
-        notebook_document(Report(text, text, "en", chapters, description)).decode(), as_version=4
+        notebook_document(Report(text, text, "en", chapters, description=description)).decode(), as_version=4
     )
     nbformat.validate(book)
     (code,) = (cell.source for cell in book.cells if cell.source.startswith("description = "))

@@ -37,15 +37,13 @@ _options, _writing = (
     "--out",
     type=click.Path(path_type=Path),
     metavar=mark("DIR"),
-    help=mark(
-        "Folder for the documents, or one document (note.docx); named after the mechanism if left out."
-    ),
+    help=mark("Folder for the documents, or one document (note.docx); by default named after the mechanism."),
 )
 @click.option(
     "--format",
     "formats",
     metavar=mark("KINDS"),
-    help=mark("Kinds of documents, separated by commas: html, pdf, docx, tex, ipynb; html,pdf if left out."),
+    help=mark("Kinds of documents, separated by commas: html, pdf, docx, tex, ipynb; html,pdf by default."),
 )
 @click.option(
     "--chapters",
@@ -69,9 +67,7 @@ _options, _writing = (
     "--full/--compact",
     "full",
     default=None,
-    help=mark(
-        "Everything there is to show, or the compact form; full for chosen chapters alone if left out."
-    ),
+    help=mark("The full or the compact form; compact by default, and full for chosen chapters alone."),
 )
 def report(
     description: str,

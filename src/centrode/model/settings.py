@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, PlainValidator
+from pydantic import AfterValidator, Field, PlainValidator, WrapSerializer
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -41,6 +41,9 @@ REACHABLE = "reachable"
 """The range that a drive reaches from its initial position."""
 
 Side = Literal["left", "right", "ahead", "behind"]
+
+AS_DICT = WrapSerializer(lambda entries, write: write(dict(entries)))
+"""Serialization of a `FrozenMap`: pydantic writes a mapping of models from a dict only."""
 
 
 def read_samples(value: object) -> int:
@@ -101,6 +104,7 @@ class Assembly(DescriptionPart):
         Mapping[str, Annotated[Side, choice("left", "right", "ahead", "behind")]],
         table(read_name, reading.POINTS),
         AfterValidator(FrozenMap[str, Side]),
+        AS_DICT,
     ] = FrozenMap({})
     continuation: Annotated[Literal["smooth", "keep"], choice("smooth", "keep")] = "smooth"
 
@@ -285,7 +289,10 @@ class ChapterText(DescriptionPart):
 
 
 ChapterTexts = Annotated[
-    Mapping[str, ChapterText], table(read_name, MOST_CHAPTERS), AfterValidator(FrozenMap[str, ChapterText])
+    Mapping[str, ChapterText],
+    table(read_name, MOST_CHAPTERS),
+    AfterValidator(FrozenMap[str, ChapterText]),
+    AS_DICT,
 ]
 
 

@@ -381,4 +381,4 @@ def _drive_lines(here: xarray.Dataset) -> Iterator[Text]:
     units = str(here["balancing"].attrs["units"]).split(", ")
     for k, name in enumerate(here["drive"].values.tolist()):
         value = Number(float(here["balancing"].values[k]), units[k % len(units)], ".5g")
-        yield Joined((Sentence("balancing moment or force of drive {name}", name=Name(name)), value), " ")
+        yield Joined((Sentence("drive {name}, balancing", name=Name(name)), value), " ")

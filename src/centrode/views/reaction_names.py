@@ -98,7 +98,7 @@ def reaction_text(reaction: ReactionSeries | BearingLoad) -> Text:
         case ReactionKind.ROLLING_TANGENTIAL:
             return Sentence("wheel {name}, tangential", name=name)
         case ReactionKind.BALANCING:
-            return Sentence("balancing moment or force of drive {name}", name=name)
+            return Sentence("drive {name}, balancing", name=name)
         case ReactionKind.FRICTION_MOMENT:
             return Sentence("{side}, moment of friction", side=side_text(names[0]))
         case ReactionKind.FRICTION_FORCE:
