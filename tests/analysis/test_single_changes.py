@@ -260,3 +260,22 @@ def test_the_dead_position_is_drawn_at_the_limit() -> None:
     a, b = (found.dead.locked.position.sel(point=name).values[0] for name in "AB")
     # half of the digits: a distance of rounding beside the limit moves the rod by its root
     assert b - a == pytest.approx((0.0, 0.8), abs=1e-7)
+
+
+def test_a_law_asks_for_the_range_of_its_values() -> None:
+    mechanism = four_bar(
+        0.06, 0.07, 0.05, 0.09, drives=[{"link": "OA", "start": 1.0, "law": "1.2*sin(t)"}], display=DISPLAY
+    )
+    mechanism = mechanism.model_copy(update={"study": ct.Study(**{"from": 0.0, "to": 6.2})})
+    found = rotatability_results(mechanism, complete=True)
+    assert found.single is not None and found.dead is not None
+    required = found.single.required
+    # the least and the greatest of 361 samples miss the extremes by less than half of the square of half a step
+    assert (required.low, required.high) == pytest.approx((-0.2, 2.2), abs=1.2 * (6.2 / 360) ** 2 / 8)
+    reach = math.sqrt(0.06**2 + 0.09**2 - 2 * 0.06 * 0.09 * math.cos(required.high))
+    change = by_path(found.single)["links.DB.length"]
+    assert change.bound == pytest.approx(reach - 0.07, abs=NODES * 0.09)
+    assert (ct.motion(change.repaired)["status"] == ct.Status.OK).all()
+    # the last sample before the limit
+    limit = math.acos((0.06**2 + 0.09**2 - 0.12**2) / (2 * 0.06 * 0.09))
+    assert 0.0 < limit - float(found.dead.locked["drive_value"][0, 0]) < 1.2 * 6.2 / 360

@@ -70,7 +70,7 @@ def single_blocks(found: SingleChanges, dead: DeadPosition | None, cause: Text) 
         yield Paragraph(Sentence("The mechanism locks at {place}: {cause}.", place=place, cause=cause))
     yield Paragraph(Sentence("Required: {motion}.", motion=_motion(found)))
     if not found.changes:
-        yield Paragraph(_no_change(found), clause=True)
+        yield Paragraph(Sentence("No change of one dimension alone was found that is sufficient."))
         return
     best = found.changes[0]
     yield Paragraph(
@@ -138,6 +138,8 @@ def _motion(found: SingleChanges) -> Text:
 
 
 def _no_change(found: SingleChanges) -> Text:
+    if not found.required.turn:
+        return Sentence("no change of one dimension alone was found, for {motion}", motion=_motion(found))
     return Sentence(
         "no change of one dimension alone was found, for {motion}; change several dimensions (--repair)",
         motion=_motion(found),

@@ -109,10 +109,10 @@ def paths_of_lengths(mechanism: Mechanism) -> dict[str, str]:
         if link.length is not None:
             found[name] = f"links.{name}.length"
         elif mechanism.space == "plane" and len(link.coordinates) == 2:
-            origin, *others = sorted(link.coordinates.items(), key=lambda end: end[1] != (0.0, 0.0))
-            point, coordinates = others[0]
+            ends = link.coordinates.items()
+            (_name, origin), (point, coordinates) = sorted(ends, key=lambda end: end[1] != (0.0, 0.0))
             along = [axis for axis, value in zip("xy", coordinates, strict=True) if value]
-            if origin[1] == (0.0, 0.0) and len(along) == 1:
+            if origin == (0.0, 0.0) and len(along) == 1:
                 found[name] = f"links.{name}.points.{point}.{along[0]}"
     return found
 
@@ -139,7 +139,7 @@ def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | Non
     unbounded = Varying(path, before, 0.0, 0.0, unit, scale)
     _check_varies(prepared, unbounded)
     low, high = (
-        _default_bounds(unbounded, is_length=_is_length(mechanism, path))
+        _default_bounds(unbounded, is_length=path in paths_of_lengths(mechanism).values())
         if bounds is None
         else _given_bounds(unbounded, bounds, mechanism.display)
     )
@@ -153,13 +153,12 @@ def _unit(mechanism: Mechanism, path: str) -> str:
 
 
 def _scale(prepared: Ready, path: str, before: float, unit: str) -> float:
-    if path.endswith((".length", ".ratio", ".radius")) or _is_length(prepared.mechanism, path):
+    if (
+        path.endswith((".length", ".ratio", ".radius"))
+        or path in paths_of_lengths(prepared.mechanism).values()
+    ):
         return abs(before)
     return 1.0 if unit == "rad" else float(prepared.kinematics.numbers.scale)
-
-
-def _is_length(mechanism: Mechanism, path: str) -> bool:
-    return path in paths_of_lengths(mechanism).values()
 
 
 def _default_bounds(one: Varying, *, is_length: bool = False) -> tuple[float, float]:
