@@ -1,6 +1,18 @@
 """Centrode: from the description of a mechanism to its motion, forces, equations, drawings and report.
 
-The public face stands in `__init__.pyi`, in reading order; each name is imported when it is first used.
+A mechanism is a file ("press.toml"), the name of a built-in one ("six-bar-press"), or a `Mechanism`:
+
+    import centrode as ct
+
+    ct.example_names()                        # the built-in mechanisms
+    ct.check("six-bar-press")                 # mobility, groups, order of solution
+    motion = ct.motion("six-bar-press")       # positions, velocities, accelerations: an xarray.Dataset
+    forces = ct.reactions("six-bar-press")    # forces in the joints
+    print(ct.summary(forces))                 # any result in words; ct.tables, ct.figures, ct.write
+    ct.write_report(ct.report("six-bar-press"), "report")
+
+`help(ct.motion)` explains one function; the commands of the terminal do the same (`centrode --help`). All names stand
+in reading order in `__init__.pyi`; each is imported when it is first used.
 """
 
 import lazy_loader

@@ -141,9 +141,9 @@ def test_inversions_of_the_slider_crank() -> None:
         for name in ("whitworth-quick-return", "shaper", "oscillating-cylinder")
     }
     assert kinds == {
-        "whitworth-quick-return": "crank and turning guide",
-        "shaper": "crank and swinging guide",
-        "oscillating-cylinder": "crank and swinging guide",
+        "whitworth-quick-return": "crank and slotted lever, the lever turns fully",
+        "shaper": "crank and slotted lever",
+        "oscillating-cylinder": "crank and slotted lever",
     }
 
 

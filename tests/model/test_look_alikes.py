@@ -164,5 +164,40 @@ def test_a_guide_that_holds_no_point_leaves_its_slide_loose() -> None:
     assert ct.check(ct.Mechanism(**parts, guides=[guide], assembly={"sides": {"B": "ahead"}})).mobility == 1
 
 
+LEVER: dict[str, object] = {
+    "frame": {"points": {"O": [0, 0], "D": [0, -2]}},
+    "links": {"OA": {"length": 1}, "lever": {"points": {"D": [0, 0], "B": [4, 0]}}, "BE": {"length": 1.5}},
+    "guides": [
+        {"point": "A", "on": "lever", "through": "D", "direction": [1, 0]},
+        {"point": "E", "through": [0, 1.6], "direction": [1, 0]},
+    ],
+    "drives": [{"link": "OA", "start": 0, "speed": 1}],
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"frame": {"points": {"O": [0, 0]}}},
+            "point D of link lever is joined to nothing: is it a point of the frame?",
+        ),
+        (
+            {
+                "guides": [
+                    {"point": "Q", "on": "lever", "through": "D", "direction": [1, 0]},
+                    LEVER["guides"][1],
+                ]
+            },
+            "no link has point Q of guide Q: is it spelled as in its link?",
+        ),
+    ],
+)
+def test_the_pivot_and_the_pin_of_a_slotted_lever_are_named(change: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        ct.check(ct.Mechanism(**(LEVER | change)))
+    assert str(caught.value).startswith(MOBILITY + message)
+
+
 def test_where_every_end_is_joined_no_point_is_named() -> None:
     assert told("[links.CD]", "[links.CE]\nlength = 1\n[links.ED]").endswith("constrain what moves freely")

@@ -15,8 +15,8 @@ import centrode as ct
 from centrode.analysis.representative_position import representative_sample
 from centrode.errors import InputError, Status
 from centrode.render.document.blocks import CheckBlock, Moving, ParagraphBlock, Picture, Report, TableBlock
-from centrode.report.html.elements import blocks_of
 from centrode.report.pdf_document import STYLE, Source
+from centrode.report.texts import blocks_of
 
 NAME = "crank-rocker"
 

@@ -311,7 +311,7 @@ def test_a_cam_that_no_radius_makes_is_told() -> None:
         "base-radius",
     ]
     (failed,) = blocks_of(made.chapters[3], CheckBlock)
-    assert not failed.holds and "the speed of the lift jumps" in failed.text
+    assert not failed.holds and "the velocity of the lift jumps" in failed.text
 
 
 def test_a_follower_that_jumps_is_told() -> None:

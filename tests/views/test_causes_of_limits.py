@@ -90,7 +90,7 @@ def test_names_come_out_character_by_character(other: str, hostile: str, tmp_pat
 def test_lengths_of_a_record_are_in_si(tmp_path: Path) -> None:
     """Whatever the display says: what is printed in millimetres is written in metres."""
     arm = ct.rotatability(ct.example("excavator-arm"))
-    assert "(O and K are 710.634 mm apart)" in ct.summary(arm)
+    assert "(distance of O and K: 710.634 mm)" in ct.summary(arm)
     data = recorded(arm, tmp_path)
     assert data["limits"][0]["cause"].endswith("(distance of O and K: 0.710634 m)")
     assert data["four_bars"][0]["inequality"].startswith("1.04426 m > 1.02407 m: ")

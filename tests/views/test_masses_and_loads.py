@@ -38,4 +38,4 @@ def test_names_come_out_character_by_character(hostile: str) -> None:
     assert masses[0][:2] == [hostile, "2,5"]
     assert loads[0] == [f"{hostile} too", "момент", hostile, "2.5*t"]
     assert loads[1][3] == "1,25"
-    assert machine[0][1] == "1,5 rad/s" and machine[1][0] == hostile
+    assert machine[0][1] == "1,5 рад/с" and machine[1][0] == hostile

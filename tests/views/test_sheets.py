@@ -34,8 +34,7 @@ from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.table_spelling import TableSpelling
 from centrode.render.terminal import sheet_text, table_text
-from centrode.sheets.linkages import MotionPlayer
-from centrode.sheets.outlines import CamPlayer, WheelPlayer
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import Abscissa, AxisLabel
 from centrode.sheets.sheet import Column, Illustration, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
@@ -402,7 +401,8 @@ def test_names_in_a_graphic_check_come_out_character_by_character(hostile: str) 
     chapter = document_chapter("graphic", DIAGRAMS.view(results), Numbers(mechanism.display))
     (table,) = [
         block
-        for block in chapter.sections[0].blocks
+        for section in chapter.sections
+        for block in section.blocks
         if isinstance(block, blocks.TableBlock) and len(block.head) == 6
     ]
     assert any(quote(hostile) in row[0] for row in table.rows)

@@ -24,7 +24,7 @@ Besides the frame the mechanism has 5 moving links: OA, AC, CB, BD, slider C. Hi
 Hinged to each other: OA and AC in A, CB and BD in B. A slider, hinged to AC and CB in C, moves along a fixed \
 horizontal guide.
 
-Crank OA is driven: it turns about O at a constant 1 rad/s. Coupler AC moves the slider in C to and fro along its \
+Crank OA is driven: it turns about O at a constant 1 rad/s. Coupler AC reciprocates the slider in C along its \
 guide; its stroke is 1.279 m. Coupler CB passes the motion on to rocker BD, which swings about D through 29.7°.
 
 The mobility is 1: one drive determines the position of every link. The drive can turn fully."""
@@ -119,7 +119,7 @@ def test_cranks_and_rockers_are_told_by_their_motion() -> None:
         ("rack-and-pinion", 'Wheel "pinion" rolls without slip on a straight track of link "rack".'),
         ("scissor-lift", 'The slider in E moves along link "platform", which does not turn.'),
         ("rack-and-pinion", 'Link "pinion" is driven: it turns about O at a constant 180 deg/s.'),
-        ("rack-and-pinion", 'Link "rack" moves along its guide, by 125.7 mm in all.'),
+        ("rack-and-pinion", 'Link "rack" moves along its guide, by 125.7 mm in total.'),
         ("rolling-wheel-rod", "Coupler PB moves the slider in B along its guide, by 1885 mm in total."),
         ("geared-five-bar", "Crank OA is driven"),
         ("three-crank-parallelogram", "FE, hinged in F and E, is passive: without it"),

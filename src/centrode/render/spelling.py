@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
@@ -151,6 +152,10 @@ def filled_notation(relation: VectorNotation) -> str:
     return relation.notation.format(**numbers) if numbers else relation.notation
 
 
+GUIDE = re.compile(r"\bguide ([^()]+)(?=\))")
+"""A guide in the notation of constructions: "(∥ guide A)"."""
+
+
 class PlainSpelling(Spelling):
     """Plain text, as terminals print it: a decimal point in every language, degrees that can be typed again."""
 
@@ -202,7 +207,7 @@ class PlainSpelling(Spelling):
 
     def vectors(self, notation: str) -> str:
         """A relation of a construction on paper, in its own notation."""
-        return notation
+        return GUIDE.sub(lambda found: _("guide {guide}").format(guide=found[1]), notation)
 
     def symbolic(self, leaf: SymbolicLeaf) -> str:
         """A formula in letters, as one line."""

@@ -63,9 +63,11 @@ def _chapter(found: Sequence[tuple[str, CheckBlock]]) -> ChapterBlocks:
     count = ngettext("{n} check was made.", "{n} checks were made.", len(found)).format(n=len(found))
     verdict = _("All hold.") if good == len(found) else _("{n} of them hold.").format(n=good)
     words = (_("does not hold"), _("holds"))
+    told = _worst(found)
+    titles = ["", *(title for title, _check in told)]
     rows = tuple(
-        (str(number), shown(title), check.text, words[check.holds])
-        for number, (title, check) in enumerate(found, start=1)
+        (str(number), shown(title) if title != before else "", check.text, words[check.holds])
+        for number, (before, (title, check)) in enumerate(zip(titles, told, strict=False), start=1)
     )
     table = TableBlock(
         (_("No."), _("chapter"), _("what was verified"), _("verdict")),
@@ -73,5 +75,17 @@ def _chapter(found: Sequence[tuple[str, CheckBlock]]) -> ChapterBlocks:
         _("What was verified, by which second route, and how far the two are apart"),
         (True, False, False, False),
     )
-    blocks = (ParagraphBlock(f"{count} {verdict}"), table)
+    often = _("A check made at several instants is given once, with its greatest difference.")
+    sentences = [count, verdict, *([often] if len(told) < len(found) else [])]
+    blocks = (ParagraphBlock(" ".join(sentences)), table)
     return ChapterBlocks(NAME, _("Checks"), (SectionBlocks("", blocks),))
+
+
+def _worst(found: Sequence[tuple[str, CheckBlock]]) -> list[tuple[str, CheckBlock]]:
+    """Of the checks of a chapter that state the same the one that is farthest off; all that do not hold."""
+    worst: dict[tuple[str, str], tuple[str, CheckBlock]] = {}
+    for number, (title, check) in enumerate(found):
+        key = (title, check.kind if check.holds and check.kind else f"{number}")
+        if key not in worst or check.part > worst[key][1].part:
+            worst[key] = (title, check)
+    return list(worst.values())

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion
+from centrode.locale import _
+from centrode.model.follower_cam import PlateCam
 from centrode.render.document.blocks import Block, ChapterBlocks, Moving
 from centrode.render.document.chapters import document_picture
 from centrode.views.schemes import scheme_picture
@@ -22,7 +24,10 @@ def opening_of(study: ReportStudy, chapters: Sequence[ChapterBlocks]) -> tuple[B
     Nothing where there is no motion to choose from: the chapters say why.
     """
     if study.is_cam:
-        return tuple(replace(one.still, caption=one.caption) for one in _players(chapters)[:1])
+        # on paper nothing moves: the picture is called after what it shows
+        follows = isinstance(study.description, PlateCam)
+        caption = _("The cam with its follower") if follows else _("The walking wheel with its shoes")
+        return tuple(replace(one.still, caption=caption) for one in _players(chapters)[:1])
     try:
         course = study.motion if study.wishes.chapters is None else motion(study.mechanism)
     except CentrodeError:

@@ -176,7 +176,10 @@ def _announces(blocks: Sequence[Block]) -> bool:
     block, *others = blocks
     if not isinstance(block, ParagraphBlock) or not others or len(block.text) > ANNOUNCEMENT:
         return False
-    return not isinstance(others[0], ParagraphBlock) or (block.text.endswith(":") and _announces(others))
+    following = others[0]
+    if isinstance(following, Picture | Moving) and following.caption:
+        return False  # it stands where there is room, so the line stays with what is before it
+    return not isinstance(following, ParagraphBlock) or (block.text.endswith(":") and _announces(others))
 
 
 def content(marked: str) -> str:

@@ -59,6 +59,8 @@ class Column:
         The numbers are whole, and files write them so; NaN is an empty field all the same.
     units : tuple of str
         SI unit of each row, where rows have units of their own, which another column names; empty otherwise.
+    detail : bool
+        Only the full form of a document shows it.
     """
 
     name: str
@@ -68,6 +70,7 @@ class Column:
     unit_fixed: bool = False
     whole: bool = False
     units: tuple[str, ...] = ()
+    detail: bool = False
 
     @property
     def is_numeric(self) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.links import Guide
 from centrode.model.look_alikes import letters_note, look_alike_pairs
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import FRAME, location, value_text
@@ -43,10 +44,11 @@ def loose_points_repair(mechanism: Mechanism, free: Matrix, unknowns: Sequence[E
     free : Jacobian of all constraints, those of the drives included, at a generic position
     unknowns : the columns of it
     """
-    loose = list(_loose_points(mechanism, _moving_freely(free, unknowns)))
-    if not loose:
-        return ""
-    sentences = []
+    moving = _moving_freely(free, unknowns)
+    loose = list(_loose_points(mechanism, moving)) or list(_loose_pivots(mechanism, moving))
+    # A slider of no link is a body of its own, which may be meant; here it moves on its own.
+    told = _("no link has point {point} of guide {guide}: is it spelled as in its link?")
+    sentences = [told.format(point=guide.point, guide=guide.id) for guide in _guides_of_nothing(mechanism)]
     spare = _spare_points(mechanism)
     for point, link in loose[:MOST_NAMED]:
         named = {"point": point, "link": link}
@@ -100,6 +102,28 @@ def _loose_points(mechanism: Mechanism, moving: frozenset[str]) -> Iterator[tupl
         joined = [point for point in link.coordinates if bodies[point] > 1 or point in held]
         if name in moving and len(joined) + joints[name] < 2:
             yield from ((point, name) for point in link.coordinates if point not in joined)
+
+
+def _loose_pivots(mechanism: Mechanism, moving: frozenset[str]) -> Iterator[tuple[str, str]]:
+    """Points in one link only, with it, that are its first one or one through which its own guide goes."""
+    bodies = Counter([*mechanism.frame.points])
+    for link in mechanism.links.values():
+        bodies.update([*link.coordinates])
+    held = {guide.point for guide in mechanism.guides}
+    held.update(point for drive in mechanism.drives for point in drive.distance or ())
+    for name in mechanism.links:
+        if name in moving:
+            points = [*mechanism.links[name].coordinates]
+            through = [guide.through for guide in mechanism.guides if guide.on == name]
+            pivots = [point for point in points if point == points[0] or point in through]
+            yield from ((point, name) for point in pivots if bodies[point] < 2 and point not in held)
+
+
+def _guides_of_nothing(mechanism: Mechanism) -> list[Guide]:
+    """Guides whose point neither a link nor the frame has."""
+    used = {*mechanism.frame.points}.union(*(link.coordinates for link in mechanism.links.values()))
+    counts = Counter(guide.point for guide in mechanism.guides)
+    return [guide for guide in mechanism.guides if guide.point not in used and counts[guide.point] == 1]
 
 
 def _spare_points(mechanism: Mechanism) -> list[str]:

@@ -37,7 +37,7 @@ class KinematicPair:
 
 
 def kinematic_pairs(mechanism: Mechanism) -> tuple[KinematicPair, ...]:
-    """Every pair of a mechanism; a hinge of k bodies is k - 1 turning pairs."""
+    """Every pair of a mechanism; a hinge of k bodies is k - 1 revolute pairs."""
     return tuple(_pairs(mechanism))
 
 

@@ -259,7 +259,7 @@ class _Effect(NamedTuple):
         return Number(self.shown(self.after) / before - 1.0, digits="+.1%") if before else NOTHING
 
 
-def _effects(balance: Balance) -> Table:
+def _effects(balance: Balance, caption: Text = NOTHING) -> Table:
     """The greatest effects over the cycle and the first harmonics, before and after."""
     rows = tuple(_effects_of(balance))
     return Table(
@@ -269,7 +269,8 @@ def _effects(balance: Balance) -> Table:
             Column("before", tuple(Number(row.shown(row.before)) for row in rows), head=Sentence("before")),
             Column("after", tuple(Number(row.shown(row.after)) for row in rows), head=Sentence("after")),
             Column("change", tuple(row.change for row in rows), head=Sentence("change")),
-        )
+        ),
+        caption,
     )
 
 
@@ -565,7 +566,8 @@ def _without_rounding(values: Array, beside: Array) -> Array:
 def _full_balance(balance: Balance) -> Iterator[Block]:
     """Counterweights that take the shaking force away."""
     yield FactTable(tuple(_facts(balance)))
-    yield _effects(balance)
+    yield Illustration("counterweights", CAPTIONS["counterweights"])
+    yield _effects(balance, Sentence("Effects of the inertia forces, before and after"))
     if steps := tuple(_steps(balance)):
         yield Paragraph(Sentence("Masses replaced at the joints:"))
         yield Items(steps)
@@ -573,4 +575,5 @@ def _full_balance(balance: Balance) -> Iterator[Block]:
     text = Sentence("With the counterweights {share} of the greatest shaking force remains.")
     yield Check(text, after, before, 1e4 * float(np.finfo(float).eps))
     for name, caption in CAPTIONS.items():
-        yield Illustration(name, caption, detail=name in DETAILS)
+        if name != "counterweights":
+            yield Illustration(name, caption, detail=name in DETAILS)

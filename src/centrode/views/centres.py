@@ -145,7 +145,7 @@ def _table(results: CentreResults, centres: xr.Dataset, construction: Constructi
             *beside,
             Column("case", cases, head=Sentence("case")),
             Column("constructed from", ways, head=Sentence("constructed from")),
-            Column("off", off, head=Sentence("deviation")),
+            Column("off", off, head=Sentence("deviation"), detail=True),
         )
     )
 

@@ -403,11 +403,18 @@ def _undercut_lines(body: FollowerCam) -> Iterator[DrawnLines]:
 # Chapter
 
 
+def _name_of_curves(results: FollowerProfileResults) -> Sentence:
+    """What the curves over a turn show: under a flat face that only translates no pressure angle changes."""
+    if ClosedForms(results.body).has_pressure_angle:
+        return Sentence("Pressure angle and curvature over a turn")
+    return Sentence("Curvature of the profile and place of the contact over a turn")
+
+
 def _chapter(results: FollowerProfileResults) -> Chapter:
     """Formulas of the profile, its sizes, points and drawings."""
     drawings = (
         Illustration("cam-body", Sentence("The cam in its axes, with its follower at $phi = 0$")),
-        Illustration("cam-curvature", Sentence("Pressure angle and curvature over a turn")),
+        Illustration("cam-curvature", _name_of_curves(results)),
     )
     sections = (
         Section(NOTHING, (*_formulas(results), *_second_routes(results.body))),

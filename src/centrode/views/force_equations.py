@@ -17,7 +17,7 @@ from centrode.dynamics.force_polygons.steps import (
     Unknown,
 )
 from centrode.sheets.sheet import Block, Formula, Paragraph
-from centrode.sheets.texts import Counted, Expression, Joined, Leaf, Name, Number, Sentence, Text
+from centrode.sheets.texts import Counted, Expression, Factor, Joined, Leaf, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.polygons import Lever
@@ -48,6 +48,15 @@ def step_equations(step: Step, sentence: Text) -> Iterator[Block]:
                 Sentence("Moments of link {link} about {point}:", link=Number(link), point=_joint(about))
             )
             yield _moments(about, unknown, terms, outcome)
+        case MomentsOfLink(link, about, None, _terms, outcome, beside=beside):
+            yield Paragraph(
+                Sentence("Moments of link {link} about {point}:", link=Number(link), point=_joint(about))
+            )
+            yield Formula((_outcome(outcome),))
+            if beside is not None:
+                arm = Number(beside[1], "m", ".5g", unit_fixed=True)
+                offset = Sentence("{symbol} acts at an offset of {arm}", symbol=Name(beside[0]), arm=arm)
+                yield Paragraph(offset, clause=True)
         case MomentsOfGroup(links, about, unknown, terms, outcome):
             yield Paragraph(
                 Sentence(
@@ -125,7 +134,7 @@ def _moments(about: StaticJoint, unknown: Unknown, terms: Sequence[MomentTerm], 
     with_arm: Leaf = first
     if unknown.arm is not None:
         arm = Number(unknown.arm, "m", ".5g", unit_fixed=True, unit_hidden=True)
-        with_arm = Expression("{force} dot.op {arm}", force=first, arm=arm)
+        with_arm = Expression("{force} dot.op {arm}", force=first, arm=Factor(arm))
     symbols = [_moment_of(unknown.symbol, below), *(_moment_of(term.symbol, below) for term in terms)]
     numbers = _signed([(with_arm, False), *((_size(term.moment, "N m"), term.moment < 0) for term in terms)])
     return Formula(

@@ -262,7 +262,8 @@ def _unknown(unknown: Unknown) -> Text:
     symbol = Name(unknown.symbol)
     if unknown.arm is None:
         return symbol
-    return Joined((symbol, Number(unknown.arm, "m", ".5g", unit_fixed=True, unit_hidden=True)), "·")
+    arm: Text = Number(unknown.arm, "m", ".5g", unit_fixed=True, unit_hidden=True)
+    return Joined((symbol, Joined((Name("("), arm, Name(")")), "") if unknown.arm < 0 else arm), "·")
 
 
 def _moment(moment: float) -> Number:
@@ -398,7 +399,10 @@ def _routes(found: ForcePolygons, caption: Text = NOTHING) -> Table:
     )
     columns = zip(*rows, strict=True)
     return Table(
-        tuple(Column(name, cells, head=head) for (name, head), cells in zip(heads, columns, strict=True)),
+        tuple(
+            Column(name, cells, head=head, detail=name == "apart")
+            for (name, head), cells in zip(heads, columns, strict=True)
+        ),
         caption,
     )
 

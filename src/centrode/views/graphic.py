@@ -435,7 +435,7 @@ def _steps(diagram: Diagram) -> Iterator[Block]:
     """Vector equations, false positions and the law of sines, group by group."""
     yield Paragraph(GROUPWISE[diagram.order])
     for step in diagram.steps:
-        yield Paragraph(Name(step.group))
+        yield Paragraph(Joined((Name(step.group), NOTHING), ":"))
         yield _formula([VectorNotation(equation) for equation in step.equations])
         for line in _trial_lines(step, diagram.order):
             yield Paragraph(line)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -27,7 +27,7 @@ from centrode.model.loads import (
 )
 from centrode.model.reading import FRAME
 from centrode.sheets.sheet import Block, Chapter, Column, Fact, FactTable, Paragraph, Section, Sheet, Table
-from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
+from centrode.sheets.texts import NOTHING, Joined, Name, Number, Place, Sentence, Symbol, Text
 from centrode.views.load_names import KINDS, load_text
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _masses(masses: LinkMasses) -> Iterator[Block]:
                     tuple(_centre(mechanism, one) for one in found),
                     head=Sentence("centre of mass"),
                 ),
-                Column("inertia", inertia, "kg m^2", Sentence("central inertia")),
+                Column("inertia", inertia, "kg m^2", Sentence("central moment of inertia")),
             )
         )
     if masses.massless:
@@ -103,6 +103,10 @@ def _centre(mechanism: Mechanism, one: Mass) -> Text:
     along, across = float(one.centre.along), float(one.centre.across)
     if along == across == 0.0:
         return Name(one.centre.base)
+    if across == 0.0:
+        return Sentence(
+            "{along} along the link from {point}", along=Number(along, "m"), point=Name(one.centre.base)
+        )
     return Sentence(
         "{along} along and {across} across the link from {point}",
         along=Number(along, "m"),
@@ -115,9 +119,8 @@ def _loads(mechanism: Mechanism) -> Iterator[Block]:
     if mechanism.gravity:
         yield Paragraph(
             Sentence(
-                "Weights act with g = ({vector}) {unit}.",
-                vector=_vector(mechanism.gravity),
-                unit=Unit("m/s^2"),
+                "Weights act with $arrow(g)$ = {vector}.",
+                vector=Place(tuple(map(float, mechanism.gravity)), "m/s^2"),
             )
         )
     if mechanism.loads:
@@ -163,8 +166,8 @@ def _amount(load: AnyLoad) -> Text:
         count = Number(len(load.table), digits="d")
         parts.append(Sentence("indicator diagram of {count} points", count=count))
     if isinstance(load, PointForce) and load.while_moving is not None:
-        way = _vector(load.while_moving)
-        parts.append(Sentence("while the point moves towards ({way})", way=way))
+        way = Place(tuple(map(float, load.while_moving)), "1")
+        parts.append(Sentence("while the point moves towards {way}", way=way))
     return Joined(parts) if parts else UNKNOWN
 
 
@@ -181,7 +184,11 @@ def _names(names: Iterable[str]) -> Text:
     return Joined(tuple(map(Name, names)))
 
 
-def _bracketed(values: Iterable[object]) -> Text:
+def _bracketed(values: Sequence[object]) -> Text:
+    """Coordinates in SI; those that are formulas as they were written."""
+    numbers = [float(value) for value in values if isinstance(value, int | float)]
+    if len(numbers) == len(values):
+        return Place(tuple(numbers), "1")
     return Sentence("({vector})", vector=_vector(values))
 
 

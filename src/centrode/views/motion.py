@@ -57,6 +57,11 @@ EVENT_NAMES = {LIMIT: "limit", CHANGE_POINT: "change_point"}
 """Kind of an event -> what a scalar is called that has its place."""
 
 
+PRESCRIBED = Sentence(
+    "the motion is prescribed, loads do not change it: centrode reduce reduces them to the drive"
+)
+
+
 def sheet(results: MotionResults) -> Sheet:
     """Structure, range, statuses and notes of a motion, its tables and figures; its parts have sheets of their own."""
     mechanism, exact = results.mechanism, results.instants
@@ -171,9 +176,7 @@ def _notes(results: MotionResults) -> Iterator[Text]:
     if not results.comes_back:
         yield Sentence("after one turn of the drive the mechanism does not return to its initial position")
     if mechanism.loads and mechanism.machine is None:
-        yield Sentence(
-            "the motion is prescribed, loads do not change it: centrode reduce reduces them to the drive"
-        )
+        yield PRESCRIBED
     if (refusal := results.refusals.get("flywheel")) is not None:
         yield Sentence("the machine is omitted: {reason}", reason=_reason(refusal))
     if (refusal := results.refusals.get("reactions")) is not None:
@@ -395,13 +398,13 @@ def _plots_chapter(mechanism: Mechanism, pictures: Mapping[str, Picture]) -> Cha
 
 
 def _tables_chapter(results: MotionResults, shown: xarray.Dataset) -> Chapter:
-    facts = tuple(_facts(results))
-    if results.mechanism.space == "plane":
-        facts = facts[:-1]  # the worst residual is among the checks
+    facts = tuple(_facts(results))[:-1]  # the worst residual is among the checks
     failure = unreached_failure(results.mechanism, results.motion["status"], results.limits)
     sentences = [] if failure is None else [failure.what]
+    # which command goes on is no part of a document
+    notes = (note for note in _notes(results) if note != PRESCRIBED)
     head: tuple[Block, ...] = (
         FactTable(facts, Sentence("Range of the motion")),
-        *(Paragraph(text, clause=True) for text in (*sentences, *_notes(results))),
+        *(Paragraph(text, clause=True) for text in (*sentences, *notes)),
     )
     return tables_chapter(results, shown, head)

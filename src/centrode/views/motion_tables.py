@@ -284,7 +284,7 @@ def _tables(
         more = Sentence("{caption} (continued)", caption=caption) if number else caption
         yield Table(tuple(columns), more, rows)
     if still:
-        yield Paragraph(Sentence("The same at all samples: {quantities}.", quantities=Joined(still)))
+        yield Paragraph(Sentence("Constant over the motion: {quantities}.", quantities=Joined(still)))
 
 
 def _front(results: MotionResults) -> list[Column]:

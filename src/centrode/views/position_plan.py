@@ -103,7 +103,7 @@ def _table(plan: PositionPlan) -> Table:
         ),
         Column(f"drive_{drive.name}", data["drive_value"].values[:, 0], drive.unit, Name(drive.name)),
     ]
-    for point in plan.points:
+    for point in plan.points or _numbered(plan):
         place = np.where(ok[:, None], data["position"].sel(point=point).values, np.nan)
         columns += [
             Column(f"{axis}_{point}", place[:, number], "m", Symbol(axis, point))

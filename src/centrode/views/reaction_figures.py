@@ -26,7 +26,7 @@ from centrode.sheets.plots import (
 from centrode.sheets.texts import Joined, Name, Number, Sentence, Symbol, Text, Title
 from centrode.views.abscissa import motion_abscissa
 from centrode.views.motion_plots import deal_to_panels
-from centrode.views.reaction_names import body_text, contact_text, side_text
+from centrode.views.reaction_names import balancing_text, body_text, contact_text, side_text
 
 if TYPE_CHECKING:
     import xarray
@@ -380,5 +380,6 @@ def _line(vector: VectorOnBody) -> Text:
 def _drive_lines(here: xarray.Dataset) -> Iterator[Text]:
     units = str(here["balancing"].attrs["units"]).split(", ")
     for k, name in enumerate(here["drive"].values.tolist()):
-        value = Number(float(here["balancing"].values[k]), units[k % len(units)], ".5g")
-        yield Joined((Sentence("balancing moment or force of drive {name}", name=Name(name)), value), " ")
+        unit = units[k % len(units)]
+        value = Number(float(here["balancing"].values[k]), unit, ".5g")
+        yield Joined((balancing_text(Name(name), unit), value), " ")

@@ -73,6 +73,13 @@ def enumerate_names(names: Iterable[str]) -> Text:
     return Joined(tuple(map(Name, names)))
 
 
+def balancing_text(drive: Name, unit: str) -> Text:
+    """What keeps a drive in equilibrium: of a unit of moments, or of forces."""
+    if unit == "N m":
+        return Sentence("balancing moment of drive {name}", name=drive)
+    return Sentence("balancing force of drive {name}", name=drive)
+
+
 def reaction_text(reaction: ReactionSeries | BearingLoad) -> Text:
     """What a reaction is, and which one of its kind."""
     names = reaction.names
@@ -98,7 +105,7 @@ def reaction_text(reaction: ReactionSeries | BearingLoad) -> Text:
         case ReactionKind.ROLLING_TANGENTIAL:
             return Sentence("wheel {name}, tangential", name=name)
         case ReactionKind.BALANCING:
-            return Sentence("balancing moment or force of drive {name}", name=name)
+            return balancing_text(name, reaction.unit)
         case ReactionKind.FRICTION_MOMENT:
             return Sentence("{side}, moment of friction", side=side_text(names[0]))
         case ReactionKind.FRICTION_FORCE:

@@ -559,16 +559,15 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
         "bearing-wear": Sentence("Wear of journals (inside) and bushes (outside)"),
         "force-vectors": Sentence("The instant of the greatest joint force, to scale"),
     }
-    extremes = loads_table(
-        mechanism, loads, Sentence("Extremes are found between the samples too; means are over time.")
-    )
+    extremes = loads_table(mechanism, loads, Sentence("Greatest and least reactions over the motion"))
+    note = Paragraph(Sentence("Extremes are found between the samples too; means are over time."))
     losses = (Table(table.columns, Sentence("Losses to friction")) for table in _losses(reactions))
     sections = (
         Section(NOTHING, (*_relations(mechanism), FactTable(tuple(_facts(results))))),
         Section(Sentence("Table of joints"), (Paragraph(meaning), joints), detail=True),
         *(() if results.instants is None else _instants(mechanism, results.instants)),
         # where friction jams every sample nothing is determined
-        Section(Sentence("Greatest reactions"), (*((extremes,) if loads else ()), *losses)),
+        Section(Sentence("Greatest reactions"), (*((extremes, note) if loads else ()), *losses)),
         Section(Sentence("Checks"), tuple(_checks(reactions))),
         illustrations(captions, captions, DETAILS),
     )

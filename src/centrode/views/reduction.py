@@ -414,11 +414,8 @@ def _shares(links: Sequence[LinkMotion]) -> Iterator[tuple[Leaf, ...]]:
         ):
             # what translates has no term of its turning; a mass has its term even where its centre rests
             if factor and (coefficient or letter == "m"):
-                letters.append(
-                    join_expressions(
-                        (index_symbol(letter, one.link), index_symbol(speed, one.link, "'^2")), " "
-                    )
-                )
+                square = Expression(f"{speed}'_({{name}})^2", name=Name(one.link))
+                letters.append(join_expressions((index_symbol(letter, one.link), square), " "))
                 terms.append(
                     Expression(
                         "{factor} dot.op {coefficient}^(2)",

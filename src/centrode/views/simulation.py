@@ -19,11 +19,11 @@ from centrode.sheets.sheet import (
     Fact,
     FactTable,
     Formula,
+    Illustration,
     Paragraph,
     Section,
     Sheet,
     Table,
-    illustrations,
 )
 from centrode.sheets.texts import (
     NOTHING,
@@ -199,10 +199,11 @@ def _works(run: xr.Dataset) -> Text:
 def _energies(run: xr.Dataset) -> Text:
     kinetic, potential = (run[name].values for name in ("kinetic_energy", "potential_energy"))
     residual = float(np.max(np.abs(run["energy_residual"].values)))
+    gained = float(potential[-1] - potential[0]) + 0.0
     return Sentence(
         "kinetic {kinetic} at the end, potential {potential}, residual {residual}",
         kinetic=Number(float(kinetic[-1]), "J"),
-        potential=Number(float(potential[-1] - potential[0]) + 0.0, "J", "+.6g"),
+        potential=Number(gained, "J", "+.6g" if gained else "g"),
         residual=Number(residual, "J", ".1e"),
     )
 
@@ -293,7 +294,7 @@ def _phase(results: SimulationResults) -> Abscissa:
 def _panel(run: xr.Dataset, variables: Sequence[str]) -> CurvePanel:
     """Curves of several variables of one unit, which depends on what the drive moves."""
     letter = QUANTITIES[variables[0]].symbol.partition("_")[0]
-    label = AxisLabel(Name(letter), unit=str(run[variables[0]].attrs["units"]))
+    label = AxisLabel(symbol=Symbol(letter), unit=str(run[variables[0]].attrs["units"]))
     return replace(quantities_panel(run, variables, Symbol(letter)), label=label)
 
 
@@ -313,9 +314,16 @@ def _chapter(results: SimulationResults) -> Chapter:
         ),
         Section(Sentence("Over time"), (_course(results.simulation),)),
         *_regime_section(results),
-        illustrations(CAPTIONS, CAPTIONS),
+        Section(NOTHING, tuple(_figures(results))),
     )
     return Chapter(Sentence("Motion under loads"), sections)
+
+
+def _figures(results: SimulationResults) -> Iterator[Illustration]:
+    """The figures; the residual of the energies is among the checks."""
+    for name, plot in _pictures(results):
+        rows = plot.rows[:-1] if name == "simulation-energies" else plot.rows
+        yield Illustration(replace(plot, rows=rows), CAPTIONS[name])
 
 
 def _course(run: xr.Dataset) -> Table:

@@ -40,8 +40,8 @@ def _whole(number: int) -> Number:
 
 
 PAIRS: dict[PairKind, tuple[Text, Text]] = {
-    "turning": (Sentence("turning pair, class {number}", number=_whole(5)), Sentence("R")),
-    "sliding": (Sentence("sliding pair, class {number}", number=_whole(5)), Sentence("P")),
+    "turning": (Sentence("revolute pair, class {number}", number=_whole(5)), Sentence("R")),
+    "sliding": (Sentence("prismatic pair, class {number}", number=_whole(5)), Sentence("P")),
     "gear": (Sentence("gear pair, class {number}", number=_whole(4)), NOTHING),
     "rolling": (Sentence("rolling pair"), NOTHING),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -35,11 +36,18 @@ def sheet(results: TransmissionResults) -> Sheet:
 
 def section(results: TransmissionResults) -> Section:
     """The section of a document: extremes over the motion, and the curves."""
-    caption = Sentence("Transmission and pressure angles of the groups")
-    return Section(
-        Sentence("Transmission angles"),
-        (extremes_table(results, caption), Illustration(PICTURE, caption)),
+    table = extremes_table(
+        results, Sentence("Least transmission angle and greatest pressure angle of the groups")
     )
+    figure = Illustration(
+        PICTURE, Sentence("Transmission angle $mu$ and pressure angle $alpha$ of the groups")
+    )
+    return Section(Sentence("Transmission angles"), (_of_documents(table), figure))
+
+
+def _of_documents(table: Table) -> Table:
+    """Without the greatest acute angle, which the curve of the angle itself may pass."""
+    return replace(table, columns=tuple(one for one in table.columns if one.name != "greatest"))
 
 
 def extremes_table(results: TransmissionResults, caption: Text = NOTHING) -> Table:

@@ -182,7 +182,7 @@ def _along(
     if on != FRAME:
         # the image of the place under the point, drawn beside those of the points
         stage.hidden.setdefault(under, origin)
-    text = f"{letter(stage)}ʳ_{point}{under if on != FRAME else ''} (∥ {guide})"
+    text = f"{letter(stage)}ʳ_{point}{under if on != FRAME else ''} (∥ guide {guide})"
     return Ray(
         origin,
         f"{letter(stage)}_{under}" if on != FRAME else "",
@@ -204,7 +204,7 @@ def carrying_ray(stage: ConstructionStage, link: str, point: str, direction: com
         # seen from the point the link's place moves backwards: so does Coriolis
         turned = -stage.coriolis(link, at, stage.before.points[point])
         legs = (RayLeg("coriolis", turned, f"{under}{point}", f"aᵏ_{under}{point}"),)
-    text = f"{letter(stage)}ʳ_{under}{point} (∥ {guide})"
+    text = f"{letter(stage)}ʳ_{under}{point} (∥ guide {guide})"
     origin, name = stage.points[point], f"{under}{point}"
     return Ray(
         origin, rate_symbol(stage, point), legs, direction, "sliding", name, text, at, under, link=link

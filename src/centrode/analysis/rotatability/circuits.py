@@ -385,9 +385,9 @@ class LoopType(StrEnum):
     SLIDER_CRANK = mark("slider-crank, the crank turns fully")
     SLIDER_COUPLER = mark("slider-crank, the coupler turns fully, the crank swings")
     SLIDER_ROCKER = mark("slider-crank, no link turns fully")
-    TURNING_GUIDE = mark("crank and turning guide")
-    SWINGING_GUIDE = mark("crank and swinging guide")
-    SWINGING_ALL = mark("swinging guide, no link turns fully")
+    TURNING_GUIDE = mark("crank and slotted lever, the lever turns fully")
+    SWINGING_GUIDE = mark("crank and slotted lever")
+    SWINGING_ALL = mark("slotted lever, no link turns fully")
 
     @property
     def word(self) -> str:

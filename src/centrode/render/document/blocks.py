@@ -114,10 +114,20 @@ class Picture:
 
 @dataclass(frozen=True)
 class CheckBlock:
-    """How something was verified: by what second route, how far it is off, and what was allowed."""
+    """How something was verified: by what second route, how far it is off, and what was allowed.
+
+    Attributes
+    ----------
+    text : the statement with its numbers
+    holds : whether it does
+    kind : the statement without them, the same for the same check of another instant
+    part : of what was allowed
+    """
 
     text: str
     holds: bool
+    kind: str = ""
+    part: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -281,3 +291,7 @@ class Report:
     chapters: tuple[ChapterBlocks, ...] = field(default=())
     opening: tuple[Block, ...] = ()
     description: DescriptionText | None = None
+
+    def __repr__(self) -> str:
+        """Its title and chapters: all its blocks would fill many screens."""
+        return f"Report({self.title!r}, chapters={[chapter.name for chapter in self.chapters]})"

@@ -66,20 +66,31 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers, *, full: bool = 
 
 
 def _compact_section(section: Section) -> Section:
-    """A section without figures that are details, its tables over a motion at fewer places."""
+    """A section without figures and columns that are details, its tables over a motion at fewer places."""
     kept = (block for block in section.blocks if not (isinstance(block, Illustration) and block.detail))
-    return replace(section, blocks=tuple(_thinned(one) if isinstance(one, Table) else one for one in kept))
+    return replace(section, blocks=tuple(_compact(one) if isinstance(one, Table) else one for one in kept))
+
+
+def _compact(table: Table) -> Table:
+    columns = tuple(column for column in table.columns if not column.detail)
+    return _thinned(replace(table, columns=columns))
 
 
 def _thinned(table: Table) -> Table:
-    """A table that shows some of its rows, with fewer of them at even steps: the first and the last stay."""
+    """A table that shows some of its rows, with fewer of them at even steps: the first and the last stay.
+
+    So do both ends of a gap, where rows between them are alike and left out.
+    """
     if table.rows is None or len(table.rows) <= COMPACT_ROWS:
         return table
+    gaps = np.diff(table.rows)
+    wide = np.flatnonzero(gaps > 2 * gaps.min())
     last = len(table.rows) - 1
     step = next(step for step in range(1, last + 1) if last // step < COMPACT_ROWS and last % step == 0)
     if last // step < COMPACT_ROWS // 2:  # the steps do not divide evenly
         step = -(-last // (COMPACT_ROWS - 1))
-    return replace(table, rows=tuple(table.rows[k] for k in sorted({*range(0, last, step), last})))
+    kept = {*range(0, last, step), last, *wide.tolist(), *(wide + 1).tolist()}
+    return replace(table, rows=tuple(table.rows[k] for k in sorted(kept)))
 
 
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.SectionBlocks:
@@ -233,4 +244,5 @@ def _check(check: Check, spelling: DocumentSpelling) -> blocks.CheckBlock:
     statement = _(check.statement.message).format(
         share=shown, **{name: spelling.text(value) for name, value in check.statement.values.items()}
     )
-    return blocks.CheckBlock(statement, bool(share <= check.bound))
+    part = abs(share) / check.bound if check.bound else abs(share)
+    return blocks.CheckBlock(statement, bool(share <= check.bound), check.statement.message, float(part))

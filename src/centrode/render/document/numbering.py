@@ -171,4 +171,6 @@ def _with_references(blocks: Sequence[Block]) -> Iterator[Block]:
 def _reference(first: int, last: int) -> str:
     if first == last:
         return _("See figure {number}.").format(number=first)
+    if last == first + 1:
+        return _("See figures {first} and {last}.").format(first=first, last=last)
     return _("See figures {first} to {last}.").format(first=first, last=last)

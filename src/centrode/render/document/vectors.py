@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from centrode.locale import _
 from centrode.render.document.typst import decimal, in_degrees, quote, word
 
 GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
@@ -16,6 +17,7 @@ TOKEN = re.compile(
     r"(?P<letter>[vaωεμP])(?P<mark>[ⁿᵗᵏʳ]?)_(?P<name>\w[\w′’'-]*)"
     r"|(?P<number>\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?P<degree>°?)(?!\w)"
     r"|(?P<sine>\bsin\b)"
+    r"|\bguide (?P<guide>[^()]+)"
     r"|(?P<word>\w[\w′’'-]*)"
     r"|(?P<sign>\S)"
     r"|(?P<space>\s+)"
@@ -57,6 +59,8 @@ def _token(found: re.Match[str], vectors: bool) -> str:
         return in_degrees(number) if found["degree"] else number
     if found["sine"]:
         return "sin"
+    if found["guide"]:
+        return quote(_("guide {guide}").format(guide=found["guide"]))
     if found["word"]:
         return word(found["word"])
     return SIGNS.get(found["sign"], quote(found["sign"]))

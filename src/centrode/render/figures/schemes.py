@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.model.settings import shown_as
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe
@@ -45,6 +46,10 @@ LEAST_SHARE = 0.045
 """Of the extent: a shorter piece of a link has no dimension of its own on paper, it is among the data."""
 MOST_LEVELS = 5
 """Points of the frame and guides at different places across or up, beyond which the frame has no dimensions."""
+CIRCLE = 2.0
+"""Radius of the circle of a link's number, in the size of the signs."""
+DIMENSION = "dimension"
+"""Name of the lines on which dimensions are written."""
 SAME = 1e-9
 """Part of the extent by which coordinates differ that are the same."""
 
@@ -57,10 +62,15 @@ def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + KEY), 1.0))
     tags = list(_draw(axes, scene, picture.sample, display))
     axes.set_axis_off()
-    solid = arcs_on_paper(scene, picture.sample) if isinstance(scene, Globe) else lines(scene, picture.sample)
-    circles = [_cross(np.array(text.get_position()), scene) for text in axes.texts]
-    write_tags(axes, tags, [*solid, *(stroke for cross in circles for stroke in cross)], [], TEXT, REACH)
-    key = [
+    solid = list(
+        arcs_on_paper(scene, picture.sample) if isinstance(scene, Globe) else lines(scene, picture.sample)
+    )
+    for text in axes.texts:
+        solid += _cross(np.array(text.get_position()), scene)
+    solid += [_ends(line) for line in axes.lines if line.get_gid() == DIMENSION]
+    write_tags(axes, tags, solid, [], TEXT, REACH)
+    frame = [(Line2D([], [], color=GROUND, linewidth=1.2), "0  " + _("frame"))]
+    key = frame * isinstance(scene, LinkageScene) + [
         (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
         for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
     ]
@@ -84,9 +94,15 @@ def _on_paper(scene: Paper, sample: int) -> tuple[Paper, tuple[float, float]]:
 
 def _cross(place: Array, scene: Paper) -> list[tuple[Array, Array]]:
     """Strokes through the circle of a link's number, which texts keep clear of."""
-    radius = 1.6 * scene.sign
-    ways = radius * np.array([[1.0, 0.0], [0.0, 1.0]])
+    turns = 0.25 * np.pi * np.arange(4)
+    ways = CIRCLE * scene.sign * np.stack([np.cos(turns), np.sin(turns)], axis=1)
     return [(place - way, place + way) for way in ways]
+
+
+def _ends(line: Line2D) -> tuple[Array, Array]:
+    """Both ends of a straight line."""
+    ends = np.asarray(line.get_xydata())
+    return ends[0], ends[-1]
 
 
 def _held(scene: Paper, sample: int) -> Array:
@@ -114,10 +130,6 @@ def _draw(axes: Axes, scene: Paper, sample: int, display: Display) -> Iterator[T
     places = scene.at(sample)
     for name, place in places.items():
         yield Tag(_flat(scene, place), plain(name))
-    if isinstance(scene, LinkageScene):
-        for name in scene.mechanism.frame.points:
-            if name in places and name in used_points(scene):
-                yield Tag(places[name] + scene.sign * np.array([3.2, -3.4]), "0")
     for number, name in enumerate(scene.mechanism.links, start=1):
         yield from _marked_link(axes, scene, sample, number, name, display)
     if isinstance(scene, LinkageScene):
@@ -252,6 +264,6 @@ def _chain(axes: Axes, places: Sequence[Array], axis: int, base: float, scene: L
     for first, second in pairwise(known):
         ends = np.array([first, second])
         ends[:, 1 - axis] = base
-        axes.plot(*ends.T, color=GROUND, linewidth=0.6, zorder=1.3)
+        axes.plot(*ends.T, color=GROUND, linewidth=0.6, zorder=1.3, gid=DIMENSION)
         length = float(second[axis] - first[axis])
         yield Tag(ends.mean(axis=0), f"{length:.5g}")
