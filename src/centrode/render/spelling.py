@@ -152,7 +152,7 @@ def filled_notation(relation: VectorNotation) -> str:
     return relation.notation.format(**numbers) if numbers else relation.notation
 
 
-GUIDE = re.compile(r"\bguide ([^()]+)(?=\))")
+GUIDE = re.compile(r"∥ guide ([^()]+)(?=\))")
 """A guide in the notation of constructions: "(∥ guide A)"."""
 
 
@@ -207,7 +207,7 @@ class PlainSpelling(Spelling):
 
     def vectors(self, notation: str) -> str:
         """A relation of a construction on paper, in its own notation."""
-        return GUIDE.sub(lambda found: _("guide {guide}").format(guide=found[1]), notation)
+        return GUIDE.sub(lambda found: _("∥ guide {guide}").format(guide=found[1]), notation)
 
     def symbolic(self, leaf: SymbolicLeaf) -> str:
         """A formula in letters, as one line."""

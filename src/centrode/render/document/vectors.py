@@ -60,7 +60,8 @@ def _token(found: re.Match[str], vectors: bool) -> str:
     if found["sine"]:
         return "sin"
     if found["guide"]:
-        return quote(_("guide {guide}").format(guide=found["guide"]))
+        # in the case that the word has behind the sign, which is mathematics of its own
+        return quote(_("∥ guide {guide}").format(guide=found["guide"]).removeprefix("∥ "))
     if found["word"]:
         return word(found["word"])
     return SIGNS.get(found["sign"], quote(found["sign"]))
