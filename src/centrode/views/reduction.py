@@ -420,7 +420,7 @@ def _shares(links: Sequence[LinkMotion]) -> Iterator[tuple[Leaf, ...]]:
             if factor and (coefficient or letter == "m"):
                 letters.append(
                     join_expressions(
-                        (index_symbol(letter, one.link), index_symbol(speed, one.link, "'^2")), " "
+                        (index_symbol(letter, one.link), index_symbol(f"{speed}'", one.link, "^2")), " "
                     )
                 )
                 terms.append(
