@@ -112,6 +112,16 @@ def test_all_checks_hold(corrected: dict[str, ChapterBlocks]) -> None:
     assert [one.text for one in found if not one.holds] == []
 
 
+def test_primes_belong_to_letters_and_not_to_their_indices() -> None:
+    (chapter,) = made("six-bar-press", ("reduction",))
+    formulas = [
+        block for section in chapter.sections for block in section.blocks if isinstance(block, FormulaBlock)
+    ]
+    parts = [part for block in formulas for line in block.lines for part in line]
+    assert any("v'_(" in part for part in parts)
+    assert not [part for part in parts if re.search(r"_\([^()]*\)'", part)]
+
+
 def test_a_wrong_sum_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     motions = link_motions.motions_of_links
 
