@@ -20,7 +20,7 @@ from centrode.render.drawing.linkage import draw_mechanism, used_points
 from centrode.render.drawing.style import GROUND, INK, MUTED, pens
 from centrode.render.drawing.tags import Tag, lines, write_tags
 from centrode.render.drawing.texts import plain
-from centrode.render.figures.curves import write_legend
+from centrode.render.figures.curves import legend_width, write_legend
 from centrode.render.figures.linkages import read_scene
 from centrode.scenes.places import Array, LinkageScene, corners
 from centrode.scenes.sphere import Globe, great_arc
@@ -35,7 +35,7 @@ WIDTH, HEIGHT = 6.3, 4.1
 """Greatest size of the drawing [inches]."""
 LEAST_HEIGHT = 2.0
 KEY = 1.3
-"""Width of the key of the links [inches]."""
+"""Least width of the key of the links [inches]."""
 ROOM = 0.55
 """Around what is drawn, for dimensions and names [inches]."""
 TEXT, NUMBER = 9.5, 9.0
@@ -57,12 +57,13 @@ SAME = 1e-9
 def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     """The scheme at the sample of the picture, as large as its paper allows, beside the key of the links."""
     scene = read_scene(picture.mechanism, picture.motion)
-    scene, size = _on_paper(scene, picture.sample)
-    figure = Figure(figsize=(size[0] + KEY, size[1]))
-    axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + KEY), 1.0))
+    key = list(_key(scene, picture))
+    room = max(KEY, legend_width([text for _line, text in key], HEIGHT))
+    scene, size = _on_paper(scene, picture.sample, WIDTH - room)
+    figure = Figure(figsize=(size[0] + room, size[1]))
+    axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + room), 1.0))
     tags = list(_draw(axes, scene, picture.sample, display))
-    sliders = picture.sliders if isinstance(scene, LinkageScene) else ()
-    numbers = dict(enumerate(sliders, start=len(scene.mechanism.links) + 1))
+    numbers = _numbered_sliders(scene, picture)
     points = {guide.id: guide.point for guide in scene.mechanism.guides}
     for number, guide in numbers.items():
         place = scene.at(picture.sample)[points[guide]]
@@ -75,29 +76,38 @@ def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
         solid += _cross(np.array(text.get_position()), scene)
     solid += [_ends(line) for line in axes.lines if line.get_gid() == DIMENSION]
     write_tags(axes, tags, solid, [], TEXT, REACH)
-    frame = [(Line2D([], [], color=GROUND, linewidth=1.2), "0  " + _("frame"))]
-    key = frame * isinstance(scene, LinkageScene) + [
-        (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
-        for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
-    ]
-    key += [
-        (
-            Line2D([], [], color=INK, linewidth=1.2),
-            f"{number}  " + _("slider {point}").format(point=plain(guide)),
-        )
-        for number, guide in numbers.items()
-    ]
     write_legend(axes, key, inches=size[1] - 0.2)
     return figure
 
 
-def _on_paper(scene: Paper, sample: int) -> tuple[Paper, tuple[float, float]]:
-    """The scene in the window of one sample, its signs in their size on paper, and the size of the paper [inches]."""
+def _numbered_sliders(scene: Paper, picture: SchemePicture) -> dict[int, str]:
+    """The guides of sliders that are links without a name, by their numbers."""
+    sliders = picture.sliders if isinstance(scene, LinkageScene) else ()
+    return dict(enumerate(sliders, start=len(scene.mechanism.links) + 1))
+
+
+def _key(scene: Paper, picture: SchemePicture) -> Iterator[tuple[Line2D, str]]:
+    """What the numbers stand for."""
+    if isinstance(scene, LinkageScene):
+        yield Line2D([], [], color=GROUND, linewidth=1.2), "0  " + _("frame")
+    for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1):
+        line = Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4)
+        yield line, f"{number}  {plain(name)}"
+    for number, guide in _numbered_sliders(scene, picture).items():
+        text = f"{number}  " + _("slider {point}").format(point=plain(guide))
+        yield Line2D([], [], color=INK, linewidth=1.2), text
+
+
+def _on_paper(scene: Paper, sample: int, width: float) -> tuple[Paper, tuple[float, float]]:
+    """The scene in the window of one sample, its signs in their size on paper.
+
+    And the size of the paper [inches], which is at most so wide.
+    """
     for _pass in range(2):  # the signs reach as far as their size, which depends on the window
         held = _held(scene, sample)
         low, high = held.min(axis=0), held.max(axis=0)
         span = np.maximum(high - low, 1e-3 * float(np.max(high - low)) + np.finfo(float).tiny)
-        per_inch = float(np.max(span / (np.array([WIDTH - KEY, HEIGHT]) - 2 * ROOM)))
+        per_inch = float(np.max(span / (np.array([width, HEIGHT]) - 2 * ROOM)))
         size = np.maximum(span / per_inch + 2 * ROOM, [2.5, LEAST_HEIGHT])
         middle = 0.5 * (low + high)
         low, high = middle - 0.5 * size * per_inch, middle + 0.5 * size * per_inch
