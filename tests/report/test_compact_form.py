@@ -14,9 +14,25 @@ from matplotlib.image import imread
 import centrode as ct
 from centrode.analysis.representative_position import representative_sample
 from centrode.errors import InputError, Status
-from centrode.render.document.blocks import CheckBlock, Moving, ParagraphBlock, Picture, Report, TableBlock
+from centrode.model.settings import Display
+from centrode.render.document.blocks import (
+    ChapterBlocks,
+    CheckBlock,
+    Moving,
+    ParagraphBlock,
+    Picture,
+    Report,
+    SectionBlocks,
+    TableBlock,
+)
+from centrode.render.document.chapters import document_chapter
+from centrode.render.document.numbering import number_blocks, refer_to_figures
+from centrode.render.document.numbers import Numbers
+from centrode.report.checks import gather_checks
 from centrode.report.pdf_document import STYLE, Source
 from centrode.report.texts import blocks_of
+from centrode.sheets.sheet import Chapter, Column, Section, Sheet, Table
+from centrode.sheets.texts import NOTHING
 
 NAME = "crank-rocker"
 
@@ -112,3 +128,42 @@ def test_pages_of_the_compact_form_are_filled(compact: Report, full: Report) -> 
     bands = blank_bands(compact)
     assert len(bands) < len(blank_bands(full))
     assert all(band <= 0.3 for band in bands[:-1])
+
+
+def test_a_check_of_several_instants_is_given_once_with_its_greatest_difference() -> None:
+    checks = (
+        CheckBlock("within 1", True, "within {share}", 0.1),
+        CheckBlock("within 3", True, "within {share}", 0.3),
+        CheckBlock("another", True, "another", 0.2),
+        CheckBlock("broken", False, "within {share}", 2.0),
+    )
+    chapter = ChapterBlocks("one", "One", (SectionBlocks("", (ParagraphBlock("words"), *checks)),))
+    *_kept, gathered = gather_checks([chapter])
+    sentence, table = gathered.sections[0].blocks
+    assert isinstance(sentence, ParagraphBlock) and sentence.text.startswith(
+        "4 checks were made. 3 of them hold."
+    )
+    assert isinstance(table, TableBlock)
+    assert [row[1:] for row in table.rows] == [
+        ("One", "within 3", "holds"),
+        ("", "another", "holds"),
+        ("", "broken", "does not hold"),
+    ]
+
+
+def test_two_figures_are_named_and_a_thinned_table_keeps_the_ends_of_its_gaps() -> None:
+    figures = tuple(Picture(b"", f"Figure {one}", 1.0) for one in "ab")
+    report = Report("", "", "en", (ChapterBlocks("one", "One", (SectionBlocks("", figures),)),))
+    told = refer_to_figures(number_blocks(report)).chapters[0].sections[0].blocks[0]
+    assert told == ParagraphBlock("See figures 1 and 2.")
+    rows = (*range(0, 160, 10), 350, 360)  # of a dwell from 150 to 350 the first and the last
+    sheet = Sheet(
+        chapters={
+            "one": Chapter(
+                NOTHING, (Section(NOTHING, (Table((Column("a", np.arange(361.0)),), NOTHING, rows),)),)
+            )
+        }
+    )
+    made = document_chapter("one", sheet, Numbers(Display(), 5), full=False).sections[0].blocks[0]
+    assert isinstance(made, TableBlock)
+    assert [round(float(row[0])) for row in made.rows] == [*range(0, 141, 20), 150, 350, 360]
