@@ -1,22 +1,28 @@
-"""Two kinematic schemes side by side: to one scale, at one height, what is changed set off; legible in print."""
+"""Kinematic schemes: two side by side to one scale, what is changed set off; the key stands on the paper."""
 
 from __future__ import annotations
 
 import functools
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 import centrode as ct
 from centrode.analysis.redesign.results import rotatability_results
+from centrode.locale import speaking
+from centrode.model.settings import Display
+from centrode.render.drawing.style import house_style
 from centrode.render.figures.pictures import figure_of
-from centrode.render.figures.schemes import CHANGED
+from centrode.render.figures.schemes import CHANGED, scheme_figure
 from centrode.sheets.linkages import SchemePair
 from centrode.sheets.sheet import Illustration
 from centrode.views.rotatability import sheet
+from centrode.views.schemes import scheme_picture
 from mechanisms import four_bar
 from printed import faults
 
@@ -79,3 +85,35 @@ def test_what_is_changed_is_set_off_in_the_repaired_mechanism_alone() -> None:
     for name, value in (("four-bar", "29.5"), ("sphere", "44°")):
         locked, repaired = drawn(name).axes
         assert coloured(locked) == set() and coloured(repaired) == {value}
+
+
+@pytest.mark.parametrize("space", ["plane", "sphere"])
+@pytest.mark.parametrize("name", ["BC", "connecting rod", "ведуча вилка"])
+def test_names_of_links_stand_on_the_paper(name: str, space: str) -> None:
+    sphere = space == "sphere"
+    points = {"A": [1, 0, 0], "D": [0, 1, 0]} if sphere else {"A": [0, 0], "D": [4, 0]}
+    lengths = ("20 deg", "70 deg", "80 deg") if sphere else (1, 3.5, 3)
+    ends = (("A", "B"), ("B", "C"), ("D", "C"))
+    links: dict[str, dict[str, object]] = {
+        link: {"points": list(points), "length": length}
+        for link, points, length in zip(("AB", name, "DC"), ends, lengths, strict=True)
+    }
+    if sphere:
+        links["AB"]["reference"], links["DC"]["reference"] = ["A", "D"], ["D", "A"]
+    mechanism = ct.Mechanism(
+        space=space,
+        frame={"points": points},
+        links=links,
+        drives=[{"link": "AB", "start": 0.0, "speed": 1}],
+        assembly={"sides": {"C": "left"}},
+    )
+    picture = scheme_picture(mechanism, ct.motion(mechanism, samples=37))
+    with speaking("uk"), house_style():
+        figure = scheme_figure(picture, Display())
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.draw()  # places the legend
+        (axes,) = figure.axes
+        legend = axes.get_legend()
+        assert legend is not None
+        rightmost = max(text.get_window_extent().x1 for text in legend.get_texts())
+    assert rightmost < figure.bbox.x1

@@ -8,13 +8,21 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
-from centrode.dynamics.force_polygons.steps import MomentsOfGroup, MomentsOfLink
+from centrode.dynamics.force_polygons.statics import StaticJoint
+from centrode.dynamics.force_polygons.steps import MomentsOfGroup, MomentsOfLink, Outcome, Unknown
 from centrode.locale import speaking
 from centrode.model.examples import example_text
+from centrode.model.settings import Display
 from centrode.render.document import blocks
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
+from centrode.render.document.spelling import DocumentSpelling
+from centrode.render.spelling import PlainSpelling
+from centrode.sheets.sheet import Formula
+from centrode.sheets.texts import NOTHING
 from centrode.topics.registry import FORCE_POLYGONS
+from centrode.views.force_equations import step_equations
+from centrode.views.force_polygons import step_text
 
 TORQUE = """
 [[loads]]
@@ -114,3 +122,13 @@ def test_a_chapter_has_every_step_and_its_drawings_to_scale() -> None:
         assert f"$mu_F$ = {group.polygon.scale:g} N/mm" in drawing.caption
     checks = [block for block in parts if isinstance(block, blocks.CheckBlock)]
     assert checks and all(check.holds for check in checks)
+
+
+@pytest.mark.parametrize(("arm", "shown"), [(-0.25, "R12ᵗ·(-0.25)"), (0.25, "R12ᵗ·0.25")])
+def test_a_negative_arm_is_in_brackets(arm: float, shown: str) -> None:
+    joint = StaticJoint("hinge", "B", {"AB": 1.0}, 0j, ())
+    step = MomentsOfLink(2, joint, Unknown("R12ᵗ", arm), (), Outcome("R12ᵗ", 3.0))
+    assert PlainSpelling(Display()).text(step_text(step)).startswith(f"moments of link 2 about B: {shown}")
+    formula = next(one for one in step_equations(step, NOTHING) if isinstance(one, Formula))
+    spelled = DocumentSpelling(Numbers(Display(), 5)).mathematics(formula.lines[0][-2])
+    assert spelled.endswith("dot.op (-0.25)" if arm < 0 else "dot.op 0.25")

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
-from centrode.model.look_alikes import in_latin, letters_note
+from centrode.model.look_alikes import in_latin
 from centrode.model.reading import DescriptionPart, input_error, value_text
 from centrode.model.units import international
 from centrode.model.values import RAD, READING, BareAngles, Radians, Reading
@@ -65,10 +65,8 @@ _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NES
 _COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
 _NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
 _UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
-# What word processors make of quotation marks.
-_PRINTED_QUOTES = re.compile(r"([“”„‟«»‘’‚])([^“”„‟«»‘’‚\"']*+)")
-# A key as people write it who forget that TOML wants other letters than Latin ones in quotes.
-_BARE_KEY = re.compile(r"[\w-]++(?=[ \t]*+[.=\]])")
+_WORD = re.compile(r"[\w-]+")
+TYPOGRAPHIC = tuple("“”„‟«»‘’‚")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -140,8 +138,7 @@ def _not_toml(message: str, text: str, where: str) -> InputError:
         line, column = int(match.group(2)), int(match.group(3))
         # Lines as the parser counts them: `splitlines` would part a text at other characters too.
         written, at = text.split("\n")[line - 1], column - 1
-        found = _mistyped_number(written, at) or _printed_quotes(written, at) or _bare_key(written, at)
-        reason, repair = found or (reason, repair)
+        reason, repair = _mistyped_number(written, at) or _unquoted_letter(written, at) or (reason, repair)
     else:
         lines = text.splitlines() or [""]
         line, column = len(lines), len(lines[-1]) + 1
@@ -166,27 +163,25 @@ def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
     return None
 
 
-def _printed_quotes(line: str, at: int) -> tuple[str, str] | None:
-    """Reason and repair where the parser stopped at a quotation mark as word processors print it."""
-    printed = _PRINTED_QUOTES.match(line, at)
-    if printed is None:
+def _unquoted_letter(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped at typographic quotes, or in a bare key at a letter beyond a to z."""
+    if line[at : at + 1] in TYPOGRAPHIC:
+        return _("these quotes are typographic"), _('type straight ones: "..."')
+    key = next((one for one in _WORD.finditer(line) if one.start() <= at < one.end()), None)
+    heading = line.lstrip().startswith("[") and "]" not in line[:at]
+    is_key = key and (heading or line[key.end() :].lstrip()[:1] in ("=", "."))
+    if not key or not is_key or key.group().isascii() or line[at].isascii():
         return None
-    reason = _("{mark} is not a quotation mark of TOML").format(mark=printed.group(1))
-    return reason, _("write {text} with straight quotes").format(text=value_text(printed.group(2)))
-
-
-def _bare_key(line: str, at: int) -> tuple[str, str] | None:
-    """Reason and repair where the parser stopped in a key without quotes, at a letter that is not Latin."""
-    key = next((found.group() for found in _BARE_KEY.finditer(line) if found.start() <= at < found.end()), "")
-    if not key or key.isascii() or re.search(r"=[^{]*$", line[:at]):
-        return None
-    latin = in_latin(key)
-    repair = (
-        letters_note(key, [(key, latin)])
-        if latin.isascii()
-        else _("write {number}").format(number=f'"{key}"')
+    name = key.group()
+    latin = in_latin(name)
+    quoted = _('put the name in quotes: "{name}"').format(name=name)
+    if not latin.isascii():
+        return _("a name with letters other than a to z stands in quotes"), quoted
+    letters = ", ".join(dict.fromkeys(letter for letter in name if letter != in_latin(letter)))
+    return (
+        _('{letters} in "{name}" only looks like a Latin letter').format(letters=letters, name=name),
+        _("type {latin} with the Latin keyboard layout, or {quoted}").format(latin=latin, quoted=quoted),
     )
-    return _("a key without quotes has Latin letters, digits, hyphens and underscores only"), repair
 
 
 def _depth(value: object) -> int:

@@ -21,7 +21,7 @@ from centrode.render.drawing.linkage import draw_mechanism, used_points
 from centrode.render.drawing.style import GROUND, INK, MUTED, pens
 from centrode.render.drawing.tags import Tag, lines, write_tags
 from centrode.render.drawing.texts import plain
-from centrode.render.figures.curves import columns_above, write_legend
+from centrode.render.figures.curves import columns_above, legend_width, write_legend
 from centrode.render.figures.linkages import read_scene
 from centrode.scenes.places import Array, LinkageScene, corners
 from centrode.scenes.sphere import Globe, great_arc
@@ -42,7 +42,7 @@ CHANGED = "#C00000"
 """Colour of a dimension that is changed."""
 LEAST_HEIGHT = 2.0
 KEY = 1.3
-"""Width of the key of the links [inches]."""
+"""Least width of the key of the links [inches]."""
 ROOM = 0.55
 """Around what is drawn, for dimensions and names [inches]."""
 TEXT, NUMBER = 9.5, 9.0
@@ -64,11 +64,13 @@ SAME = 1e-9
 def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     """The scheme at the sample of the picture, as large as its paper allows, beside the key of the links."""
     scene = read_scene(picture.mechanism, picture.motion)
-    scene, size = _on_paper(scene, picture.sample, (WIDTH - KEY, HEIGHT))
-    figure = Figure(figsize=(size[0] + KEY, size[1]))
-    axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + KEY), 1.0))
+    key = _key(scene, picture)
+    room = max(KEY, legend_width([text for _line, text in key], HEIGHT))
+    scene, size = _on_paper(scene, picture.sample, (WIDTH - room, HEIGHT))
+    figure = Figure(figsize=(size[0] + room, size[1]))
+    axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + room), 1.0))
     _draw_scheme(axes, scene, picture, display)
-    write_legend(axes, _key(scene, picture), inches=size[1] - 0.2)
+    write_legend(axes, key, inches=size[1] - 0.2)
     return figure
 
 
