@@ -83,7 +83,7 @@ class MotionError(CentrodeError):
     ...     ct.graphic_analysis(ct.example("slider-between-cranks-locked"), instants=[3.0])
     ... except ct.MotionError as failure:
     ...     failure.what
-    'at 3 the mechanism is open: there is nothing to construct'
+    'at 3 the mechanism is open: nothing can be constructed'
     """
 
     exit_code = 3

@@ -114,7 +114,7 @@ def principle_of_operation(mechanism: MechanismSource) -> PrincipleOfOperation:
     --------
     >>> import centrode as ct
     >>> print(ct.summary(ct.principle_of_operation(ct.example("crank-rocker"))).splitlines()[-1])
-    The mobility is 1: one drive determines the place of every link. The drive can turn fully.
+    The mobility is 1: one drive determines the position of every link. The drive can turn fully.
     """
     mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)

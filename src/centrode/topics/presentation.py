@@ -153,8 +153,8 @@ def summary(result: Any) -> str:
     >>> import centrode as ct
     >>> print(ct.summary(ct.limits(ct.example("crank-rocker"))))
     drive          OA
-    held           none
-    about          0 rad (0 deg)
+    held drives    none
+    initial value  0 rad (0 deg)
     from           unlimited
     to             unlimited
     change points  none

@@ -243,7 +243,7 @@ REACTIONS = Topic(
     view=Lazily("centrode.views.reactions", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     command=Command(
-        help=mark("Find the reactions in every joint and the balancing moments of the drives."),
+        help=mark("Find the reactions in every joint and the balancing moments."),
         options=(
             InstantsOption(
                 mark('Only at this value of the drive ("120 deg"), or time ("1 s"); may be repeated.')

@@ -62,7 +62,7 @@ def graphic_analysis(
     >>> import centrode as ct
     >>> found = ct.graphic_analysis(ct.example("crank-rocker"), instants=[1.0])
     >>> print(ct.summary(found).splitlines()[1])
-    scales           μ_l = 0.05 m per mm, μ_v = 0.01 m/s per mm, μ_a = 0.015 m/s^2 per mm
+    scales           μ_l = 0.05 m per mm, μ_v = 0.01 m/s per mm, μ_a = 0.015 m/s² per mm
     """
     mechanism = mechanism_of(mechanism)
     instant = mechanism.motion_parameter.instant

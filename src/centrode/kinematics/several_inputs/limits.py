@@ -269,8 +269,8 @@ def limits(
     >>> locked = ct.example("slider-between-cranks-locked")
     >>> print(ct.summary(ct.limits(locked)))
     drive          OA
-    held           none
-    about          0 rad (0 deg)
+    held drives    none
+    initial value  0 rad (0 deg)
     from           -0.808314721 rad (-46.313 deg), limit of group CB-BD (point B)
     to             1.79991242 rad (103.127 deg), limit of group CB-BD (point B)
     change points  none
