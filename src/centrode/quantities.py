@@ -136,14 +136,14 @@ def spelled_unit(unit: str) -> str:
         "N·m" for "N m", "кг·м²/рад" for "kg m^2/rad", "1/(m·rad)" for "1/m/rad", nothing for a plain number.
     """
     place = LANGUAGES.index(chosen_language())
-    return _composed(unit, {symbol: names[place] for symbol, names in UNIT_SYMBOLS.items()})
+    return _composed_unit(unit, {symbol: names[place] for symbol, names in UNIT_SYMBOLS.items()})
 
 
 def terminal_unit(unit: str) -> str:
     """`spelled_unit`, but in English degrees by their typed name: what is printed as "30 deg" can be typed again."""
     if chosen_language() != "en":
         return spelled_unit(unit)
-    return _composed(unit, {symbol: names[0] for symbol, names in UNIT_SYMBOLS.items()} | {"deg": "deg"})
+    return _composed_unit(unit, {symbol: names[0] for symbol, names in UNIT_SYMBOLS.items()} | {"deg": "deg"})
 
 
 def with_unit(digits: str, label: str, gap: str = " ") -> str:
@@ -151,7 +151,7 @@ def with_unit(digits: str, label: str, gap: str = " ") -> str:
     return f"{digits}{'' if label == DEGREES else gap}{label}" if label else digits
 
 
-def _composed(unit: str, names: Mapping[str, str]) -> str:
+def _composed_unit(unit: str, names: Mapping[str, str]) -> str:
     # descriptions type factors with a star, "N*m"
     powers = {base: power for base, power in powers_of(unit.replace("*", " ")).items() if power}
 

@@ -69,11 +69,11 @@ class CentrodesLayer(MotionLayer):
 
     def placed(self, side: int, sample: int) -> Array:
         """The fixed (0) or the moving curve (1) as it lies at a sample; NaN where its body has no position."""
-        return self._carried(self.bodies[side], self.curves[side], sample)
+        return self._curve_carried_by(self.bodies[side], self.curves[side], sample)
 
     def touching(self, sample: int) -> Array:
         """Where one rolls on the other at a sample."""
-        return np.asarray(self._carried(self.bodies[0], self.contact[sample][None], sample)[0])
+        return np.asarray(self._curve_carried_by(self.bodies[0], self.contact[sample][None], sample)[0])
 
     def ground(self, axes: Axes) -> None:
         """The curve of the frame stands still."""
@@ -108,7 +108,7 @@ class CentrodesLayer(MotionLayer):
             for colour, text, body in zip((FIXED, MOVING), texts, self.bodies, strict=True)
         ]
 
-    def _carried(self, body: str, curve: Array, sample: int) -> Array:
+    def _curve_carried_by(self, body: str, curve: Array, sample: int) -> Array:
         if isinstance(self.scene, Globe):
             found = laid(self.scene, body, curve, sample)
             return np.full_like(curve, np.nan) if found is None else found

@@ -272,7 +272,7 @@ class Stage:
         """The ground alone, then every frame."""
         style: AbstractContextManager[None] = house_style()
         with style:
-            figure, axes, paper = self._prepared()
+            figure, axes, paper = self._prepare_figure()
             canvas: Any = FigureCanvasAgg(darkened(figure) if self.dark else figure)
             canvas.draw()
             ground = canvas.copy_from_bbox(figure.bbox)
@@ -298,7 +298,7 @@ class Stage:
         for one in sorted(moving, key=lambda artist: artist.get_zorder()):
             one.draw(renderer)
 
-    def _prepared(self) -> tuple[Figure, Axes, Axes]:
+    def _prepare_figure(self) -> tuple[Figure, Axes, Axes]:
         """The figure with its ground: axes for the layers, and axes in inches for texts."""
         usual, least = (
             min(self.size[0] / inches[0], self.size[1] / inches[1]) for inches in (PAPER, SMALLEST)

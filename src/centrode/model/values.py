@@ -83,12 +83,12 @@ class Placed:
 def si(value: object, kind: str) -> float:
     """`to_si`, with its complaint as a Problem; an angle without a unit is treated as the description wishes."""
     if kind not in ANGULAR:
-        return _bounded(value, kind)
+        return _bounded_number(value, kind)
     bare_angles = READING.get().bare_angles
     if bare_angles == "refused" and _is_bare(value, kind):
         error = bare_angle(value)
         raise Problem(error.what, error.repair)
-    number = _bounded(value, kind)
+    number = _bounded_number(value, kind)
     return Radians(number) if bare_angles == "marked" else number
 
 
@@ -99,7 +99,7 @@ def _is_bare(value: object, kind: str) -> bool:
         raise Problem(error.what, error.repair) from None
 
 
-def _bounded(value: object, kind: str) -> float:
+def _bounded_number(value: object, kind: str) -> float:
     """`to_si` within what can be computed with."""
     try:
         number = to_si(value, kind)
@@ -358,7 +358,7 @@ def _cell(text: str, kind: str, factor: float | None) -> float:
     """Number [SI] of a cell, whose unit stands in the heading, or else in the cell."""
     if factor is None:
         return si(text.strip(), kind)
-    number = _bounded(text.strip(), kind) * factor
+    number = _bounded_number(text.strip(), kind) * factor
     return Radians(number) if kind in ANGULAR and READING.get().bare_angles == "marked" else number
 
 

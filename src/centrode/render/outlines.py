@@ -168,7 +168,7 @@ def write_outlines_dxf(outlines: Sequence[CamOutline], path: Path, title: str = 
             document.layers.add(f"points-{layer}", color=stroke.number)
             for piece in pieces:
                 _spline(space, piece, layer)
-            for places in _joined(pieces):
+            for places in _join_pieces(pieces):
                 space.add_lwpolyline(places.tolist(), dxfattribs={"layer": f"points-{layer}"})
         _centre(document, space)
         _title(document, space, outlines, title)
@@ -186,7 +186,7 @@ def _spline(space: Any, piece: CamOutline, layer: str) -> None:
     )
 
 
-def _joined(pieces: Sequence[CamOutline]) -> list[np.ndarray[Any, Any]]:
+def _join_pieces(pieces: Sequence[CamOutline]) -> list[np.ndarray[Any, Any]]:
     """Points [mm] of pieces, those end to end together."""
     found: list[np.ndarray[Any, Any]] = []
     for piece in pieces:

@@ -67,9 +67,9 @@ class Spelling(ABC):
             case Number():
                 return self.number(text)
             case Sentence(message, values):
-                return self._filled(_(message), values)
+                return self._fill_message(_(message), values)
             case Counted(singular, plural, count, values):
-                return self._filled(
+                return self._fill_message(
                     ngettext(singular, plural, count), {**values, "n": Number(count, digits="d")}
                 )
             case Joined(parts, between):
@@ -93,7 +93,7 @@ class Spelling(ABC):
             case _:
                 assert_never(text)
 
-    def _filled(self, message: str, values: Mapping[str, Text]) -> str:
+    def _fill_message(self, message: str, values: Mapping[str, Text]) -> str:
         # a message without holes may hold braces of its own
         return (
             message.format(**{name: self.text(value) for name, value in values.items()})

@@ -79,7 +79,7 @@ def _facts(results: BaseRadiusResults) -> Iterator[Fact]:
     if results.is_free:
         yield Fact(label, Sentence("none: no bound limits it"))
     elif results.least is not None:
-        yield Fact(label, _decided(results.least))
+        yield Fact(label, _deciding_bound(results.least))
     if results.refusal is not None:
         yield Fact(label, Name(results.refusal.what))
     if results.best is not None:
@@ -113,7 +113,7 @@ def _admissible_roller(results: BaseRadiusResults) -> Iterator[Text]:
         yield Sentence("radius up to {ratio} of the least radius of its path", ratio=ratio)
 
 
-def _decided(least: Least) -> Text:
+def _deciding_bound(least: Least) -> Text:
     if least.by in EVERYWHERE:
         return Sentence(
             "{radius}, determined by {bound}", radius=length(least.base_radius), bound=DECIDES[least.by]
@@ -221,7 +221,7 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
     none = Sentence("No bounds are given: only undercutting of the profile is avoided.")
     yield Paragraph(admissible if bounded else none)
     place = least.at % tau
-    decided = {"radius": _measured(least.base_radius), "angle": Number(place, "rad", digits="")}
+    decided = {"radius": _measured_length(least.base_radius), "angle": Number(place, "rad", digits="")}
     if least.by == "pressure angle":
         text = Sentence(
             "The least base radius is {radius}. The pressure angle determines it, at $phi$ = {angle}:",
@@ -265,7 +265,7 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
         yield Paragraph(_best_offset(results.best, least))
 
 
-def _measured(value: float) -> Number:
+def _measured_length(value: float) -> Number:
     """A length in a sentence of a document, which gives it its digits."""
     return Number(value, "m", digits="")
 
@@ -277,7 +277,7 @@ def _taken(results: BaseRadiusResults, least: Least) -> Text:
     taken = results.cam.body.base_radius
     return Sentence(
         "The cam is made with a base radius of {radius}, {share} times the least one.",
-        radius=_measured(taken),
+        radius=_measured_length(taken),
         share=Number(taken / least.base_radius, digits=".4g"),
     )
 
@@ -286,8 +286,8 @@ def _best_offset(best: Least, least: Least) -> Text:
     """The offset with which the cam of a translating roller or edge may be least."""
     return Sentence(
         "With an offset of {offset} of the follower's axis the base radius could be {radius}, {share} less.",
-        offset=_measured(_offset(best)),
-        radius=_measured(best.base_radius),
+        offset=_measured_length(_offset(best)),
+        radius=_measured_length(best.base_radius),
         share=Number(1.0 - best.base_radius / least.base_radius, digits=".1%"),
     )
 

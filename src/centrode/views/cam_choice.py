@@ -93,7 +93,7 @@ def _measure(name: str) -> Sentence:
     return Sentence(MEASURES[name].title)
 
 
-def _measured(name: str) -> tuple[float, str, bool]:
+def _measure_unit(name: str) -> tuple[float, str, bool]:
     """Factor and unit in which a measure is shown, and whether that is fixed: stresses are in megapascals."""
     unit = MEASURES[name].unit
     return (MEGA, "MPa", True) if unit == "Pa" else (1.0, unit, False)
@@ -101,7 +101,7 @@ def _measured(name: str) -> tuple[float, str, bool]:
 
 def _value(name: str, value: float) -> Number:
     """A value of a measure with its unit."""
-    factor, unit, _fixed = _measured(name)
+    factor, unit, _fixed = _measure_unit(name)
     return Number(factor * value, unit)
 
 
@@ -122,7 +122,7 @@ def _facts(results: CamChoice) -> Iterator[Fact]:
     if choice.at_ends:
         yield Fact(Sentence("at an end of its range"), Joined(list(map(Name, choice.at_ends))))
     if not choice.admissible:
-        yield Fact(Sentence("result"), _missed(results))
+        yield Fact(Sentence("result"), _missed_bounds(results))
         return
     for name, by in choice.binding.items():
         moved = Sentence(
@@ -155,7 +155,7 @@ def _proof(results: CamChoice) -> Iterator[Fact]:
     yield Fact(Sentence("other designs"), near)
 
 
-def _missed(results: CamChoice) -> Sentence:
+def _missed_bounds(results: CamChoice) -> Sentence:
     """By how much the nearest design misses its bounds: "contact stress by 12.3 %"."""
     bounds = Joined(
         [
@@ -169,7 +169,7 @@ def _missed(results: CamChoice) -> Sentence:
 def _failure(results: CamChoice) -> Failure | None:
     if results.choice.admissible:
         return None
-    return Failure(_missed(results), Sentence("move a bound, or widen the ranges of the parameters"))
+    return Failure(_missed_bounds(results), Sentence("move a bound, or widen the ranges of the parameters"))
 
 
 def _parameters(results: CamChoice) -> Table:
@@ -237,7 +237,7 @@ def _designs(results: CamChoice) -> Table:
         values = np.array([design.parameters[name] for design in designs])
         columns.append(Column(name, values, parameter_unit(results.cam, name)))
     for name in results.measures:
-        factor, unit, fixed = _measured(name)
+        factor, unit, fixed = _measure_unit(name)
         values = np.array([design.measures[name].value * factor for design in designs])
         columns.append(Column(name, values, unit, unit_fixed=fixed))
     kept = tuple(Name("no" if design.misses else "yes") for design in designs)
@@ -251,7 +251,7 @@ def _diagram(results: CamChoice) -> FrontDiagram:
     """Best designs as a bound moves, with the parameters that lead to them."""
     front = results.front
     assert front is not None
-    factor = _measured(front.against)[0]
+    factor = _measure_unit(front.against)[0]
     bound = results.choice.chosen.measures[front.against].bound
     return FrontDiagram(
         Sentence(
@@ -269,7 +269,7 @@ def _diagram(results: CamChoice) -> FrontDiagram:
 
 
 def _label(name: str) -> AxisLabel:
-    _factor, unit, fixed = _measured(name)
+    _factor, unit, fixed = _measure_unit(name)
     worst = Sentence("greatest {measure}", measure=_measure(name))
     if MEASURES[name].least:
         worst = Sentence("least {measure}", measure=_measure(name))
@@ -278,7 +278,7 @@ def _label(name: str) -> AxisLabel:
 
 def _front_panel(results: CamChoice, front: TradeOff) -> FrontPanel:
     """What is made best, with the start and the chosen design among the best ones."""
-    factor = _measured(front.best)[0]
+    factor = _measure_unit(front.best)[0]
     dots = (
         _dot(results.choice.start, front, Sentence("start"), chosen=False),
         _dot(results.choice.chosen, front, Sentence("chosen"), chosen=True),
@@ -288,7 +288,7 @@ def _front_panel(results: CamChoice, front: TradeOff) -> FrontPanel:
 
 def _dot(design: CamDesign, front: TradeOff, name: Sentence, *, chosen: bool) -> DesignDot:
     text = Sentence("{name}, violates a bound", name=name) if design.misses else name
-    x, y = (_measured(name)[0] * design.measures[name].value for name in (front.against, front.best))
+    x, y = (_measure_unit(name)[0] * design.measures[name].value for name in (front.against, front.best))
     return DesignDot(text, x, y, not design.misses, chosen)
 
 
@@ -303,7 +303,7 @@ def _parameter_panel(results: CamChoice, front: TradeOff, name: str) -> FrontPan
         if low - NEAR * abs(low) <= end <= high + NEAR * abs(high)
     )
     chosen = results.choice.chosen
-    at = _measured(front.against)[0] * chosen.measures[front.against].value
+    at = _measure_unit(front.against)[0] * chosen.measures[front.against].value
     dot = DesignDot(NOTHING, at, chosen.parameters[name], admissible=True, chosen=True)
     label = AxisLabel(symbol=parameter_symbol(name), unit=parameter_unit(results.cam, name))
     return FrontPanel(label, values, (dot,), ends)

@@ -62,7 +62,7 @@ ROUNDING = 1e-14
 
 def sheet(equations: Equations) -> Sheet:
     """The page of the equations; in documents constraints and derivation are chapters, with numbers where known."""
-    explained, derived = tuple(_explained(equations)), tuple(_derived(equations))
+    explained, derived = tuple(_explain_constraints(equations)), tuple(_derive_systems(equations))
     if equations.mechanism.space == "sphere":
         text = Sentence(
             "Each dyad adds one point: the law of cosines in the triangle of the dyad's two centres and this "
@@ -73,7 +73,7 @@ def sheet(equations: Equations) -> Sheet:
     checked: tuple[Section, ...] = ()
     numbered: tuple[Section, ...] = ()
     if isinstance(equations, NumberedEquations):
-        checked, numbered = tuple(_checked(equations)), tuple(_numbered(equations))
+        checked, numbered = tuple(_check_constraints(equations)), tuple(_put_numbers(equations))
     title = Sentence("Velocities and accelerations")
     chapters = {
         "equations": _constraints((*explained, *checked)),
@@ -86,7 +86,7 @@ def _constraints(sections: tuple[Section, ...]) -> Chapter:
     return Chapter(Sentence("Constraint equations"), sections)
 
 
-def _explained(equations: Equations) -> Iterator[Section]:
+def _explain_constraints(equations: Equations) -> Iterator[Section]:
     """Letters, constraints, their derivatives, and what the drives give."""
     yield Section(Sentence("Symbols"), (_symbols(equations),))
     conditions = [one for group in equations.groups for one in group.conditions]
@@ -98,7 +98,7 @@ def _explained(equations: Equations) -> Iterator[Section]:
     yield Section(Sentence("Given by the drives (SI)"), _blocks(given))
 
 
-def _derived(equations: Equations) -> Iterator[Section]:
+def _derive_systems(equations: Equations) -> Iterator[Section]:
     """Systems and determinants, normal form, accelerations, velocities of points."""
     if equations.together is not None:
         yield Section(Sentence("Velocities: Cramer's rule"), _blocks(_solution(equations.together)))
@@ -386,7 +386,7 @@ def _root(formula: SymbolFormula) -> AbsoluteProduct:
 # The equations with numbers: checks, and what stands behind the letters at each instant.
 
 
-def _checked(equations: NumberedEquations) -> Iterator[Section]:
+def _check_constraints(equations: NumberedEquations) -> Iterator[Section]:
     """The constraints with the numbers of the motion put in."""
     check = equations.check
     if check is not None:
@@ -399,7 +399,7 @@ def _checked(equations: NumberedEquations) -> Iterator[Section]:
         yield Section(Sentence("Check"), (Check(text, check.greatest, 1.0, check.allowed),))
 
 
-def _numbered(equations: NumberedEquations) -> Iterator[Section]:
+def _put_numbers(equations: NumberedEquations) -> Iterator[Section]:
     """The formulas with the numbers of each instant."""
     if not equations.groups:
         return
@@ -457,7 +457,7 @@ class _Numbers:
         ):
             if lines:
                 yield Formula(tuple(lines))
-        yield _compared(numbers)
+        yield _compare_rates(numbers)
 
     def value(self, letter: Letter) -> Leaf:
         """A number with the unit of its letter; angles also in degrees where these are shown."""
@@ -571,7 +571,7 @@ def _beside(value: float, size: float) -> Number:
     return Number(value if abs(value) > ROUNDING * size else 0.0)
 
 
-def _compared(numbers: NumbersAtInstant) -> Block:
+def _compare_rates(numbers: NumbersAtInstant) -> Block:
     """Rates and accelerations of the systems beside those of the motion in closed form."""
     if not numbers.rates:
         return Paragraph(Sentence("The closed-form solution gives no velocities to compare with."))

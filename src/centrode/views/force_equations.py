@@ -96,7 +96,9 @@ def lever_equation(lever: Lever, none: float) -> Formula:
     balancing = "Mb" if lever.unit == "N m" else "Fb"
     unknown = force_symbol(balancing)
     moments = [Expression("M_p ({force})", force=_of_moment(one.name)) for one in terms]
-    known = _signed([(unknown, False), *((_size(one.moment, lever.unit), one.moment < 0) for one in terms)])
+    known = _signed_sum(
+        [(unknown, False), *((_size(one.moment, lever.unit), one.moment < 0) for one in terms)]
+    )
     return Formula(
         (
             (Expression("sum M_p"), _sum([unknown, *moments]), known, "0"),
@@ -136,7 +138,9 @@ def _moments(about: StaticJoint, unknown: Unknown, terms: Sequence[MomentTerm], 
         arm = Number(unknown.arm, "m", ".5g", unit_fixed=True, unit_hidden=True)
         with_arm = Expression("{force} dot.op {arm}", force=first, arm=Factor(arm))
     symbols = [_moment_of(unknown.symbol, below), *(_moment_of(term.symbol, below) for term in terms)]
-    numbers = _signed([(with_arm, False), *((_size(term.moment, "N m"), term.moment < 0) for term in terms)])
+    numbers = _signed_sum(
+        [(with_arm, False), *((_size(term.moment, "N m"), term.moment < 0) for term in terms)]
+    )
     return Formula(
         ((Expression("sum M_({point})", point=below), _sum(symbols), numbers, "0"), _outcome(outcome))
     )
@@ -160,10 +164,10 @@ def _size(moment: float, unit: str) -> Number:
 
 
 def _sum(terms: Sequence[Leaf]) -> Leaf:
-    return _signed([(term, False) for term in terms])
+    return _signed_sum([(term, False) for term in terms])
 
 
-def _signed(terms: Iterable[tuple[Leaf, bool]]) -> Leaf:
+def _signed_sum(terms: Iterable[tuple[Leaf, bool]]) -> Leaf:
     """A sum of terms, each with whether it is subtracted; the first is not."""
     notation, holes = "", {}
     for number, (term, subtracted) in enumerate(terms):

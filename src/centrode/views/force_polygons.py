@@ -84,11 +84,11 @@ def sheet(results: ForcePolygonResults) -> Sheet:
             f"{name}{suffix}": page for suffix, _place, one in found for name, page in _pages(one).items()
         },
         chapters={"force-polygons": _chapter(results)},
-        printed=tuple(block for _suffix, place, one in found for block in _printed(one, place)),
+        printed=tuple(block for _suffix, place, one in found for block in _printed_instant(one, place)),
     )
 
 
-def _printed(found: ForcePolygons, place: float | str) -> Iterator[Block | Section]:
+def _printed_instant(found: ForcePolygons, place: float | str) -> Iterator[Block | Section]:
     """What is printed of one instant: what is what, the steps of each group, all forces, the three routes."""
     instant = found.mechanism.motion_parameter.instant
     where = place_number(instant.read(place, "at"), instant.unit)
@@ -214,7 +214,7 @@ def step_text(step: Step) -> Text:
         case JointReaction(joint, outcomes):
             return Joined((_joint(joint), Joined([_outcome(one) for one in outcomes])), ": ")
         case Assumption(joint, neglected):
-            return _neglected(joint, neglected)
+            return _neglected_component(joint, neglected)
         case _:
             assert_never(step)
 
@@ -305,7 +305,7 @@ def _line(line: ForceLine) -> Text:
     return Joined((Name(line.symbol), between), " ∥ ")
 
 
-def _neglected(joint: StaticJoint, neglected: Neglect) -> Text:
+def _neglected_component(joint: StaticJoint, neglected: Neglect) -> Text:
     name = Name(joint.name)
     match neglected:
         case Neglect.TOOTH_PRESSURE:

@@ -81,20 +81,20 @@ def sheet(results: GraphicResults) -> Sheet:
     several = len(results.checks) > 1
     pictures: dict[str, Page] = {}
     for k, check in checks:
-        pictures |= {_numbered(name, k, several): page for name, page in _pages(check.diagrams).items()}
+        pictures |= {_numbered_name(name, k, several): page for name, page in _pages(check.diagrams).items()}
     return Sheet(
-        tables={_numbered("check", k, several): _file(check) for k, check in checks},
+        tables={_numbered_name("check", k, several): _file(check) for k, check in checks},
         pictures=pictures,
         chapters={"graphic": _chapter(results)},
-        printed=tuple(block for k, check in checks for block in _printed(results, k, check)),
+        printed=tuple(block for k, check in checks for block in _printed_instant(results, k, check)),
     )
 
 
-def _numbered(name: str, number: int, several: bool) -> str:
+def _numbered_name(name: str, number: int, several: bool) -> str:
     return f"{name}-{number + 1}" if several else name
 
 
-def _printed(results: GraphicResults, sample: int, check: GraphicCheck) -> Iterator[Block | Section]:
+def _printed_instant(results: GraphicResults, sample: int, check: GraphicCheck) -> Iterator[Block | Section]:
     """What a terminal prints of an instant."""
     parameter = results.mechanism.motion_parameter
     value = place_number(float(parameter.instants(results.motion)[sample]), parameter.instant.unit)
@@ -148,7 +148,7 @@ def _centre(found: Diagrams, link: str, centre: complex | None, none: float) -> 
     """Place of an instant centre, and how far from it points of the link are."""
     if centre is None:
         return Sentence("{link}: at infinity, it translates", link=Name(link))
-    place = Place((_rounded(centre.real, none), _rounded(centre.imag, none)), "m", ".6g")
+    place = Place((_rounded_number(centre.real, none), _rounded_number(centre.imag, none)), "m", ".6g")
     points = list(found.mechanism.links[link].coordinates)[:MOST_DISTANCES]
     distances = _distances(found, link, points, ".6g", none)
     return Joined((Name(link), Joined((place, *distances))), ": ")
@@ -159,12 +159,12 @@ def _distances(
 ) -> Iterator[Text]:
     """Distances from an instant centre to points of the link; the last has the unit of all."""
     for point in points:
-        distance = _rounded(found.reach(link, point), none)
+        distance = _rounded_number(found.reach(link, point), none)
         number = Number(distance, "m", digits, unit_hidden=point != points[-1])
         yield Joined((Name(f"P{point}"), number), " = ")
 
 
-def _rounded(value: float, none: float) -> float:
+def _rounded_number(value: float, none: float) -> float:
     """A number; what is not greater than `none`, as nothing."""
     return value if abs(value) > none else 0.0
 
@@ -218,7 +218,7 @@ def _trial_lines(step: ConstructionStep, order: int) -> list[Text]:
     apart = NONE * max(abs(x) for misfits in trial.misfits for x in misfits)
 
     def rates(values: tuple[float, ...]) -> Text:
-        numbers = [Number(_rounded(value, none)) for value in values]
+        numbers = [Number(_rounded_number(value, none)) for value in values]
         return Joined([Joined(pair, " = ") for pair in zip(turned, numbers, strict=True)])
 
     checked = Joined([Name(name) for name in trial.checked])
@@ -226,7 +226,7 @@ def _trial_lines(step: ConstructionStep, order: int) -> list[Text]:
         Sentence("false position: {links} tried, {cut} checked", links=Joined(turned), cut=checked)
     ]
     for values, misfits in zip(trial.values, trial.misfits, strict=True):
-        amiss = Joined([Number(_rounded(x, apart)) for x in misfits])
+        amiss = Joined([Number(_rounded_number(x, apart)) for x in misfits])
         lines.append(Sentence("{tried}: residual {amiss}", tried=rates(values), amiss=amiss))
     return [*lines, Sentence("hence {found}", found=rates(trial.found))]
 
@@ -347,17 +347,21 @@ def _table(check: GraphicCheck, caption: Text = NOTHING) -> Table:
     integrated = [
         math.nan
         if row.integrated is None
-        else _rounded(row.integrated, INTEGRATED * (greatest[row.quantity] or 1.0))
+        else _rounded_number(row.integrated, INTEGRATED * (greatest[row.quantity] or 1.0))
         for row in rows
     ]
     return Table(
         (
             Column("quantity", tuple(map(_symbol, rows)), head=Sentence("quantity")),
             Column("unit", tuple(Unit(unit, shown=True) for unit in units), head=Sentence("unit")),
-            column(Sentence("drawn"), [_rounded(row.graphic, NONE * greatest[row.quantity]) for row in rows]),
+            column(
+                Sentence("drawn"),
+                [_rounded_number(row.graphic, NONE * greatest[row.quantity]) for row in rows],
+            ),
             column(Sentence("integrated"), integrated),
             column(
-                Sentence("closed form"), [_rounded(row.closed, NONE * greatest[row.quantity]) for row in rows]
+                Sentence("closed form"),
+                [_rounded_number(row.closed, NONE * greatest[row.quantity]) for row in rows],
             ),
             Column(
                 "difference",
@@ -384,7 +388,7 @@ def _symbol(row: CheckRow) -> Text:
 
 
 def _difference(row: CheckRow, greatest: float) -> Number:
-    difference = _rounded(row.difference, ALIKE * greatest)
+    difference = _rounded_number(row.difference, ALIKE * greatest)
     return Number(difference, row.unit, ".1e" if difference else ".1g", unit_hidden=True)
 
 

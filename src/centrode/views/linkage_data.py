@@ -108,16 +108,16 @@ def _points_on_sphere(mechanism: Mechanism) -> Table:
     columns = (
         _names(mechanism.frame.points, Sentence("point")),
         *(
-            Column("", _rounded(vector), head=Expression(axis))
+            Column("", _rounded_numbers(vector), head=Expression(axis))
             for axis, vector in zip("xyz", vectors, strict=True)
         ),
-        Column("", _rounded(along), "rad", Sentence("longitude")),
-        Column("", _rounded(up), "rad", Sentence("latitude")),
+        Column("", _rounded_numbers(along), "rad", Sentence("longitude")),
+        Column("", _rounded_numbers(up), "rad", Sentence("latitude")),
     )
     return Table(columns, Sentence("Points of the frame"))
 
 
-def _rounded(values: np.ndarray) -> np.ndarray:
+def _rounded_numbers(values: np.ndarray) -> np.ndarray:
     """Numbers without what rounding has left of zero."""
     return np.where(np.abs(values) < 1e-15, 0.0, values)
 

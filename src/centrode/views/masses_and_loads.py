@@ -157,7 +157,7 @@ def _amount(load: AnyLoad) -> Text:
     """Vector, value and coefficients of a load, in SI; a table by the number of its rows."""
     parts: list[Text] = []
     if isinstance(load, PointForce):
-        parts.append(_bracketed(load.vector))
+        parts.append(_bracketed_vector(load.vector))
     for key, before in AMOUNTS:
         value = getattr(load, key, None)
         if value is not None:
@@ -184,7 +184,7 @@ def _names(names: Iterable[str]) -> Text:
     return Joined(tuple(map(Name, names)))
 
 
-def _bracketed(values: Sequence[object]) -> Text:
+def _bracketed_vector(values: Sequence[object]) -> Text:
     """Coordinates in SI; those that are formulas as they were written."""
     numbers = [float(value) for value in values if isinstance(value, int | float)]
     if len(numbers) == len(values):

@@ -63,10 +63,10 @@ def _page(plan: PositionPlan) -> PositionsPage:
     note: Text = NOTHING
     if plan.link:
         note = Sentence("{number}: {link} at rest", number=Number(0, digits="d"), link=Name(plan.link))
-    return PositionsPage(TITLE, plan.mechanism, plan.positions, plan.path, _numbered(plan), note)
+    return PositionsPage(TITLE, plan.mechanism, plan.positions, plan.path, _numbered_points(plan), note)
 
 
-def _numbered(plan: PositionPlan) -> tuple[str, ...]:
+def _numbered_points(plan: PositionPlan) -> tuple[str, ...]:
     """The points whose paths carry numbers: of the driven link, and of the link that stops."""
     mechanism = plan.mechanism
     guides = {guide.id: guide.point for guide in mechanism.guides}
@@ -103,7 +103,7 @@ def _table(plan: PositionPlan) -> Table:
         ),
         Column(f"drive_{drive.name}", data["drive_value"].values[:, 0], drive.unit, Name(drive.name)),
     ]
-    for point in plan.points or _numbered(plan):
+    for point in plan.points or _numbered_points(plan):
         place = np.where(ok[:, None], data["position"].sel(point=point).values, np.nan)
         columns += [
             Column(f"{axis}_{point}", place[:, number], "m", Symbol(axis, point))

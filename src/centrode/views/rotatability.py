@@ -301,7 +301,7 @@ class _Turning:
     def circuits(self) -> Iterator[Fact]:
         found, label = self.turning.circuits, Sentence("circuits")
         if found is None:
-            yield Fact(label, _uncounted(self.turning.circuits_missing))
+            yield Fact(label, _uncounted_reason(self.turning.circuits_missing))
             return
         parts: list[Text] = [
             Counted(
@@ -436,7 +436,7 @@ SIDES: Mapping[str, Text] = {
 """Sides, by the words in which a description names them."""
 
 
-def _uncounted(reason: Uncounted | None) -> Text:
+def _uncounted_reason(reason: Uncounted | None) -> Text:
     return NOTHING if reason is None else Sentence(reason.word, most=Number(MOST_DYADS, digits="d"))
 
 
@@ -457,13 +457,13 @@ def _repair_facts(repair: Repair) -> Iterator[Fact]:
         return
     if repair.found and not repair.changes:
         yield Fact(Sentence("found"), Sentence("the requirement is already satisfied"))
-        yield _reached(repair)
+        yield _reached_angle(repair)
         return
     if repair.found:
         yield Fact(Sentence("found"), Sentence("a change of magnitude {size}", size=Number(repair.size)))
         for change in repair.changes:
             yield Fact(Name(change.path), _change(change))
-        yield _reached(repair)
+        yield _reached_angle(repair)
     else:
         none = Sentence("none found within the bounds; this does not prove that none exists")
         yield Fact(Sentence("found"), none)
@@ -478,7 +478,7 @@ def _repair_facts(repair: Repair) -> Iterator[Fact]:
     )
 
 
-def _reached(repair: Repair) -> Fact:
+def _reached_angle(repair: Repair) -> Fact:
     angle = _degrees(repair.reached or 0.0)
     return Fact(Sentence("verified"), Sentence("turns fully, least transmission angle {angle}", angle=angle))
 
@@ -577,7 +577,7 @@ def _record(value: Any) -> Any:
         case AngleCondition() | SlideCondition():
             return str(value)
         case Uncounted():
-            return _uncounted(value)
+            return _uncounted_reason(value)
         case Impossibility():
             return impossibility_text(value)
         case FourBar():

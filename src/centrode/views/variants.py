@@ -55,7 +55,7 @@ def sheet(variants: Variants) -> Sheet:
     """Whether each variant turns and why not; where there are answers, the numbers at the instants of all of them."""
     counted = Counted("{n} variant", "{n} variants", len(variants.rows))
     return Sheet(
-        printed=(_printed(variants), Paragraph(Joined((counted, _statuses(variants)), ": "))),
+        printed=(_printed_table(variants), Paragraph(Joined((counted, _statuses(variants)), ": "))),
         tables={"summary": _summary(variants)},
         chapters=Deferred(
             {
@@ -97,7 +97,7 @@ def _names(rows: Sequence[VariantRow]) -> Column:
     return Column("variant", tuple(Name(row.variant) for row in rows), head=Sentence("variant"))
 
 
-def _printed(variants: Variants) -> Table:
+def _printed_table(variants: Variants) -> Table:
     """The table of a terminal; limits in SI, as the summary has them."""
     rows = variants.rows
     limits = tuple(

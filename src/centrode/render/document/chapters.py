@@ -74,10 +74,10 @@ def _compact_section(section: Section) -> Section:
 
 def _compact(table: Table) -> Table:
     columns = tuple(column for column in table.columns if not column.detail)
-    return _thinned(replace(table, columns=columns))
+    return _thin_table(replace(table, columns=columns))
 
 
-def _thinned(table: Table) -> Table:
+def _thin_table(table: Table) -> Table:
     """A table that shows some of its rows, with fewer of them at even steps: the first and the last stay.
 
     So do both ends of a gap, where rows between them are alike and left out.

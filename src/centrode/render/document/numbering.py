@@ -50,7 +50,7 @@ def number_blocks(report: Report) -> Report:
         return block
 
     opening = tuple(map(numbered, report.opening))
-    chapters = _without_loose_references(_changed(report.chapters, numbered))
+    chapters = _without_loose_references(_change_blocks(report.chapters, numbered))
     return replace(report, opening=opening, chapters=chapters)
 
 
@@ -83,7 +83,7 @@ def _counter() -> Callable[[], int]:
     return following
 
 
-def _changed(
+def _change_blocks(
     chapters: Sequence[ChapterBlocks], change: Callable[[Block], Block]
 ) -> tuple[ChapterBlocks, ...]:
     return tuple(
@@ -107,7 +107,9 @@ def caption_blocks(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ..
         replace(
             chapter,
             sections=tuple(
-                replace(section, blocks=tuple(_named(block, section, chapter) for block in section.blocks))
+                replace(
+                    section, blocks=tuple(_name_block(block, section, chapter) for block in section.blocks)
+                )
                 for section in chapter.sections
             ),
         )
@@ -124,10 +126,10 @@ def caption_blocks(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ..
         count = taken[block.caption]
         return block if count == 1 else replace(block, caption=f"{block.caption} ({count})")
 
-    return _changed(named, counted)
+    return _change_blocks(named, counted)
 
 
-def _named(block: Block, section: SectionBlocks, chapter: ChapterBlocks) -> Block:
+def _name_block(block: Block, section: SectionBlocks, chapter: ChapterBlocks) -> Block:
     if not isinstance(block, Captioned) or block.caption:
         return block
     if section.title:

@@ -62,7 +62,7 @@ ROOM = 0.08
 def plot_figure(plot: Plot, display: Display) -> Figure:
     """A figure of panels over one abscissa."""
     spelling = FigureSpelling(display)
-    plot = _turned(plot)
+    plot = _turn_columns(plot)
     across = spelling.label(plot.abscissa.label)[0]
     rows = [[_panel(panel, spelling, across) for panel in row] for row in plot.rows]
     title, mechanism = spelling.text(plot.title), PrintSpelling(display).text(plot.mechanism)
@@ -82,7 +82,7 @@ def plot_figure(plot: Plot, display: Display) -> Figure:
     return figure
 
 
-def _turned(plot: Plot) -> Plot:
+def _turn_columns(plot: Plot) -> Plot:
     """The plot with its columns as rows where it has more columns than find room; names stand beside the last."""
     if max(map(len, plot.rows)) <= COLUMNS:
         return plot

@@ -148,7 +148,7 @@ class _Drawing:
         places = [
             self._placed_curve(curve, look)[::every] for look in looks for curve, every in framed if every
         ]
-        places += [self._placed(mark).place[None] for mark in self.scene.marks]
+        places += [self._place_mark(mark).place[None] for mark in self.scene.marks]
         places += drive_arcs(self.paper, initial_sample(self.paper, motion))
         room = (self.box[2] * PAGE_WIDTH - 0.3, self.box[3] * HEIGHT - 0.3)
         return widen(self.paper, np.concatenate([*places, np.empty((0, 2))]), room)
@@ -166,7 +166,7 @@ class _Drawing:
         candidates = np.flatnonzero(seen if seen.any() else known)
         return int(candidates[np.argmin(np.abs(candidates - start))]) if candidates.size else start
 
-    def _placed(self, mark: Mark) -> _Placed:
+    def _place_mark(self, mark: Mark) -> _Placed:
         """A mark on paper; of the two ends of an axis the one that is seen."""
         if not isinstance(self.paper, Globe):
             place = self.paper.factor * mark.place
@@ -184,7 +184,7 @@ class _Drawing:
 
     def _marks(self, curves: Sequence[Array]) -> Iterator[_Placed]:
         """The marks of the scene, and the place where its curves touch at the sample."""
-        yield from map(self._placed, self.scene.marks)
+        yield from map(self._place_mark, self.scene.marks)
         if self.scene.contact is None:
             return
         place = curves[0][self.sample]
@@ -201,7 +201,7 @@ class _Drawing:
 
     def _draw_line(self, axes: Axes, line: StraightLine) -> Segments:
         """A straight line or a great circle; returns its pieces for names to keep clear of."""
-        places = [self._placed(mark).place for mark in line.through]
+        places = [self._place_mark(mark).place for mark in line.through]
         if isinstance(self.paper, Globe):
             return self._draw_great_circle(axes, places[0], places[1])
         ends = (

@@ -247,7 +247,7 @@ def _marked_link(
     outline = [point for point in corners(link) if point in places]
     inside = [point for point in link.coordinates if point in places and point not in outline]
     pieces = list(pairwise([*outline, *outline[:1]] if len(outline) > 2 else outline))
-    pieces = [piece for whole in pieces for piece in _parted(whole, inside, places)]
+    pieces = [piece for whole in pieces for piece in _part_side(whole, inside, places)]
     if not pieces:
         if outline:
             _write_number(axes, _flat(scene, places[outline[0]]) + scene.sign * np.array([3.0, 3.0]), number)
@@ -263,7 +263,7 @@ def _marked_link(
     _write_number(axes, _between(scene, places[longest[0]], places[longest[1]], share), number)
 
 
-def _parted(
+def _part_side(
     piece: tuple[str, str], inside: Sequence[str], places: dict[str, Array]
 ) -> Iterator[tuple[str, str]]:
     """A side of a link, parted at the points of the link that lie on it."""

@@ -76,7 +76,7 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
     source, figures
     """
     with speaking(report.language):
-        tree, pictures = tree_of(report, _numbered, _referred, "pdf")
+        tree, pictures = tree_of(report, _numbered_formula, _referred, "pdf")
         contents = _("Contents")
     body = run_pandoc(tree, "--from=json", "--to=latex-smart-auto_identifiers", "--wrap=preserve").decode()
     body = _in_folder(body, pictures, figures)
@@ -113,7 +113,7 @@ def _in_folder(body: str, pictures: Mapping[str, bytes], folder: str) -> str:
     return found.sub(lambda one: f"{one[1]}{{{folder}/{one[2]}}}", body)
 
 
-def _numbered(latex: str, number: int) -> list[Element]:
+def _numbered_formula(latex: str, number: int) -> list[Element]:
     """A formula that LaTeX numbers, with a label to refer to."""
     return [raw_block("latex", f"\\begin{{equation}}\\label{{eq:{number}}}\n{latex}\n\\end{{equation}}")]
 

@@ -38,7 +38,7 @@ CAPTION = re.compile(
 def word_document(report: Report) -> bytes:
     """A report as DOCX, whose formulas, headings, tables and captions are the word processor's own."""
     with speaking(report.language):
-        tree, pictures = tree_of(report, _numbered, _referred, "png")
+        tree, pictures = tree_of(report, _numbered_formula, _referred, "png")
     with tempfile.TemporaryDirectory() as folder:
         for name, picture in converted(pictures, "png").items():
             (Path(folder) / name).write_bytes(picture)
@@ -50,10 +50,10 @@ def word_document(report: Report) -> bytes:
             folder=folder,
         )
     with speaking(report.language):
-        return _changed(made, FINISHED, {"word/footer-page.xml": FOOTER})
+        return _change_parts(made, FINISHED, {"word/footer-page.xml": FOOTER})
 
 
-def _numbered(latex: str, number: int) -> list[Element]:
+def _numbered_formula(latex: str, number: int) -> list[Element]:
     """A formula with its number at the edge of the page, a field that can be referred to."""
     # a comma between digits is punctuation in mathematics, unless the number is text
     formula = cell_of([displayed(DECIMAL.sub(r"\\text{\1,\2}", latex))["c"][0]], "AlignLeft")
@@ -90,12 +90,14 @@ def _referred(number: int) -> Element:
 def _reference() -> bytes:
     """The document whose styles and page pandoc takes: its own, restyled."""
     own = run_pandoc(b"", "--print-default-data-file=reference.docx")
-    return _changed(
+    return _change_parts(
         own, {"word/styles.xml": _styles, "word/document.xml": lambda text: _page(text, PAGE)}, {}
     )
 
 
-def _changed(document: bytes, changes: Mapping[str, Callable[[str], str]], added: Mapping[str, str]) -> bytes:
+def _change_parts(
+    document: bytes, changes: Mapping[str, Callable[[str], str]], added: Mapping[str, str]
+) -> bytes:
     """A document some of whose parts are changed, and others added."""
     made = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(document)) as given, zipfile.ZipFile(made, "w") as new:
