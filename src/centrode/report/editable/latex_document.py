@@ -9,7 +9,7 @@ from centrode.locale import _, speaking
 from centrode.render.document.blocks import Report
 from centrode.render.latex import escape
 from centrode.report.editable.pandoc import run_pandoc
-from centrode.report.editable.pictures import converted
+from centrode.report.editable.pictures import convert_pictures
 from centrode.report.editable.tree import Element, raw_block, raw_inline, tree_of
 
 LANGUAGES = {"en": "english", "ru": "russian", "uk": "ukrainian"}
@@ -90,7 +90,7 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
         + body
         + "\\end{document}\n"
     )
-    return source.encode(), converted(pictures, "pdf")
+    return source.encode(), convert_pictures(pictures, "pdf")
 
 
 def _beginning(report: Report, contents: str) -> str:

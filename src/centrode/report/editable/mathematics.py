@@ -74,14 +74,14 @@ class LatexFormulas:
             pieces = self._pieces(left)
             for part in rest:
                 pieces += [f"= {part[0]}", *part[1:]]
-            first, *others = packed(pieces, WIDE)
+            first, *others = pack_rows(pieces, WIDE)
             return [f"& {first}", *(f"& \\quad {row}" for row in others)]
         whole = " = ".join("".join(part) for part in rest)
         if visible_length(start) + visible_length(whole) <= WIDE:
             return [f"{start} &= {whole}"]
         rows = []
         for number, part in enumerate(rest):
-            first, *others = packed(part, WIDE - INDENT - visible_length(start))
+            first, *others = pack_rows(part, WIDE - INDENT - visible_length(start))
             rows += [f"{'' if number else start} &= {first}", *(f"& \\quad {row}" for row in others)]
         return rows
 
@@ -89,7 +89,7 @@ class LatexFormulas:
         return [self.found[piece] for piece in fragments_of(spelled)]
 
 
-def packed(pieces: Iterable[str], width: float) -> list[str]:
+def pack_rows(pieces: Iterable[str], width: float) -> list[str]:
     """Pieces in rows of at most so many signs."""
     rows: list[str] = []
     for piece in pieces:

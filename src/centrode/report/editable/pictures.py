@@ -13,7 +13,7 @@ DENSITY = 220
 """Pixels of an inch: what word processors print with."""
 
 
-def converted(pictures: Mapping[str, bytes], kind: Literal["png", "pdf"]) -> dict[str, bytes]:
+def convert_pictures(pictures: Mapping[str, bytes], kind: Literal["png", "pdf"]) -> dict[str, bytes]:
     """SVG of each name as PNG or as PDF; the same bytes from the same figure."""
     return {name: _page(svg, kind) for name, svg in pictures.items()}
 

@@ -14,7 +14,7 @@ from xml.sax.saxutils import escape
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import Report
 from centrode.report.editable.pandoc import run_pandoc
-from centrode.report.editable.pictures import converted
+from centrode.report.editable.pictures import convert_pictures
 from centrode.report.editable.tree import NO_ATTRIBUTES, Element, cell_of, displayed, raw_inline, tree_of
 
 FIRST = (1980, 1, 1, 0, 0, 0)
@@ -40,7 +40,7 @@ def word_document(report: Report) -> bytes:
     with speaking(report.language):
         tree, pictures = tree_of(report, _numbered_formula, _referred, "png")
     with tempfile.TemporaryDirectory() as folder:
-        for name, picture in converted(pictures, "png").items():
+        for name, picture in convert_pictures(pictures, "png").items():
             (Path(folder) / name).write_bytes(picture)
         (Path(folder) / REFERENCE).write_bytes(_reference())
         made = run_pandoc(
