@@ -5,7 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from pathlib import Path
+from itertools import groupby
+from pathlib import Path, PurePosixPath
 
 import click
 
@@ -36,16 +37,29 @@ def folder_of(out: Path | None, source: str, kind: str) -> Path:
 
 
 def files_in(folder: Path, names: Sequence[str]) -> str:
-    """A paragraph that counts and names the files of a folder; of one file beside the reader just its name."""
+    """A paragraph that counts and names the files of a folder, and one for each folder in it.
+
+    Of one file beside the reader it is just its name.
+    """
     if folder == Path() and len(names) == 1:
         return _("wrote {file}").format(file=names[0])
     count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names))
-    return paragraph(count.format(n=len(names), folder=folder) + ":", names)
+    folders = {
+        place: list(within) for place, within in groupby(names, lambda name: str(PurePosixPath(name).parent))
+    }
+    heading = count.format(n=len(names), folder=folder) + ":"
+    lines = [paragraph(heading, folders.pop(".", [])).rstrip()]
+    lines += [
+        paragraph(f"{place}/:", [PurePosixPath(name).name for name in within])
+        for place, within in folders.items()
+    ]
+    return "\n".join(lines)
 
 
 def file_names(draft: Path) -> list[str]:
-    """Names of the files in a draft folder."""
-    return sorted(path.name for path in draft.iterdir())
+    """Names of the files in a draft folder, those in folders of it last."""
+    names = [path.relative_to(draft).as_posix() for path in draft.rglob("*") if path.is_file()]
+    return sorted(names, key=lambda name: ("/" in name, name))
 
 
 def tell(text: str, *, nl: bool = True) -> None:

@@ -99,7 +99,7 @@ def report(
         ct.write_report(
             made, draft, kinds, name, lambda file: progress.say(_("writing {file}").format(file=file))
         )
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.file_names(draft)
     click.echo(_summary(made))
     click.echo("\n" + output.files_in(folder, names))
     _told(made, description)

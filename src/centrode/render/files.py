@@ -28,8 +28,10 @@ BLOCK = 10_000
 def write_tables(sheet: Sheet, folder: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
     """Write the tables of a sheet as CSV (and as workbooks where `spelling` says so), its datasets as netCDF.
 
-    Outlines are written as drawings in true size; further files as they are.
+    Outlines are written as drawings in true size; further files as they are. What is named behind a folder is in it.
     """
+    for name in (*sheet.tables, *sheet.datasets, *sheet.files, *sheet.outlines):
+        (folder / name).parent.mkdir(exist_ok=True)
     for name, table in sheet.tables.items():
         write_table(table, folder / f"{name}.csv", display, spelling)
     for name, dataset in sheet.datasets.items():

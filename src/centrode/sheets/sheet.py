@@ -312,25 +312,29 @@ class Sheet:
     notes: tuple[Text, ...] = ()
     brief: tuple[Fact, ...] = ()
 
-    def with_parts(self, parts: Iterable[Sheet]) -> Sheet:
+    def with_parts(self, parts: Mapping[str, Sheet]) -> Sheet:
         """A sheet with what the sheets of the parts of its result have for a terminal and for files.
 
-        Chapters are its own. The parts of a part are in its sheet already. What a part falls short of is no failure of
-        the whole.
+        The files and pictures of a part are in a folder of its name. Chapters are its own. The parts of a part are in
+        its sheet already. What a part falls short of is no failure of the whole.
         """
-        parts = tuple(parts)
-        sheets = (self, *parts)
-        below = (FactTable(part.facts) for part in parts if part.facts and not part.brief)
+        sheets = (self, *parts.values())
+        folders = ("", *(f"{name}/" for name in parts))
+
+        def filed(kind: str) -> Mapping[str, Any]:
+            return _merge({folder: getattr(one, kind) for folder, one in zip(folders, sheets, strict=True)})
+
+        below = (FactTable(part.facts) for part in parts.values() if part.facts and not part.brief)
         return replace(
             self,
-            facts=(*self.facts, *(fact for part in parts for fact in part.brief)),
+            facts=(*self.facts, *(fact for part in parts.values() for fact in part.brief)),
             scalars={name: scalar for sheet in sheets for name, scalar in sheet.scalars.items()},
-            tables=_merge(sheet.tables for sheet in sheets),
-            datasets=_merge(sheet.datasets for sheet in sheets),
-            pictures=_merge(sheet.pictures for sheet in sheets),
+            tables=filed("tables"),
+            datasets=filed("datasets"),
+            pictures=filed("pictures"),
             printed=(*self.printed, *below),
-            files=_merge(sheet.files for sheet in sheets),
-            outlines=_merge(sheet.outlines for sheet in sheets),
+            files=filed("files"),
+            outlines=filed("outlines"),
             notes=tuple(note for sheet in sheets for note in sheet.notes),
         )
 
@@ -359,9 +363,15 @@ class Deferred(Mapping[str, Part]):
         return name in self._makers
 
 
-def _merge(mappings: Iterable[Mapping[str, Part]]) -> Mapping[str, Part]:
-    """All entries by name; what costs is still made when it is looked up."""
-    return Deferred({name: partial(mapping.__getitem__, name) for mapping in mappings for name in mapping})
+def _merge(mappings: Mapping[str, Mapping[str, Part]]) -> Mapping[str, Part]:
+    """All entries by name, behind the folder of each mapping; what costs is still made when it is looked up."""
+    return Deferred(
+        {
+            f"{folder}{name}": partial(mapping.__getitem__, name)
+            for folder, mapping in mappings.items()
+            for name in mapping
+        }
+    )
 
 
 def illustrations(

@@ -34,7 +34,7 @@ def sheet_with_parts(topic: Topic, result: Any) -> Sheet:
     sheet = cast("Sheet", topic.view(result))
     parts: Mapping[str, Any] = getattr(result, "parts", {})
     return (
-        sheet.with_parts(sheet_with_parts(topic_of(part), part) for part in parts.values())
+        sheet.with_parts({name: sheet_with_parts(topic_of(part), part) for name, part in parts.items()})
         if parts
         else sheet
     )

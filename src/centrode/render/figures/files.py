@@ -100,7 +100,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     Parameters
     ----------
     figures : mapping of name -> Figure
-        The names become the files' names.
+        The names become the files' names; they may begin with a folder.
     folder : Path
         An existing folder.
 
@@ -120,6 +120,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
             figure.draw_without_rendering()
             figure.set_layout_engine("none")  # it is laid out: both files show the same
             paths = [Path(folder) / f"{name}.{kind}" for kind in METADATA]
+            paths[0].parent.mkdir(exist_ok=True)
             raster.print_png(str(paths[0]), metadata=METADATA["png"])
             vectors: Any = FigureCanvasSVG(figure)
             vectors.print_svg(str(paths[1]), metadata=METADATA["svg"])
