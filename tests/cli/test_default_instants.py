@@ -113,3 +113,47 @@ def test_a_file_that_does_not_assemble_is_named(centrode: Centrode, folder: Path
     done = centrode("diagrams", "m.toml")
     assert done.code == 2
     assert done.err.startswith("Error: m.toml, ")
+
+
+OUT = ("--out", "drawing.svg")
+STRUCTURE = ("--chapters", "structure", "--format", "html")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("draw", "six-bar-press", "--at", "1 rad", *OUT), "--at: 57.2957795 deg\n"),
+        (
+            ("draw", "six-bar-press", "--at", "1 rad", "--from", "10 deg", "--to", "90 deg", *OUT),
+            "--at: 57.2957795 deg; --from: 10 deg; --to: 90 deg\n",
+        ),
+        (("reduce", "six-bar-press", "--from", "0.5 rad", "--samples", 5), "--from: 28.6478898 deg\n"),
+        (("reduce", "six-bar-press", "--samples", 5), ""),
+        (
+            ("centrodes", "crank-rocker", "--link", "AB", "--to", "90 deg", "--samples", 9),
+            "--to: 1.57079633 rad\n",
+        ),
+        (
+            (
+                "report",
+                "crank-rocker",
+                "--at",
+                "60 deg",
+                "--at",
+                "1.5 rad",
+                "--chapters",
+                "structure",
+                "--format",
+                "html",
+            ),
+            "--at: 1.04719755 rad; --at: 1.5 rad\n",
+        ),
+        # the summary of a run names the range
+        (("run", "six-bar-press", "--to", "90 deg", "--samples", 5, "--no-figures"), ""),
+    ],
+)
+def test_values_are_echoed_in_the_unit_of_the_display(
+    centrode: Centrode, folder: Path, words: tuple[str | int, ...], said: str
+) -> None:
+    done = centrode(*words)
+    assert (done.code, done.err) == (0, said)

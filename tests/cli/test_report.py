@@ -131,7 +131,10 @@ def test_the_ending_of_out_names_one_document(centrode: Centrode, folder: Path) 
     assert done.out.endswith("1 file in notes: note.docx\n")
     assert (folder / "notes" / "note.docx").read_bytes()[:2] == b"PK"
     done = centrode(*chosen, "--out", "notes/note.tex", "--format", "tex")
-    assert (done.code, done.out.splitlines()[-2:]) == (0, ["2 files in notes: note.tex", "note-figures/: 01.pdf"])
+    assert (done.code, done.out.splitlines()[-2:]) == (
+        0,
+        ["2 files in notes: note.tex", "note-figures/: 01.pdf"],
+    )
     done = centrode(*chosen, "--out", "other.ipynb", "--format", "pdf")
     assert done.code == 2
     assert done.err.startswith("Error: --format: the ending of other.ipynb names another kind of document")

@@ -12,6 +12,7 @@ from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, range_option, start_option, stop_option
+from centrode.cli.instants import echo_values
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
@@ -105,6 +106,8 @@ def animate(
     shown = _shown(show, points, growing, pairs, link, against)
     pace = library.pace_of_frames(frames, fps, duration, speed)
     first, last = _end(description, start, "--from"), _end(description, stop, "--to")
+    if isinstance(description, ct.Mechanism):
+        echo_values(description, ("--from", first), ("--to", last))
     with output.output_file(path, force=force) as draft, Progress() as progress:
         progress.say(_("solving"))
 

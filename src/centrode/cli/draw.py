@@ -12,6 +12,7 @@ from centrode.cli import library, output
 from centrode.cli.about import about
 from centrode.cli.announcements import announce_size
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
+from centrode.cli.instants import echo_values
 from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark
 from centrode.quantities import spelled_unit
@@ -80,6 +81,7 @@ def draw(
     )
     first = None if start is None else description.motion_parameter.instant.read(start, "--from")
     last = None if stop is None else description.motion_parameter.instant.read(stop, "--to")
+    echo_values(description, ("--at", place), ("--from", first), ("--to", last))
     with about(mechanism):
         course = ct.motion(description, samples, first, last)
         motion, sample = library.motion_among(description, course, place)

@@ -23,6 +23,17 @@ TRIALS = 8
 """Instants that are tried for one that works."""
 
 
+def echo_values(mechanism: Mechanism, *values: tuple[str, float | None]) -> None:
+    """Say on stderr how options with values of the drive, or times [SI], were read: in the unit of the display."""
+    texts = [
+        f"{option}: {_value_text(mechanism, value, unit_name=terminal_unit)}"
+        for option, value in values
+        if value is not None
+    ]
+    if texts:
+        output.tell("; ".join(texts))
+
+
 @contextmanager
 def default_instants(
     topic: Topic, name: str, mechanism: Mechanism, arguments: Mapping[str, Any]

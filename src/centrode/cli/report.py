@@ -13,6 +13,7 @@ import centrode as ct
 from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
+from centrode.cli.instants import echo_values
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
@@ -86,13 +87,16 @@ def report(
     folder, name, kinds = _place(out, description, formats)
     _writing().check_formats(kinds)
     with about(description):
+        places = tuple(_options().instant(described, text, "--at") for text in instants)
         options = ct.ReportOptions(
             None if chapters is None else _names_in(chapters),
-            tuple(_options().instant(described, text, "--at") for text in instants) or None,
+            places or None,
             None if points is None else _names_in(points),
             digits,
             full,
         )
+    if isinstance(described, ct.Mechanism):
+        echo_values(described, *(("--at", place) for place in places))
     with output.output_folder(folder) as draft, Progress() as progress:
         with about(description):
             made = ct.report(described, options, name=Path(description).stem, said=progress.say)

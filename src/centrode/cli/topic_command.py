@@ -23,7 +23,7 @@ from centrode.cli.arguments import (
     stop_option,
     written_option,
 )
-from centrode.cli.instants import default_instants
+from centrode.cli.instants import default_instants, echo_values
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
@@ -55,7 +55,7 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
         samples = given.pop("samples") if command.samples else None
         if command.samples and command.extent is None:
             announce_size(description, samples)
-        description = _in_range(description, given)
+        description = _in_range(command, description, given)
         _check_instants(command, description, samples, given)
         written = {name: given.pop(name, False) for name in ("force", "no_figures", "dark", "animate")}
         with about(mechanism):
@@ -164,12 +164,14 @@ def option_name(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def _in_range(mechanism: Mechanism, given: dict[str, Any]) -> Mechanism:
+def _in_range(command: Command, mechanism: Mechanism, given: dict[str, Any]) -> Mechanism:
     """The mechanism in the range of `--range`; `--from` and `--to` are read into SI."""
     mechanism = mechanism.with_range(given.pop("ranged", None))
     for name, where in (("start", "--from"), ("stop", "--to")):
         if isinstance(given.get(name), str):
             given[name] = mechanism.motion_parameter.instant.read(given[name], where)
+    if any(isinstance(option, RangeOptions) and option.echoed for option in command.options):
+        echo_values(mechanism, ("--from", given.get("start")), ("--to", given.get("stop")))
     return mechanism
 
 

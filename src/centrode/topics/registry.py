@@ -634,7 +634,7 @@ RUN = Topic(
     view=Lazily("centrode.views.motion", "sheet"),
     command=Command(
         help=mark("Compute the motion of a mechanism: tables and pictures."),
-        options=(RangeOptions(),),
+        options=(RangeOptions(echoed=False),),
         folder="result",
         animation=Lazily("centrode.animation.animate", "animate_results"),
         animation_help=mark("Also write an animation of the motion."),

@@ -82,7 +82,14 @@ class FlagOption:
 
 @dataclass(frozen=True)
 class RangeOptions:
-    """The range of the motion: `--from`, `--to` and `--range`, as `start` and `stop` in SI of the computation."""
+    """The range of the motion: `--from`, `--to` and `--range`, as `start` and `stop` in SI of the computation.
+
+    Attributes
+    ----------
+    echoed : say the ends as they were read; not where the facts of the result name the range
+    """
+
+    echoed: bool = True
 
 
 @dataclass(frozen=True)
