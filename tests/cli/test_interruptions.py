@@ -21,7 +21,7 @@ Centrode = Callable[..., Any]
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals that processes send each other")
 
 PROGRAM = """
-import sys, time
+import signal, sys, time
 from pathlib import Path
 from centrode.cli.progress import Progress
 from centrode.cli.main import main
@@ -38,6 +38,8 @@ def say(self, what, done=0, of=0):
         Progress.say = lambda *anything: None
 
 Progress.say = say
+# Tests that a shell runs in the background ignore SIGINT, and so do their processes.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.exit(main(sys.argv[1:]))
 """
 ANIMATE = ("animate", "crank-rocker", "--frames", "5", "--size", "64x64", "--out", "long.gif")

@@ -81,7 +81,7 @@ def draw(
     )
     first = None if start is None else description.motion_parameter.instant.read(start, "--from")
     last = None if stop is None else description.motion_parameter.instant.read(stop, "--to")
-    echo_values(description, ("--at", place), ("--from", first), ("--to", last))
+    echo_values(description, ("--at", None if instant is None else place), ("--from", first), ("--to", last))
     with about(mechanism):
         course = ct.motion(description, samples, first, last)
         motion, sample = library.motion_among(description, course, place)
