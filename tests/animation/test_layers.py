@@ -258,7 +258,7 @@ def test_nothing_is_cut_off(name: str) -> None:
     """The view holds what every layer reaches, and it is the same in every frame."""
     shown = film(name)
     stage, _notes = stage_of(shown, EVERYTHING, (320, 240))
-    figure, axes, _paper = stage._prepared()
+    figure, axes, _paper = stage._prepare_figure()
     limits = np.array([axes.get_xlim(), axes.get_ylim()])
     for layer in stage.layers:
         places = layer.reach()
@@ -327,7 +327,7 @@ def test_texts_stand_in_the_picture(name: str, size: tuple[int, int]) -> None:
     what = sorted(MAKERS) if name == "six-bar-press" else ["paths", "velocities", "accelerations", "centres"]
     stage, _notes = stage_of(film(name, 4), Shown(what), size)
     with house_style():
-        figure, axes, paper = stage._prepared()
+        figure, axes, paper = stage._prepare_figure()
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()

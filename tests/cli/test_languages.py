@@ -82,7 +82,13 @@ def test_a_mechanism_that_locks(centrode: Centrode, language: str) -> None:
     assert done.code == 3
     assert done.err.startswith({"ru": "Ошибка: ", "uk": "Помилка: "}[language])
     told = done.out + done.err
-    for word in (name, 'range = "reachable"', "[study]", "--range reachable"):  # what is to be typed
+    for word in (
+        name,
+        'range = "reachable"',
+        "[study]",
+        "--range reachable",
+        "centrode rotatability",
+    ):  # what is to be typed
         assert word in told
         told = told.replace(word, "")
     assert latin_words(told, ct.example(name)) == set()

@@ -281,7 +281,9 @@ def _read_angle(value: object) -> float:
 
 
 def read_lift(value: object) -> str:
-    """The formula of a lift, as text."""
+    """The formula of a lift, as text; empty where a curve gives it."""
+    if value == "":
+        return ""
     if not isinstance(value, str):
         raise Problem(
             _("{key} must be a formula in quotes, got {value}").format(key=KEY, value=value_text(value))

@@ -30,6 +30,9 @@ def spell_decimals(figure: Figure) -> None:
     """
     if decimal_mark() == ".":
         return
+    for axes in figure.axes:  # their labels have no numbers but those in names
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.label.set_label(AS_WRITTEN)
     respell(figure, with_decimal_mark)
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
