@@ -30,6 +30,7 @@ from centrode.render.document.blocks import (
     SystemBlock,
     TableBlock,
 )
+from centrode.render.document.figures import picture_width
 from centrode.render.document.numbering import number_blocks
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
@@ -38,9 +39,6 @@ from centrode.report.texts import parts_of
 
 # A report as the source of a typst document; everything a user wrote stands in it as a string.
 
-TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
-"""Inches that a picture may fill of a page, its caption left out."""
-PAPER_WIDTH = 8.268
 ANNOUNCEMENT = 160
 """Letters of a paragraph that may be there only for the formula, table or picture behind it."""
 LONGEST_WHOLE = 600
@@ -49,9 +47,6 @@ FIRST_PAGE, TITLE_LINE = 38, 30
 """Lines of contents that the first page holds below a title, and letters of a line of the title."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
-_SIZE = re.compile(
-    rb'<svg[^>]*?\bheight="([\d.]+)pt"[^>]*?\bwidth="([\d.]+)pt"|<svg[^>]*?\bviewBox="0 0 ([\d.]+) ([\d.]+)"'
-)
 
 
 class Source:
@@ -277,18 +272,6 @@ def _words(text: str) -> list[str]:
         else:
             found += [quote(word) for word in re.split(r"\s+", part.text) if word]
     return found
-
-
-def picture_width(picture: Picture) -> float:
-    """Width [in] of a picture, reduced where a page has not the room for it; of one to scale, where paper has not."""
-    if picture.to_scale:
-        return min(picture.width, PAPER_WIDTH)
-    found = _SIZE.search(picture.svg[:2000])
-    if found is None:
-        return min(picture.width, TEXT_WIDTH)
-    height, width, box_width, box_height = (float(one) if one else 0.0 for one in found.groups())
-    slope = (height or box_height) / (width or box_width or 1.0)
-    return min(picture.width, TEXT_WIDTH, TEXT_HEIGHT / slope if slope else TEXT_WIDTH)
 
 
 STYLE = Path(__file__).with_name("style.typ")

@@ -43,7 +43,6 @@ class SchemePicture:
     title : what it shows, and where
     mechanism, motion : of which motion, without batch dimensions
     sample : of the motion, that is drawn
-    sliders : guides of sliders that no link is named for; they are numbered behind the links
     changed : link, or the frame, whose dimensions are set off; none if empty
     """
 
@@ -51,7 +50,6 @@ class SchemePicture:
     mechanism: Mechanism
     motion: xarray.Dataset
     sample: int
-    sliders: tuple[str, ...] = ()
     changed: str = ""
 
 

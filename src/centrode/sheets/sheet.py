@@ -318,24 +318,30 @@ class Sheet:
         The files and pictures of a part are in a folder of its name. Chapters are its own. The parts of a part are in
         its sheet already. What a part falls short of is no failure of the whole.
         """
-        sheets = (self, *parts.values())
-        folders = ("", *(f"{name}/" for name in parts))
-
-        def filed(kind: str) -> Mapping[str, Any]:
-            return _merge({folder: getattr(one, kind) for folder, one in zip(folders, sheets, strict=True)})
-
+        sheets = (self, *(part._in_folder(name) for name, part in parts.items()))
         below = (FactTable(part.facts) for part in parts.values() if part.facts and not part.brief)
         return replace(
             self,
             facts=(*self.facts, *(fact for part in parts.values() for fact in part.brief)),
             scalars={name: scalar for sheet in sheets for name, scalar in sheet.scalars.items()},
-            tables=filed("tables"),
-            datasets=filed("datasets"),
-            pictures=filed("pictures"),
+            tables=_merge(sheet.tables for sheet in sheets),
+            datasets=_merge(sheet.datasets for sheet in sheets),
+            pictures=_merge(sheet.pictures for sheet in sheets),
             printed=(*self.printed, *below),
-            files=filed("files"),
-            outlines=filed("outlines"),
+            files=_merge(sheet.files for sheet in sheets),
+            outlines=_merge(sheet.outlines for sheet in sheets),
             notes=tuple(note for sheet in sheets for note in sheet.notes),
+        )
+
+    def _in_folder(self, folder: str) -> Sheet:
+        """The sheet whose files and pictures are named behind a folder."""
+        return replace(
+            self,
+            tables=_behind(folder, self.tables),
+            datasets=_behind(folder, self.datasets),
+            pictures=_behind(folder, self.pictures),
+            files=_behind(folder, self.files),
+            outlines=_behind(folder, self.outlines),
         )
 
 
@@ -363,15 +369,14 @@ class Deferred(Mapping[str, Part]):
         return name in self._makers
 
 
-def _merge(mappings: Mapping[str, Mapping[str, Part]]) -> Mapping[str, Part]:
-    """All entries by name, behind the folder of each mapping; what costs is still made when it is looked up."""
-    return Deferred(
-        {
-            f"{folder}{name}": partial(mapping.__getitem__, name)
-            for folder, mapping in mappings.items()
-            for name in mapping
-        }
-    )
+def _merge(mappings: Iterable[Mapping[str, Part]]) -> Mapping[str, Part]:
+    """All entries by name; what costs is still made when it is looked up."""
+    return Deferred({name: partial(mapping.__getitem__, name) for mapping in mappings for name in mapping})
+
+
+def _behind(folder: str, mapping: Mapping[str, Part]) -> Mapping[str, Part]:
+    """Entries by their name behind a folder; what costs is still made when it is looked up."""
+    return Deferred({f"{folder}/{name}": partial(mapping.__getitem__, name) for name in mapping})
 
 
 def illustrations(

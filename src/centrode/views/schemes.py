@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from centrode.analysis.representative_position import representative_sample
-from centrode.model.labels import sliders_of
 from centrode.sheets.linkages import SchemePicture
 from centrode.sheets.texts import Sentence, Unit
 from centrode.views.instants import instant_title
@@ -26,9 +25,4 @@ def scheme_picture(mechanism: Mechanism, motion: xarray.Dataset) -> SchemePictur
         title = Sentence(
             "Kinematic scheme at {place}; dimensions in {unit}", place=place, unit=Unit("m", shown=True)
         )
-    return SchemePicture(title, mechanism, motion, sample, slider_guides(mechanism))
-
-
-def slider_guides(mechanism: Mechanism) -> tuple[str, ...]:
-    """Guides of the sliders that no link is named for."""
-    return tuple(guide.id for guide in sliders_of(mechanism).values())
+    return SchemePicture(title, mechanism, motion, sample)

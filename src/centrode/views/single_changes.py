@@ -11,7 +11,6 @@ from centrode.sheets.linkages import SchemePair, SchemePicture
 from centrode.sheets.sheet import Block, Check, Column, Fact, Illustration, Paragraph, Table
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Slanted, Text, Unit
 from centrode.views.instants import instant_title
-from centrode.views.schemes import slider_guides
 
 if TYPE_CHECKING:
     from centrode.analysis.redesign.single_changes import (
@@ -179,10 +178,9 @@ def pair_of_schemes(
             words=words,
             unit=Unit("m", shown=True),
         )
-    sliders = slider_guides(mechanism)
     schemes = (
-        SchemePicture(title, mechanism, dead.locked, 0, sliders),
-        SchemePicture(title, repaired, dead.repaired, 0, sliders, changed),
+        SchemePicture(title, mechanism, dead.locked, 0),
+        SchemePicture(title, repaired, dead.repaired, 0, changed),
     )
     return SchemePair(title, schemes)
 
@@ -201,10 +199,7 @@ def _table(found: SingleChanges) -> Table:
             numbers(Sentence("present value"), [Number(one.before, one.unit, "") for one in changes]),
             numbers(Sentence("limiting value"), [Number(one.bound, one.unit, "") for one in changes]),
             numbers(Sentence("proposed value"), [Number(one.after, one.unit, "") for one in changes]),
-            numbers(
-                Sentence("least transmission angle"),
-                [Number(degrees(one.least_angle), "deg", ".3g") for one in changes],
-            ),
+            numbers(Sentence("least transmission angle"), [_angle(one.least_angle) for one in changes]),
         ),
         Sentence("Dimensions of which each alone repairs the mechanism"),
     )

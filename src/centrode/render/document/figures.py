@@ -25,6 +25,12 @@ captions find room on a page, of three panels two and some text. More panels cou
 LETTER_WITH_INDEX = re.compile(
     r"\{?(?P<letter>[A-Za-zΑ-ω]+)(?P<primes>'*)\}?(?:_(?:\{(?P<index>[^{}]+)\}|(?P<short>\w)))?"
 )
+TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
+"""Inches that a picture may fill of a page, its caption left out."""
+PAPER_WIDTH = 8.268
+_SIZE = re.compile(
+    rb'<svg[^>]*?\bheight="([\d.]+)pt"[^>]*?\bwidth="([\d.]+)pt"|<svg[^>]*?\bviewBox="0 0 ([\d.]+) ([\d.]+)"'
+)
 NOISE = 1e-9
 """Of the greatest value of curves: what is below it is zero."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12
@@ -134,3 +140,15 @@ def _greek(found: re.Match[str]) -> str:
         return unicodedata.lookup(f"GREEK SMALL LETTER {found[1].upper()}")
     except KeyError:
         return ""
+
+
+def picture_width(picture: Picture) -> float:
+    """Width [in] of a picture, reduced where a page has not the room for it; of one to scale, where paper has not."""
+    if picture.to_scale:
+        return min(picture.width, PAPER_WIDTH)
+    found = _SIZE.search(picture.svg[:2000])
+    if found is None:
+        return min(picture.width, TEXT_WIDTH)
+    height, width, box_width, box_height = (float(one) if one else 0.0 for one in found.groups())
+    slope = (height or box_height) / (width or box_width or 1.0)
+    return min(picture.width, TEXT_WIDTH, TEXT_HEIGHT / slope if slope else TEXT_WIDTH)

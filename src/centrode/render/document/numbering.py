@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby
+from itertools import count, groupby
 from typing import TypeAlias
 
 from centrode.locale import _
@@ -33,38 +33,31 @@ def number_blocks(report: Report) -> Report:
     Sentences get the numbers of the formulas before them that they name; those without any are left out. Numbers that
     blocks have already are given anew, so a report may be numbered more than once.
     """
-    tables, figures, formulas = _counter(), _counter(), _counter()
+    tables, figures, formulas = count(1), count(1), count(1)
     named: defaultdict[str, tuple[int, ...]] = defaultdict(tuple)
 
-    def numbered(block: Block) -> Block:
+    def number_block(block: Block) -> Block:
         if isinstance(block, TableBlock):
-            return replace(block, number=tables() if block.caption else 0)
+            return replace(block, number=next(tables) if block.caption else 0)
         if isinstance(block, Picture | Moving):
-            return replace(block, number=figures() if block.caption else 0)
+            return replace(block, number=next(figures) if block.caption else 0)
         if isinstance(block, FormulaBlock | SystemBlock):
-            block = replace(block, number=formulas())
+            block = replace(block, number=next(formulas))
             if isinstance(block, FormulaBlock) and block.name:
                 named[block.name] += (block.number,)
         if isinstance(block, ReferenceBlock):
             return replace(block, numbers={name: named[name] for name in block.names if name in named})
         return block
 
-    opening = tuple(map(numbered, report.opening))
-    chapters = _without_loose_references(_change_blocks(report.chapters, numbered))
+    opening = tuple(map(number_block, report.opening))
+    chapters = _without_loose_references(_change_blocks(report.chapters, number_block))
     return replace(report, opening=opening, chapters=chapters)
 
 
 def _without_loose_references(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ...]:
     """Chapters without the sentences that name a formula which is not there."""
-    return tuple(
-        replace(
-            chapter,
-            sections=tuple(
-                replace(section, blocks=tuple(block for block in section.blocks if not _is_loose(block)))
-                for section in chapter.sections
-            ),
-        )
-        for chapter in chapters
+    return _change_sections(
+        chapters, lambda section, _chapter: (block for block in section.blocks if not _is_loose(block))
     )
 
 
@@ -72,29 +65,25 @@ def _is_loose(block: Block) -> bool:
     return isinstance(block, ReferenceBlock) and set(block.names) != set(block.numbers)
 
 
-def _counter() -> Callable[[], int]:
-    count = 0
+def _change_sections(
+    chapters: Sequence[ChapterBlocks],
+    blocks_of: Callable[[SectionBlocks, ChapterBlocks], Iterable[Block]],
+) -> tuple[ChapterBlocks, ...]:
+    """Chapters whose sections have other blocks."""
 
-    def following() -> int:
-        nonlocal count
-        count += 1
-        return count
+    def change(section: SectionBlocks, chapter: ChapterBlocks) -> SectionBlocks:
+        return replace(section, blocks=tuple(blocks_of(section, chapter)))
 
-    return following
+    return tuple(
+        replace(chapter, sections=tuple(change(section, chapter) for section in chapter.sections))
+        for chapter in chapters
+    )
 
 
 def _change_blocks(
     chapters: Sequence[ChapterBlocks], change: Callable[[Block], Block]
 ) -> tuple[ChapterBlocks, ...]:
-    return tuple(
-        replace(
-            chapter,
-            sections=tuple(
-                replace(section, blocks=tuple(map(change, section.blocks))) for section in chapter.sections
-            ),
-        )
-        for chapter in chapters
-    )
+    return _change_sections(chapters, lambda section, _chapter: map(change, section.blocks))
 
 
 def caption_blocks(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ...]:
@@ -103,30 +92,22 @@ def caption_blocks(chapters: Sequence[ChapterBlocks]) -> tuple[ChapterBlocks, ..
     One without is named by its section and chapter. Captions that several blocks have are told apart by the titles of
     their sections, then of their chapters, then by counting.
     """
-    named = tuple(
-        replace(
-            chapter,
-            sections=tuple(
-                replace(
-                    section, blocks=tuple(_name_block(block, section, chapter) for block in section.blocks)
-                )
-                for section in chapter.sections
-            ),
-        )
-        for chapter in chapters
+    named = _change_sections(
+        chapters,
+        lambda section, chapter: (_name_block(block, section, chapter) for block in section.blocks),
     )
-    named = _told_apart(named, lambda section, _chapter: section.title)
-    named = _told_apart(named, lambda _section, chapter: chapter.title)
+    named = _tell_apart(named, lambda section, _chapter: section.title)
+    named = _tell_apart(named, lambda _section, chapter: chapter.title)
     taken: Counter[str] = Counter()
 
-    def counted(block: Block) -> Block:
+    def add_count(block: Block) -> Block:
         if not isinstance(block, Captioned):
             return block
         taken[block.caption] += 1
-        count = taken[block.caption]
-        return block if count == 1 else replace(block, caption=f"{block.caption} ({count})")
+        often = taken[block.caption]
+        return block if often == 1 else replace(block, caption=f"{block.caption} ({often})")
 
-    return _change_blocks(named, counted)
+    return _change_blocks(named, add_count)
 
 
 def _name_block(block: Block, section: SectionBlocks, chapter: ChapterBlocks) -> Block:
@@ -139,28 +120,20 @@ def _name_block(block: Block, section: SectionBlocks, chapter: ChapterBlocks) ->
     return replace(block, caption=shown(title))
 
 
-def _told_apart(
+def _tell_apart(
     chapters: Sequence[ChapterBlocks], title: Callable[[SectionBlocks, ChapterBlocks], str]
 ) -> tuple[ChapterBlocks, ...]:
     """Captions that stand more than once, each with a title behind it."""
     often = Counter(block.caption for block in captioned_blocks(chapters))
 
-    def told(block: Block, behind: str) -> Block:
+    def add_title(block: Block, behind: str) -> Block:
         if not isinstance(block, Captioned) or often[block.caption] == 1 or shown(behind) in block.caption:
             return block
         return replace(block, caption=f"{block.caption}; {shown(behind)}")
 
-    return tuple(
-        replace(
-            chapter,
-            sections=tuple(
-                replace(
-                    section, blocks=tuple(told(block, title(section, chapter)) for block in section.blocks)
-                )
-                for section in chapter.sections
-            ),
-        )
-        for chapter in chapters
+    return _change_sections(
+        chapters,
+        lambda section, chapter: (add_title(block, title(section, chapter)) for block in section.blocks),
     )
 
 
@@ -176,16 +149,7 @@ def refer_to_figures(report: Report) -> Report:
 
     On paper figures stand where there is room, so the text has to say which belong to it.
     """
-    chapters = tuple(
-        replace(
-            chapter,
-            sections=tuple(
-                replace(section, blocks=tuple(_with_references(section.blocks)))
-                for section in chapter.sections
-            ),
-        )
-        for chapter in report.chapters
-    )
+    chapters = _change_sections(report.chapters, lambda section, _chapter: _with_references(section.blocks))
     return replace(report, chapters=chapters)
 
 

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from centrode.locale import _
+from centrode.model.labels import body_name, sliders_of
 from centrode.model.mechanism import FRAME
 from centrode.model.settings import shown_as
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe
@@ -27,6 +28,7 @@ from centrode.scenes.places import Array, LinkageScene, corners
 from centrode.scenes.sphere import Globe, great_arc
 
 if TYPE_CHECKING:
+    from centrode.model.links import Guide
     from centrode.model.settings import Display
     from centrode.sheets.linkages import SchemePair, SchemePicture
 
@@ -64,7 +66,7 @@ SAME = 1e-9
 def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     """The scheme at the sample of the picture, as large as its paper allows, beside the key of the links."""
     scene = read_scene(picture.mechanism, picture.motion)
-    key = _key(scene, picture)
+    key = _key(scene)
     room = max(KEY, legend_width([text for _line, text in key], HEIGHT))
     scene, size = _on_paper(scene, picture.sample, (WIDTH - room, HEIGHT))
     figure = Figure(figsize=(size[0] + room, size[1]))
@@ -91,7 +93,7 @@ def pair_figure(pair: SchemePair, display: Display) -> Figure:
         )
     height = (levels[1] - levels[0]) / per_inch if levels else LEAST_HEIGHT
     width = sum(size[0] for _scene, size in drawn) + PAIR_GAP
-    key = _key(drawn[0][0], pictures[0])
+    key = _key(drawn[0][0])
     columns = columns_above([name for _line, name in key], width)
     below = MARK_INCHES + ROW_INCHES * -(-len(key) // columns)
     figure = Figure(figsize=(width, height + below))
@@ -122,9 +124,8 @@ def _draw_scheme(
     ]
     sample = picture.sample
     if isinstance(scene, LinkageScene):
-        points = {guide.id: guide.point for guide in scene.mechanism.guides}
-        for number, guide in _slider_numbers(scene, picture):
-            place = scene.at(sample)[points[guide]]
+        for number, (_name, guide) in _numbered_sliders(scene):
+            place = scene.at(sample)[guide.point]
             _write_number(axes, place + scene.sign * np.array([3.0, 3.0]), number)
     axes.set_axis_off()
     solid = list(arcs_on_paper(scene, sample) if isinstance(scene, Globe) else lines(scene, sample))
@@ -135,27 +136,25 @@ def _draw_scheme(
     return frozenset(tag.text for tag in tags)
 
 
-def _slider_numbers(scene: Paper, picture: SchemePicture) -> Iterator[tuple[int, str]]:
-    """Numbers of the sliders that no link is named for, behind those of the links, with their guides."""
-    if isinstance(scene, LinkageScene):
-        yield from enumerate(picture.sliders, start=len(scene.mechanism.links) + 1)
+def _numbered_sliders(scene: LinkageScene) -> Iterator[tuple[int, tuple[str, Guide]]]:
+    """The sliders that no link is named for, with numbers behind those of the links."""
+    yield from enumerate(sliders_of(scene.mechanism).items(), start=len(scene.mechanism.links) + 1)
 
 
-def _key(scene: Paper, picture: SchemePicture) -> list[tuple[Artist, str]]:
+def _key(scene: Paper) -> list[tuple[Artist, str]]:
     """Entries of the key of the links."""
-    frame: list[tuple[Artist, str]] = [(Line2D([], [], color=GROUND, linewidth=1.2), "0  " + _("frame"))]
     links: list[tuple[Artist, str]] = [
         (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), f"{number}  {plain(name)}")
         for number, (name, pen) in enumerate(pens(scene.mechanism.link_names).items(), start=1)
     ]
-    sliders: list[tuple[Artist, str]] = [
-        (
-            Line2D([], [], color=INK, linewidth=1.2),
-            f"{number}  " + _("slider {point}").format(point=plain(guide)),
-        )
-        for number, guide in _slider_numbers(scene, picture)
+    if isinstance(scene, Globe):
+        return links
+    frame = (Line2D([], [], color=GROUND, linewidth=1.2), "0  " + _("frame"))
+    sliders = [
+        (Line2D([], [], color=INK, linewidth=1.2), f"{number}  {plain(body_name(scene.mechanism, name))}")
+        for number, (name, _guide) in _numbered_sliders(scene)
     ]
-    return frame * isinstance(scene, LinkageScene) + links + sliders
+    return [frame, *links, *sliders]
 
 
 def _on_paper(

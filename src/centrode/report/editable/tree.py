@@ -27,9 +27,9 @@ from centrode.render.document.blocks import (
     SystemBlock,
     TableBlock,
 )
+from centrode.render.document.figures import picture_width
 from centrode.render.document.numbering import number_blocks
 from centrode.report.editable.mathematics import LatexFormulas, latex_formulas, spellings_of
-from centrode.report.pdf_document import picture_width
 from centrode.report.spoken_formulas import spoken_picture
 from centrode.report.texts import blocks_of, parts_of, texts_of
 
@@ -45,7 +45,7 @@ LEAST, SENTENCE, GAP = 3, 24, 3
 
 
 @dataclass
-class Tree:
+class DocumentTree:
     """Makes the tree of a report.
 
     Attributes
@@ -217,7 +217,7 @@ def tree_of(
         spelled += [part.text for text in texts_of(block) for part in parts_of(text) if part.mathematics]
         if isinstance(block, FormulaBlock | SystemBlock):
             spelled += spellings_of(block)
-    tree = Tree(latex_formulas(spelled), number, refer, file)
+    tree = DocumentTree(latex_formulas(spelled), number, refer, file)
     return tree.document(report), tree.pictures
 
 
