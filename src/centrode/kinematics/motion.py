@@ -16,7 +16,7 @@ import xarray as xr
 from centrode.errors import STATUSES_OF_MOTION, InputError
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
-from centrode.kinematics.sample_index import drive_coordinates, labelled
+from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
 from centrode.kinematics.solve import Progress, Solved, grid_of, solve
 from centrode.locale import _, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -54,7 +54,7 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     if not batch:
         variables |= _events(solved)
     attributes = attributes_of(solved, None if batch else "run")
-    data = xr.Dataset(variables, coords=labelled(coordinates_of(solved)), attrs=attributes)
+    data = xr.Dataset(variables, coords=label_coordinates(coordinates_of(solved)), attrs=attributes)
     for path, values in (vary or {}).items():
         data = data.assign_coords({path: (BATCH, np.asarray(values, dtype=np.float64))})
     return data

@@ -122,12 +122,12 @@ class SampleIndex(xr.Index):
         a method that xarray does not know.
         """
         if len(labels) > 1:
-            chosen = np.logical_and.reduce(
-                [self._holding(name, label, tolerance) for name, label in labels.items()]
-            )
             if method is not None:
                 what = _("a method takes the value of one drive")
                 raise InputError("sel", what, _("select by one drive after the other"))
+            chosen = np.logical_and.reduce(
+                [self._holding(name, label, tolerance) for name, label in labels.items()]
+            )
             return IndexSelResult({SAMPLE: _indexer(np.flatnonzero(chosen))})
         ((name, label),) = labels.items()
         if isinstance(label, slice):
@@ -316,7 +316,7 @@ def drive_coordinates(names: Sequence[str], values: Array, units: Sequence[str])
     }
 
 
-def labelled(coordinates: Mapping[str, Any]) -> xr.Coordinates:
+def label_coordinates(coordinates: Mapping[str, Any]) -> xr.Coordinates:
     """Coordinates with their indexes: of labels, which are an index of pandas each, and of what lies along `sample`.
 
     It says of `selectable` what xarray would find out with a tenth more of its time.

@@ -490,7 +490,7 @@ SEAM = 1e-12
 """Share of the greatest lift by which a formula may miss the lift at an end: rounding."""
 
 
-class _Watching(JetFunctions):
+class _DivisorJets(JetFunctions):
     """Jets that keep the divisors of a formula, which must not pass through zero."""
 
     def __init__(self) -> None:
@@ -510,7 +510,7 @@ def check_formula(piece: TextPiece) -> None:
     lifts, before = [], list[bool]()
     for node in range(NODES):
         phi = piece.length * node / (NODES - 1)
-        watching = _Watching()
+        watching = _DivisorJets()
         try:
             found = piece.jet(watching, Jet.variable(piece.origin + phi, 2))
             numbers = [float(found.derivative(order)) for order in range(3)]

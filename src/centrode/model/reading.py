@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WrapSerializer, model_validator
 
 from centrode.errors import InputError
 from centrode.files.inputs import note
@@ -501,3 +501,7 @@ class FrozenMap(Mapping[K, V_co]):
 
     def __repr__(self) -> str:
         return repr(self._items)
+
+
+AS_DICT = WrapSerializer(lambda entries, write: write(dict(entries)))
+"""Serialization of a `FrozenMap`: pydantic writes a mapping of models from a dict only."""

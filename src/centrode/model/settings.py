@@ -6,12 +6,13 @@ import unicodedata
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, PlainValidator, WrapSerializer
+from pydantic import AfterValidator, Field, PlainValidator
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.reading import (
+    AS_DICT,
     KEY,
     DescriptionPart,
     FrozenMap,
@@ -42,9 +43,6 @@ REACHABLE = "reachable"
 """The range that a drive reaches from its initial position."""
 
 Side = Literal["left", "right", "ahead", "behind"]
-
-AS_DICT = WrapSerializer(lambda entries, write: write(dict(entries)))
-"""Serialization of a `FrozenMap`: pydantic writes a mapping of models from a dict only."""
 
 
 def read_samples(value: object) -> int:

@@ -319,7 +319,7 @@ class DimensionSearch:
             if bound is not None and edge is not None:
                 found.append((abs(edge), edge, bound))
         for _size, edge, bound in sorted(found):
-            change = self._verified(edge, bound, margin)
+            change = self._verify(edge, bound, margin)
             if change is not None:
                 return change
         return None
@@ -351,7 +351,7 @@ class DimensionSearch:
     def _is_good(self, change: float, target: float) -> bool:
         return float(self._least(np.array([change]), FINE)[0]) > target
 
-    def _verified(self, edge: float, bound: float, margin: float) -> SingleChange | None:
+    def _verify(self, edge: float, bound: float, margin: float) -> SingleChange | None:
         """The rounded value with which the mechanism, assembled at every sample, makes the motion."""
         one = self.varying
         exact = one.before + edge * one.scale
@@ -363,7 +363,7 @@ class DimensionSearch:
             if reached < sin(margin) ** 2 * (1.0 - NO_LENGTH):
                 continue
             repaired = self._repaired(value, change)
-            verified = None if repaired is None else _verified(repaired, self.required, reached)
+            verified = None if repaired is None else _angle_and_residual(repaired, self.required, reached)
             if repaired is not None and verified is not None:
                 numbers = one.before, value, one.before + bound * one.scale, abs(change)
                 return SingleChange(self.dimension, one.unit, *numbers, *verified, repaired)
@@ -377,7 +377,9 @@ class DimensionSearch:
         return replace_placed(redesigned) if places_anew(redesigned) else redesigned
 
 
-def _verified(repaired: Mechanism, required: DrivenRange, squared_sine: float) -> tuple[float, float] | None:
+def _angle_and_residual(
+    repaired: Mechanism, required: DrivenRange, squared_sine: float
+) -> tuple[float, float] | None:
     """Least transmission angle and worst residual of a mechanism that makes a motion; None where it does not."""
     try:
         found, course = rotatability(repaired), motion(repaired)
