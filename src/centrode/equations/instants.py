@@ -373,3 +373,34 @@ def _size(instant: Instant) -> float:
 
 def _is_rate(name: str) -> bool:
     return name.startswith(("omega", "epsilon", "Delta")) or name.endswith(("_dot", "_ddot"))
+
+
+# Positions in closed form with the numbers of one position: constants, drives and branches, letter by letter.
+
+
+def position_values(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
+    """Number of every letter of the positions in closed form at a sample [SI].
+
+    Of the motion nothing is taken but the drives, the branches, whole turns of angles, and what has no closed form.
+    """
+    functions, board = equations.position_functions, equations.board
+    values = dict(board.alphabet.values)
+    if isinstance(board, SymbolTable):
+        values |= NumericValues(board, dataset, sample).values()
+    values |= _measured(equations, dataset, sample)
+    with np.errstate(all="ignore"):
+        for branch in functions.branches:
+            measure = None if branch.measure is None else float(branch.measure.value(np, values.__getitem__))
+            values[branch.letter] = branch.initial if measure is None else 1.0 if measure >= 0.0 else -1.0
+    return {letter: float(value) for letter, value in functions.values(values).items()}
+
+
+def _measured(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
+    """Coordinates of points as the motion has them, by the letters in which branches are told."""
+    found = {}
+    for point, place in equations.position_functions.places.items():
+        at = dataset["position"].sel(point=point).values[sample]
+        for axis, total, value in zip("xyz", place, at.tolist(), strict=False):
+            found[Letter(0, f"{axis}({point})")] = value
+            found |= {letter: value for letter in total.letters if letter.name == f"{axis}_{point}"}
+    return found

@@ -14,7 +14,8 @@ LONG = 150
 WIDE = 190
 """Letters of LaTeX on one line."""
 GREEK = {"phi": "varphi", "epsilon": "varepsilon"} | {
-    name: name for name in ("alpha", "beta", "gamma", "theta", "kappa", "rho", "psi", "omega", "Delta")
+    name: name
+    for name in ("alpha", "beta", "gamma", "delta", "theta", "kappa", "rho", "psi", "omega", "Delta", "pi", "pi/2")
 }
 SPECIAL = re.compile(r"([#$%&_{}])|([\\^~])")
 
@@ -58,6 +59,19 @@ class LatexSpelling(FormulaSpelling):
 
     def initial(self, text: str) -> str:
         return f"{text}(0)"
+
+    def root(self, text: str) -> str:
+        return rf"\sqrt{{{text}}}"
+
+    def function(self, name: str, text: str) -> str:
+        return f"\\{name}{self.bracket(text)}"
+
+    def direction(self, y: str, x: str) -> str:
+        return rf"\operatorname{{atan2}}{self.bracket(f'{y}, {x}')}"
+
+    def minor(self, rows: Sequence[Sequence[str]]) -> str:
+        inside = r" \\ ".join(" & ".join(row) for row in rows)
+        return rf"\begin{{vmatrix}} {inside} \end{{vmatrix}}"
 
     def derivative(self, letter: Letter) -> str:
         return self.letter(Letter(letter.rank, f"{letter.name}_dot"))

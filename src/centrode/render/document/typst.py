@@ -7,10 +7,13 @@ from collections.abc import Sequence
 
 from centrode.equations.spelling import FormulaSpelling, parts_of
 from centrode.equations.symbols import Letter, Wave
-from centrode.locale import decimal_mark
+from centrode.locale import coordinate_separator, decimal_mark
 
 GREEK = frozenset(
-    ("alpha", "beta", "gamma", "epsilon", "theta", "kappa", "rho", "phi", "psi", "omega", "Delta")
+    (
+        "alpha", "beta", "gamma", "delta", "epsilon", "theta", "kappa", "rho", "phi", "psi", "omega", "Delta",
+        "pi", "pi/2",
+    )
 )
 DOTS = {"dot": "dot", "ddot": "dot.double"}
 LONG = 110
@@ -56,6 +59,18 @@ class TypstSpelling(FormulaSpelling):
 
     def initial(self, text: str) -> str:
         return f"{text} (0)"
+
+    def root(self, text: str) -> str:
+        return f"sqrt({text})"
+
+    def function(self, name: str, text: str) -> str:
+        return f"{name} {self.bracket(text)}"
+
+    def direction(self, y: str, x: str) -> str:
+        return f'"atan2" {self.bracket(f"{y}{coordinate_separator()}{x}")}'
+
+    def minor(self, rows: Sequence[Sequence[str]]) -> str:
+        return f'mat(delim: "|", {"; ".join(", ".join(row) for row in rows)})'
 
     def derivative(self, letter: Letter) -> str:
         return f"frac(d {self.letter(letter)}, d t)"
