@@ -7,6 +7,7 @@ the motion in closed form has.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
@@ -22,6 +23,7 @@ from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
+from centrode.model.labels import ROLLING
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
@@ -387,12 +389,27 @@ def position_values(equations: Equations, dataset: xr.Dataset, sample: int) -> d
     values = dict(board.alphabet.values)
     if isinstance(board, SymbolTable):
         values |= NumericValues(board, dataset, sample).values()
+        values |= _bearings(equations, values)
     values |= _measured(equations, dataset, sample)
     with np.errstate(all="ignore"):
         for branch in functions.branches:
             measure = None if branch.measure is None else float(branch.measure.value(np, values.__getitem__))
             values[branch.letter] = branch.initial if measure is None else 1.0 if measure >= 0.0 else -1.0
     return {letter: float(value) for letter, value in functions.values(values).items()}
+
+
+def _bearings(equations: Equations, values: Mapping[Letter, float]) -> dict[Letter, float]:
+    """Directions of wheels' centres with the whole turns that the angles of the wheels have."""
+    found = {}
+    meanings = equations.board.alphabet.meanings
+    for condition in (one for group in equations.groups for one in group.conditions):
+        residual = condition.residual
+        for letter in residual.letters:
+            if condition.name.startswith(ROLLING) and letter in meanings and meanings[letter].kind == "bearing":
+                slope = _value(residual.slope(letter), values)
+                away = _value(residual, values) / slope
+                found[letter] = values[letter] - math.tau * round(away / math.tau)
+    return found
 
 
 def _measured(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:

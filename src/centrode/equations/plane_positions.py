@@ -36,6 +36,7 @@ from centrode.structure.groups import (
     Aim,
     CylinderCircle,
     Group,
+    Locus,
     Meet,
     Newton,
     Rail,
@@ -126,9 +127,11 @@ class PlanePositions:
         found = []
         for number, group in enumerate(self.board.ready.structure.groups):
             lines = _Lines()
+            before = dict(self.places), set(self.known), set(self.taken), dict(self.values), self.deltas, self.signs
             try:
                 self._write(group, lines)
             except Unwritten:
+                self.places, self.known, self.taken, self.values, self.deltas, self.signs = before
                 lines = _Lines()
                 self._leave(group, lines)
             kind = "" if isinstance(group, RigidPoint) else group.kind
@@ -331,7 +334,7 @@ class PlanePositions:
         place = UnknownPlace(ZERO, ZERO) if base is None or carried else self._place(base)
         return _SymbolTrack(point, line, place, heading, offset, carried)
 
-    def _locus(self, locus: object, carriage: str | None) -> _Circle | _SymbolTrack:
+    def _locus(self, locus: Locus, group: Meet) -> _Circle | _SymbolTrack:
         board = self.board
         match locus:
             case Rod(point, centre, link):
@@ -350,8 +353,31 @@ class PlanePositions:
                 return self._track(point, guide, True)
             case Touch(letter="P"):
                 return self._track(locus.point, locus.contact.rolling, locus.carried)
+            case Touch():
+                return self._round_track(locus, group)
             case _:
                 raise Unwritten
+
+    def _round_track(self, locus: Touch, group: Meet) -> _Circle:
+        """The circle of a wheel's centre about that of its track; carried, the circle of the group's own point."""
+        board, name = self.board, locus.contact.rolling
+        rod = self.rods[name]
+        letter = next((x for x, one in board.alphabet.meanings.items() if one.kind == "bearing" and one.names == (name,)), None)
+        if letter is None or isinstance(rod.first, str):
+            raise Unwritten
+        body, local = rod.first
+        radius = board.alphabet.size(LENGTH, f"l_{name}", "reach", (name,), rod.length)
+        own = board.local(body)
+        hub = next((point for point, at in own.items() if at == local), "")
+        if body == FRAME:
+            return _Circle(locus.point, hub or name, board.spot(FRAME, local, name), radius, Angle.of(letter))
+        first = next(iter(own))
+        arm = board.spot(body, local, name).plus(board.points[first], -1)
+        if not locus.carried:
+            return _Circle(locus.point, hub or name, self._place(first).plus(arm), radius, Angle.of(letter))
+        point = group.points[0]
+        at = self._place(locus.point).plus(self._arm(group, point, first), -1).plus(arm, -1)
+        return _Circle(point, locus.point, at, radius, Angle.of(letter).turned(2))
 
     def _meet(self, group: Meet, out: _Lines) -> None:
         stop = next((locus for locus in group.loci if isinstance(locus, Stop)), None)
@@ -362,7 +388,7 @@ class PlanePositions:
             unknown = self._unknown(self.board.angles[group.carriage])
             if unknown:
                 self._linear(unknown, out)
-        loci = [self._locus(locus, group.carriage) for locus in group.loci]
+        loci = [self._locus(locus, group) for locus in group.loci]
         match loci:
             case [_Circle() as one, _Circle() as other]:
                 self._circles(group, one, other, out)
@@ -550,24 +576,21 @@ class PlanePositions:
             beside = Sum.letter(self._auxiliary_angle(ArcFunction("arcsin", sine), out))
             turned = turned - sign * beside
         self._turn(heading, turned + (Sum.number(1) - sign) * half, out)
+        if group.sliding is not None and group.block is not None:
+            arm = board.arm(group.block, group.target, group.sliding)
+            if group.sliding not in self.places:
+                self._put(group.sliding, target.plus(arm), out)
         for letter in [x for x in self._slide_letters(line.name) if x not in self.known]:
             along = merge_waves(inside.along(heading))
             if offset:
                 self._slide(line, letter, group, out)
             else:
                 self._add(out, letter, formula_of(sign * Sum.letter(length) - along), "m")
-        if group.sliding is not None and group.block is not None:
-            arm = board.arm(group.block, group.target, group.sliding)
-            self._finish_point(group.sliding, target.plus(arm), out)
 
     def _ahead(self, group: Aim, heading: Angle, inside: UnknownPlace) -> Sum:
         """How far the target is ahead of the foot of the pivot, by the angle that the motion gives."""
         way = self._place(group.target).plus(self._place(group.pivot), -1)
         return way.along(heading)
-
-    def _finish_point(self, point: str, at: UnknownPlace, out: _Lines) -> None:
-        if point not in self.places:
-            self._put(point, at, out)
 
     # displacements
 
