@@ -21,6 +21,7 @@ from centrode.equations.plane_positions import PlanePositions
 from centrode.equations.position_functions import PositionFunctions
 from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.sphere_chains import SphereBoard, SpherePlace, laid_on_sphere
+from centrode.equations.sphere_positions import SpherePositions
 from centrode.equations.symbol_table import Lettering, SymbolTable
 from centrode.equations.symbols import ZERO, Letter, Meaning, Sum
 from centrode.errors import InputError
@@ -356,7 +357,7 @@ def _positions(made: Ready, board: SymbolTable | SphereBoard, drafts: Sequence[D
     if isinstance(board, SymbolTable):
         conditions = [one for draft in drafts for one in draft.conditions]
         return PlanePositions(board, conditions).written(labels)
-    return PositionFunctions((), {})
+    return SpherePositions(board).written(labels)
 
 
 def _together(board: Lettering, drafts: tuple[Draft, ...], given: Given) -> GroupSolution | None:

@@ -296,25 +296,37 @@ class NumbersAtInstant:
 
 
 @dataclass(frozen=True)
-class NumberedEquations(Equations):
+class PlacedEquations(Equations):
+    """The equations of a mechanism with the numbers of its positions in closed form.
+
+    Attributes
+    ----------
+    motion : at the instants
+    positions : letter -> number at each of them [SI]; None where the mechanism does not get there
+    """
+
+    motion: xr.Dataset
+    positions: tuple[Mapping[Letter, float] | None, ...]
+
+
+@dataclass(frozen=True)
+class NumberedEquations(PlacedEquations):
     """The equations of a planar mechanism with the numbers of its motion.
 
     Attributes
     ----------
     check : of the constraints over the motion; None where there are none, or no position is reached
-    motion : at the instants
     numbers : at each of them, lengths in the unit of the display; None where the mechanism does not get there
     """
 
     check: ConstraintCheck | None
-    motion: xr.Dataset
     numbers: tuple[NumbersAtInstant | None, ...]
 
 
 def equation_results(
     mechanism: Mechanism, points: Sequence[str] | None = None, instants: Sequence[float] | None = None
 ) -> Equations:
-    """The equations of a mechanism, in the plane with their numbers at instants where these are given.
+    """The equations of a mechanism, with their numbers at instants where these are given.
 
     Parameters
     ----------
@@ -328,16 +340,24 @@ def equation_results(
         As `equations` and `motion` do.
     """
     found = equations(mechanism, points)
-    if instants is None or mechanism.space != "plane":
+    if instants is None:
         return found
     own = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
-    length, _unit = display_unit("m", str(mechanism.display.length))
     places = motion(mechanism, at=list(instants))
+    positions = tuple(
+        position_values(found, places, sample) if status == Status.OK else None
+        for sample, status in enumerate(places["status"].values.tolist())
+    )
+    if mechanism.space != "plane":
+        return PlacedEquations(**own, motion=places, positions=positions)
+    length, _unit = display_unit("m", str(mechanism.display.length))
     numbers = tuple(
         _numbers(found, places, sample, length) if status == Status.OK else None
         for sample, status in enumerate(places["status"].values.tolist())
     )
-    return NumberedEquations(**own, check=_check(found), motion=places, numbers=numbers)
+    return NumberedEquations(
+        **own, motion=places, positions=positions, check=_check(found), numbers=numbers
+    )
 
 
 def _numbers(found: Equations, places: xr.Dataset, sample: int, length: float) -> NumbersAtInstant:
@@ -390,11 +410,17 @@ def position_values(equations: Equations, dataset: xr.Dataset, sample: int) -> d
     if isinstance(board, SymbolTable):
         values |= NumericValues(board, dataset, sample).values()
         values |= _bearings(equations, values)
+    else:
+        values |= {x: float(dataset["drive_value"].sel(drive=one)[sample]) for x, one in board.driven.items()}
     values |= _measured(equations, dataset, sample)
-    with np.errstate(all="ignore"):
-        for branch in functions.branches:
-            measure = None if branch.measure is None else float(branch.measure.value(np, values.__getitem__))
-            values[branch.letter] = branch.initial if measure is None else 1.0 if measure >= 0.0 else -1.0
+    for branch in functions.branches:
+        if branch.measure is not None:
+            measure = _value(branch.measure, values)
+        elif set(branch.places) <= {*dataset["point"].values.tolist()}:
+            measure = float(np.linalg.det(dataset["position"].sel(point=list(branch.places)).values[sample]))
+        else:  # a pole without a name that moves
+            measure = branch.initial
+        values[branch.letter] = 1.0 if measure >= 0.0 else -1.0
     return {letter: float(value) for letter, value in functions.values(values).items()}
 
 
@@ -414,10 +440,12 @@ def _bearings(equations: Equations, values: Mapping[Letter, float]) -> dict[Lett
 
 def _measured(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
     """Coordinates of points as the motion has them, by the letters in which branches are told."""
-    found = {}
+    found: dict[Letter, float] = {}
+    if not isinstance(equations.board, SymbolTable):
+        return found
     for point, place in equations.position_functions.places.items():
         at = dataset["position"].sel(point=point).values[sample]
-        for axis, total, value in zip("xyz", place, at.tolist(), strict=False):
+        for axis, total, value in zip("xy", place, at.tolist(), strict=True):
             found[Letter(0, f"{axis}({point})")] = value
             found |= {letter: value for letter in total.letters if letter.name == f"{axis}_{point}"}
     return found

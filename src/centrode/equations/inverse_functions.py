@@ -158,30 +158,38 @@ class VectorDirection:
 
 @dataclass(frozen=True)
 class ArcFunction:
-    """The arc sine or arc cosine of a formula; `kind` is "arcsin" or "arccos"."""
+    """The arc sine or arc cosine of a formula, which may be `over` a letter; `kind` is "arcsin" or "arccos"."""
 
     kind: str
     formula: SymbolFormula
+    over: Letter | None = None
 
     @property
     def letters(self) -> set[Letter]:
-        return self.formula.total.letters
+        return self.formula.total.letters | (set() if self.over is None else {self.over})
 
     def value(self, value_of: ValueOf) -> Any:
         """The number, NaN where the argument is beyond one by more than rounding."""
         x = np.asarray(self.formula.total.value(np, value_of), dtype=np.float64)
+        x = x / value_of(self.over) if self.over is not None else x
         x = np.where(np.abs(x) <= 1.0 + SLACK, np.clip(x, -1.0, 1.0), np.nan)
         return np.arcsin(x) if self.kind == "arcsin" else np.arccos(x)
 
     def text(self, spelling: FormulaSpelling) -> str:
         """The formula."""
-        return spelling.function(self.kind, spell_formula(self.formula, spelling))
+        inside = spell_formula(self.formula, spelling)
+        if self.over is not None and self.formula.number:
+            inside = inside if self.formula.single else spelling.bracket(inside)
+            inside = spelling.fraction([inside], [spelling.letter(self.over)])
+        return spelling.function(self.kind, inside)
 
     @property
     def expression(self) -> Any:
         """The same for SymPy."""
         library = sympy()
-        return (library.asin if self.kind == "arcsin" else library.acos)(self.formula.expression)
+        inside = self.formula.expression
+        inside = inside / expression(Sum.letter(self.over)) if self.over is not None else inside
+        return (library.asin if self.kind == "arcsin" else library.acos)(inside)
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,28 @@ class GroupPositions:
     branch: Branch | None = None
     auxiliary: tuple[Letter, ...] = ()
     unsolved: tuple[Letter, ...] = ()
-    tangents: Mapping[Letter, Formula] = field(default_factory=dict)
+    tangents: Mapping[Letter, TangentOfAngle] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class SphericalCoordinates:
+    """Where a point lies on the unit sphere: its angle from the z axis and its longitude from the x axis.
+
+    Attributes
+    ----------
+    point : its name
+    polar, longitude : letters of both angles
+    x, y, z : its coordinates
+    tangent : letter of an angle that the polar one is, and the explicit formula of its tangent
+    """
+
+    point: str
+    polar: Letter
+    longitude: Letter
+    x: Sum
+    y: Sum
+    z: Sum
+    tangent: tuple[Letter, TangentOfAngle] | None
 
 
 @dataclass(frozen=True)
@@ -94,10 +115,12 @@ class PositionFunctions:
     ----------
     groups : in the order of the plan
     places : moving point -> its coordinates in letters of the lines
+    spherical : of points on the sphere, where they are short
     """
 
     groups: tuple[GroupPositions, ...]
     places: Mapping[str, tuple[Sum, ...]]
+    spherical: tuple[SphericalCoordinates, ...] = ()
 
     @property
     def lines(self) -> tuple[PositionLine, ...]:

@@ -122,9 +122,17 @@ class FormulaSpelling:
         """A function of a formula: arcsin, arccos, tan."""
         return f"{name}{self.bracket(text)}"
 
+    def function_of(self, name: str, letter: Letter) -> str:
+        """A sine, cosine or tangent of a letter."""
+        return f"{name} {self.letter(letter)}"
+
     def direction(self, y: str, x: str) -> str:
         """The direction of a vector by its components."""
         return f"atan2({y}, {x})"
+
+    def product(self, factors: Sequence[str]) -> str:
+        """A product of formulas, its factors told apart."""
+        return " · ".join(factors)
 
     def minor(self, rows: Sequence[Sequence[str]]) -> str:
         """A determinant of entries."""

@@ -66,8 +66,14 @@ class LatexSpelling(FormulaSpelling):
     def function(self, name: str, text: str) -> str:
         return f"\\{name}{self.bracket(text)}"
 
+    def function_of(self, name: str, letter: Letter) -> str:
+        return f"\\{name} {self.letter(letter)}"
+
     def direction(self, y: str, x: str) -> str:
         return rf"\operatorname{{atan2}}{self.bracket(f'{y}, {x}')}"
+
+    def product(self, factors: Sequence[str]) -> str:
+        return r" \cdot ".join(factors)
 
     def minor(self, rows: Sequence[Sequence[str]]) -> str:
         inside = r" \\ ".join(" & ".join(row) for row in rows)
@@ -123,6 +129,7 @@ def _broken(text: str) -> str:
     pieces = [""]
     for word in split_at_signs(text):
         whole = pieces[-1].count("{") == pieces[-1].count("}") and r"\left(" not in pieces[-1]
+        whole &= pieces[-1].count(r"\begin{") == pieces[-1].count(r"\end{")
         if len(pieces[-1]) + len(word) > WIDE and pieces[-1].strip() and whole:
             pieces.append("")
         pieces[-1] += word

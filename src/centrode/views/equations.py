@@ -27,6 +27,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.symbolic import (
     AbsoluteProduct,
+    Cofactors,
     FactoredFormula,
     GivenNumber,
     InitialValue,
@@ -36,6 +37,7 @@ from centrode.sheets.symbolic import (
 )
 from centrode.sheets.texts import NOTHING, Expression, Leaf, Name, Number, Sentence, Text
 from centrode.views.instants import instant_title
+from centrode.views.position_equations import numbered_sections, position_sections
 
 if TYPE_CHECKING:
     from centrode.equations.derivation import Drivenness, Equations, PointVelocity
@@ -63,23 +65,25 @@ ROUNDING = 1e-14
 def sheet(equations: Equations) -> Sheet:
     """The page of the equations; in documents constraints and derivation are chapters, with numbers where known."""
     explained, derived = tuple(_explain_constraints(equations)), tuple(_derive_systems(equations))
+    positions, placed = tuple(position_sections(equations)), tuple(numbered_sections(equations))
+    printed = (*explained, *positions, *derived)
     if equations.mechanism.space == "sphere":
         text = Sentence(
             "Each dyad adds one point: the law of cosines in the triangle of the dyad's two centres and this "
             "point gives one angle, from which the angle of the other arc follows."
         )
-        sections = (Section(NOTHING, (Paragraph(text),)), *explained, *derived)
-        return Sheet(printed=(*explained, *derived), chapters={"equations": _constraints(sections)})
+        sections = (Section(NOTHING, (Paragraph(text),)), *explained, *placed, *derived)
+        return Sheet(printed=printed, chapters={"equations": _constraints(sections)})
     checked: tuple[Section, ...] = ()
     numbered: tuple[Section, ...] = ()
     if isinstance(equations, NumberedEquations):
         checked, numbered = tuple(_check_constraints(equations)), tuple(_put_numbers(equations))
     title = Sentence("Velocities and accelerations")
     chapters = {
-        "equations": _constraints((*explained, *checked)),
+        "equations": _constraints((*explained, *placed, *checked)),
         "derivation": Chapter(title, (*derived, *numbered)),
     }
-    return Sheet(printed=(*explained, *derived), chapters=chapters)
+    return Sheet(printed=printed, chapters=chapters)
 
 
 def _constraints(sections: tuple[Section, ...]) -> Chapter:
@@ -102,10 +106,12 @@ def _derive_systems(equations: Equations) -> Iterator[Section]:
     """Systems and determinants, normal form, accelerations, velocities of points."""
     if equations.together is not None:
         yield Section(Sentence("Velocities: Cramer's rule"), _blocks(_solution(equations.together)))
+        yield from _expansions([equations.together])
     else:
         for group in equations.groups:
             title = Sentence("Velocities of group {group}", group=Name(group.label))
             yield Section(title, _blocks(_solution(group.velocities)))
+        yield from _expansions([group.velocities for group in equations.groups])
     if equations.groups:
         explained = equations.together is None
         normal = [line for group in equations.groups for line in _normal_form(group, explained)]
@@ -269,10 +275,37 @@ def _solution(solution: GroupSolution) -> Iterator[Line | Block]:
         text = Sentence("The determinants have too many terms to print; the system is solved numerically.")
         yield Paragraph(text)
         return
-    yield _letter(solution.under), FactoredFormula(system.determinant, differences_first=True)
-    for letter, one in zip(system.unknowns, system.numerators, strict=True):
-        yield _letter(_numerator(letter)), FactoredFormula(one, differences_first=True)
+    yield _determinant(solution, None, short=True)
+    for column, letter in enumerate(system.unknowns):
+        yield _determinant(solution, column, short=True)
         yield _letter(letter), _cramer(solution, letter)
+
+
+def _determinant(solution: GroupSolution, column: int | None, *, short: bool) -> Line:
+    """A determinant of Cramer's rule with its cofactor expansion: in the `short` form where that is one product."""
+    system = solution.system
+    assert system.determinant is not None and system.numerators is not None
+    formula = system.determinant if column is None else system.numerators[column]
+    letter = solution.under if column is None else _numerator(system.unknowns[column])
+    expansion = system.expansion(column)
+    steps = () if short and not expansion.fits else tuple(map(Cofactors, expansion.steps))
+    return (_letter(letter), *steps, FactoredFormula(formula, differences_first=True))
+
+
+def _expansions(solutions: Iterable[GroupSolution]) -> Iterator[Section]:
+    """The cofactor expansions that are longer than one product, as a detail."""
+    lines = []
+    for solution in solutions:
+        system = solution.system
+        if len(system.unknowns) > 1 and system.determinant is not None:
+            columns = (None, *range(len(system.unknowns)))
+            lines += [
+                _determinant(solution, column, short=False)
+                for column in columns
+                if not system.expansion(column).fits
+            ]
+    if lines:
+        yield Section(Sentence("Determinants by cofactor expansion"), (Formula(tuple(lines)),), detail=True)
 
 
 def _cramer(solution: GroupSolution, letter: Letter) -> SumFormula:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from centrode.equations.spelling import FormulaSpelling, parts_of
 from centrode.equations.symbols import Letter, Wave
-from centrode.locale import coordinate_separator, decimal_mark
+from centrode.locale import chosen_language, coordinate_separator, decimal_mark
 
 GREEK = frozenset(
     (
@@ -66,8 +66,15 @@ class TypstSpelling(FormulaSpelling):
     def function(self, name: str, text: str) -> str:
         return f"{name} {self.bracket(text)}"
 
+    def function_of(self, name: str, letter: Letter) -> str:
+        shown = name if name != "tan" or chosen_language() == "en" else 'op("tg")'
+        return f"{shown} {self.letter(letter)}"
+
     def direction(self, y: str, x: str) -> str:
         return f'"atan2" {self.bracket(f"{y}{coordinate_separator()}{x}")}'
+
+    def product(self, factors: Sequence[str]) -> str:
+        return " dot.op ".join(factors)
 
     def minor(self, rows: Sequence[Sequence[str]]) -> str:
         return f'mat(delim: "|", {"; ".join(", ".join(row) for row in rows)})'
