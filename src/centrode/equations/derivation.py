@@ -18,7 +18,7 @@ from centrode.equations.linear import (
     system_of,
 )
 from centrode.equations.plane_positions import PlanePositions
-from centrode.equations.position_functions import PositionFunctions
+from centrode.equations.position_functions import PositionFunctions, put_signs
 from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.sphere_chains import SphereBoard, SpherePlace, laid_on_sphere
 from centrode.equations.sphere_positions import SpherePositions
@@ -198,6 +198,13 @@ class Equations:
     def rates(self) -> Mapping[str, Any]:
         """Cauchy normal form: rate -> expression."""
         return {name: found for group in self.groups for name, found in group.rates.items()}
+
+    @cached_property
+    def positions(self) -> Mapping[str, Any]:
+        """Positions in closed form: letter -> expression of the letters before it, for the branches described."""
+        signs = {one.letter: one.initial for one in self.position_functions.branches}
+        lines = self.position_functions.lines
+        return {line.letter.name: put_signs(line.formula, signs).expression for line in lines}
 
     @cached_property
     def accelerations(self) -> Mapping[str, Any]:

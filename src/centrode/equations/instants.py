@@ -302,11 +302,11 @@ class PlacedEquations(Equations):
     Attributes
     ----------
     motion : at the instants
-    positions : letter -> number at each of them [SI]; None where the mechanism does not get there
+    place_values : letter -> number at each of them [SI]; None where the mechanism does not get there
     """
 
     motion: xr.Dataset
-    positions: tuple[Mapping[Letter, float] | None, ...]
+    place_values: tuple[Mapping[Letter, float] | None, ...]
 
 
 @dataclass(frozen=True)
@@ -344,19 +344,19 @@ def equation_results(
         return found
     own = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
     places = motion(mechanism, at=list(instants))
-    positions = tuple(
+    place_values = tuple(
         position_values(found, places, sample) if status == Status.OK else None
         for sample, status in enumerate(places["status"].values.tolist())
     )
     if mechanism.space != "plane":
-        return PlacedEquations(**own, motion=places, positions=positions)
+        return PlacedEquations(**own, motion=places, place_values=place_values)
     length, _unit = display_unit("m", str(mechanism.display.length))
     numbers = tuple(
         _numbers(found, places, sample, length) if status == Status.OK else None
         for sample, status in enumerate(places["status"].values.tolist())
     )
     return NumberedEquations(
-        **own, motion=places, positions=positions, check=_check(found), numbers=numbers
+        **own, motion=places, place_values=place_values, check=_check(found), numbers=numbers
     )
 
 
@@ -431,7 +431,11 @@ def _bearings(equations: Equations, values: Mapping[Letter, float]) -> dict[Lett
     for condition in (one for group in equations.groups for one in group.conditions):
         residual = condition.residual
         for letter in residual.letters:
-            if condition.name.startswith(ROLLING) and letter in meanings and meanings[letter].kind == "bearing":
+            if (
+                condition.name.startswith(ROLLING)
+                and letter in meanings
+                and meanings[letter].kind == "bearing"
+            ):
                 slope = _value(residual.slope(letter), values)
                 away = _value(residual, values) / slope
                 found[letter] = values[letter] - math.tau * round(away / math.tau)

@@ -62,7 +62,9 @@ class AngleSum:
 
     def put(self, signs: Mapping[Letter, int]) -> AngleSum:
         """The same with the signs of branches."""
-        return AngleSum(within_a_turn(self.total.replace_letters({x: Sum.number(k) for x, k in signs.items()})))
+        return AngleSum(
+            within_a_turn(self.total.replace_letters({x: Sum.number(k) for x, k in signs.items()}))
+        )
 
     def value(self, value_of: ValueOf) -> Any:
         """The number."""
@@ -222,16 +224,24 @@ class TangentOfAngle:
     def text(self, spelling: FormulaSpelling) -> str:
         """The formula."""
         p, q, r = (square_text(one, spelling) for one in (self.p, self.q, self.r))
-        root = spelling.root(f"{p} + {q} {spelling.minus} {r}")
-        product = self.p * self.q
-        front = f"{spelled_sum(product, spelling)} " if product else ""
-        minus = self.sign < 0
-        sign = (f"{spelling.minus} " if minus else "+ ") if front else (spelling.minus if minus else "")
+        root = spelling.root(
+            " + ".join(text for text, part in ((p, self.p), (q, self.q)) if part) + f" {spelling.minus} {r}"
+        )
+        product = -(self.p * self.q)
+        if not product:
+            return self._of_one_part(r, root, spelling)
         factor = spelled_sum(self.r, spelling)
         factor = factor if len(self.r.terms) == 1 else spelling.bracket(factor)
-        above = f"{front}{sign}{spelling.join([factor, root])}"
-        below = f"{r} {spelling.minus} {q}" if self.q else r
-        return spelling.fraction([spelling.bracket(above)], [spelling.bracket(below)])
+        sign = "+" if self.sign < 0 else spelling.minus
+        above = f"{spelled_sum(product, spelling)} {sign} {spelling.join([factor, root])}"
+        return spelling.fraction([spelling.bracket(above)], [spelling.bracket(f"{q} {spelling.minus} {r}")])
+
+    def _of_one_part(self, r: str, root: str, spelling: FormulaSpelling) -> str:
+        """The same where p or q is zero."""
+        minus = spelling.minus if self.sign < 0 else ""
+        if not self.q:
+            return minus + spelling.fraction([root], [spelled_sum(self.r, spelling)])
+        return ("" if minus else spelling.minus) + spelling.fraction([spelled_sum(self.r, spelling)], [root])
 
     @property
     def expression(self) -> Any:

@@ -62,8 +62,7 @@ class LinearSystem:
             return CofactorExpansion(self.matrix)
         return CofactorExpansion(
             tuple(
-                (*row[:column], b, *row[column + 1 :])
-                for row, b in zip(self.matrix, self.right, strict=True)
+                (*row[:column], b, *row[column + 1 :]) for row, b in zip(self.matrix, self.right, strict=True)
             )
         )
 

@@ -30,7 +30,18 @@ from centrode.equations.position_functions import (
 )
 from centrode.equations.spelling import formula_of
 from centrode.equations.symbol_table import SymbolLine, SymbolTable, lines_of, rods_of
-from centrode.equations.symbols import LENGTH, PLACE, ZERO, Angle, Letter, Sum, SumTerm, join_points, merge_waves, quarters_of
+from centrode.equations.symbols import (
+    LENGTH,
+    PLACE,
+    ZERO,
+    Angle,
+    Letter,
+    Sum,
+    SumTerm,
+    join_points,
+    merge_waves,
+    quarters_of,
+)
 from centrode.structure.constraints import FRAME
 from centrode.structure.groups import (
     Aim,
@@ -127,7 +138,14 @@ class PlanePositions:
         found = []
         for number, group in enumerate(self.board.ready.structure.groups):
             lines = _Lines()
-            before = dict(self.places), set(self.known), set(self.taken), dict(self.values), self.deltas, self.signs
+            before = (
+                dict(self.places),
+                set(self.known),
+                set(self.taken),
+                dict(self.values),
+                self.deltas,
+                self.signs,
+            )
             try:
                 self._write(group, lines)
             except Unwritten:
@@ -139,7 +157,12 @@ class PlanePositions:
                 found.append(
                     GroupPositions(
                         label_of.get(number, "" if not group.links else ", ".join(group.links)),
-                        kind, tuple(lines.lines), lines.names, lines.branch, lines.auxiliary, lines.unsolved,
+                        kind,
+                        tuple(lines.lines),
+                        lines.names,
+                        lines.branch,
+                        lines.auxiliary,
+                        lines.unsolved,
                     )  # fmt: skip
                 )
         moving = {name: tuple(self.places[name]) for name in self.board.moving if name in self.places}
@@ -179,7 +202,9 @@ class PlanePositions:
         own = self.values.get(letter)
         return self.board.alphabet.meanings[letter].value if own is None else own
 
-    def _add(self, out: _Lines, letter: Letter, formula: Formula, unit: str, other: Formula | None = None) -> Sum:
+    def _add(
+        self, out: _Lines, letter: Letter, formula: Formula, unit: str, other: Formula | None = None
+    ) -> Sum:
         """Add a line, whose letter is known from there on."""
         out.lines.append(PositionLine(letter, formula, unit, other))
         self.values[letter] = self._initial(formula)
@@ -268,7 +293,9 @@ class PlanePositions:
                 total = one.residual
                 slope = total.slope(letter)
                 others = [
-                    x for x in total.letters if x in self.board.alphabet.rates and x not in self.known and x != letter
+                    x
+                    for x in total.letters
+                    if x in self.board.alphabet.rates and x not in self.known and x != letter
                 ]
                 if others or not slope or slope.letters & {letter} or len(slope.terms) != 1:
                     continue
@@ -311,7 +338,9 @@ class PlanePositions:
         determinant = system.determinant
         if determinant is None or determinant.total.letters & moving:
             raise Unwritten
-        name = self._letter(DELTA + 1000 + len(self.taken), f"D_{self.board.alphabet.meanings[unknown[0]].names[0]}", 0.0)
+        name = self._letter(
+            DELTA + 1000 + len(self.taken), f"D_{self.board.alphabet.meanings[unknown[0]].names[0]}", 0.0
+        )
         formulas = system.solved(name)
         if formulas is None:
             raise Unwritten
@@ -362,7 +391,14 @@ class PlanePositions:
         """The circle of a wheel's centre about that of its track; carried, the circle of the group's own point."""
         board, name = self.board, locus.contact.rolling
         rod = self.rods[name]
-        letter = next((x for x, one in board.alphabet.meanings.items() if one.kind == "bearing" and one.names == (name,)), None)
+        letter = next(
+            (
+                x
+                for x, one in board.alphabet.meanings.items()
+                if one.kind == "bearing" and one.names == (name,)
+            ),
+            None,
+        )
         if letter is None or isinstance(rod.first, str):
             raise Unwritten
         body, local = rod.first
@@ -431,7 +467,9 @@ class PlanePositions:
         way = places[0].plus(places[1], -1)
         square = formula_of(merge_waves(way.x * way.x + way.y * way.y))
         moving = square.total.letters & board.alphabet.rates.keys()
-        short = square.size <= SHORT and moving <= self.known and any(term.waves for term in square.rest.terms)
+        short = (
+            square.size <= SHORT and moving <= self.known and any(term.waves for term in square.rest.terms)
+        )
         return SquareRoot(square) if short else None
 
     def _base_angle(self, way: UnknownPlace, out: _Lines) -> tuple[Letter, Sum]:
@@ -473,9 +511,7 @@ class PlanePositions:
             one, other = other, one  # the link on a fixed hinge is the one that is solved
         main, far = other, one
         shift = self._arm(group, main.point, far.point)
-        way, length = self._auxiliary_vector(
-            main.at, far.at.plus(shift, -1), (far.centre, main.centre), out
-        )
+        way, length = self._auxiliary_vector(main.at, far.at.plus(shift, -1), (far.centre, main.centre), out)
         direction, base = self._base_angle(way, out)
         square = Sum.letter(length, 2) + main.radius * main.radius - far.radius * far.radius
         corner = formula_of(square.divide(_product(main.radius)).scale(Fraction(1, 2)).divide(_term(length)))
@@ -600,7 +636,13 @@ class PlanePositions:
 
     def _slides(self, group: Meet, out: _Lines) -> None:
         for locus in group.loci:
-            name = locus.guide if isinstance(locus, (Rail, Slot)) else locus.contact.rolling if isinstance(locus, Touch) else ""
+            name = (
+                locus.guide
+                if isinstance(locus, (Rail, Slot))
+                else locus.contact.rolling
+                if isinstance(locus, Touch)
+                else ""
+            )
             for letter in self._slide_letters(name):
                 if letter not in self.known:
                     self._slide(self.lines[name], letter, None, out)
@@ -630,7 +672,9 @@ class PlanePositions:
         """Angles and displacements that the motion gives, and the places of the points in them."""
         board = self.board
         letters = [x for link in group.links for x in self._unknown(board.angles[link])]
-        names = {line.name for line in self.lines.values() if line.on in group.links or line.point in group.points}
+        names = {
+            line.name for line in self.lines.values() if line.on in group.links or line.point in group.points
+        }
         letters += [x for name in names for x in self._slide_letters(name)]
         meanings = board.alphabet.meanings
         points = set(group.points) | {p for link in group.links for p in board.local(link)}
@@ -672,7 +716,9 @@ def _coordinate(axis: str, point: str) -> Letter:
 def _is_letter(total: Sum) -> bool:
     """Whether a sum is a letter by itself."""
     (term, number), *others = total.terms.items()
-    return not others and number == 1 and not term.waves and len(term.letters) == 1 and term.letters[0][1] == 1
+    return (
+        not others and number == 1 and not term.waves and len(term.letters) == 1 and term.letters[0][1] == 1
+    )
 
 
 def _product(total: Sum) -> SumTerm:

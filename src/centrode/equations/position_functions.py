@@ -165,7 +165,9 @@ class PositionFunctions:
 
 def formula_value(formula: Formula, value_of: Callable[[Letter], Any]) -> Any:
     """The number that a formula is, over arrays."""
-    return formula.total.value(np, value_of) if isinstance(formula, SymbolFormula) else formula.value(value_of)
+    return (
+        formula.total.value(np, value_of) if isinstance(formula, SymbolFormula) else formula.value(value_of)
+    )
 
 
 def put_signs(formula: Formula, signs: Mapping[Letter, int]) -> Formula:

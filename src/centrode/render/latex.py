@@ -15,7 +15,20 @@ WIDE = 190
 """Letters of LaTeX on one line."""
 GREEK = {"phi": "varphi", "epsilon": "varepsilon"} | {
     name: name
-    for name in ("alpha", "beta", "gamma", "delta", "theta", "kappa", "rho", "psi", "omega", "Delta", "pi", "pi/2")
+    for name in (
+        "alpha",
+        "beta",
+        "gamma",
+        "delta",
+        "theta",
+        "kappa",
+        "rho",
+        "psi",
+        "omega",
+        "Delta",
+        "pi",
+        "pi/2",
+    )
 }
 SPECIAL = re.compile(r"([#$%&_{}])|([\\^~])")
 
@@ -89,9 +102,10 @@ class LatexSpelling(FormulaSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         top = self.join(above) or "1"
         if len(top) > LONG:
-            return rf"\frac{{1}}{{{self.join(below)}}} {top}"
+            return rf"\frac{{1}}{{{self.unbracketed(self.join(below))}}} {top}"
         whole = self.unbracketed(top) if len(above) == 1 else top
-        return rf"\frac{{{whole}}}{{{self.join(below)}}}"
+        bottom = self.join(below)
+        return rf"\frac{{{whole}}}{{{self.unbracketed(bottom) if len(below) == 1 else bottom}}}"
 
     def ratio(self, above: Sequence[str], below: Sequence[str]) -> str:
         return self.fraction(above, below)

@@ -64,9 +64,9 @@ ROUNDING = 1e-14
 
 def sheet(equations: Equations) -> Sheet:
     """The page of the equations; in documents constraints and derivation are chapters, with numbers where known."""
-    explained, derived = tuple(_explain_constraints(equations)), tuple(_derive_systems(equations))
+    explained, derived = tuple(_explain_constraints(equations)), tuple(_derive_systems(equations, short=True))
     positions, placed = tuple(position_sections(equations)), tuple(numbered_sections(equations))
-    printed = (*explained, *positions, *derived)
+    printed = (*explained, *positions, *_derive_systems(equations, short=False))
     if equations.mechanism.space == "sphere":
         text = Sentence(
             "Each dyad adds one point: the law of cosines in the triangle of the dyad's two centres and this "
@@ -102,16 +102,21 @@ def _explain_constraints(equations: Equations) -> Iterator[Section]:
     yield Section(Sentence("Given by the drives (SI)"), _blocks(given))
 
 
-def _derive_systems(equations: Equations) -> Iterator[Section]:
-    """Systems and determinants, normal form, accelerations, velocities of points."""
+def _derive_systems(equations: Equations, *, short: bool) -> Iterator[Section]:
+    """Systems and determinants, normal form, accelerations, velocities of points.
+
+    In the `short` form long cofactor expansions stand in a section of their own, which is a detail.
+    """
     if equations.together is not None:
-        yield Section(Sentence("Velocities: Cramer's rule"), _blocks(_solution(equations.together)))
-        yield from _expansions([equations.together])
+        yield Section(
+            Sentence("Velocities: Cramer's rule"), _blocks(_solution(equations.together, short=short))
+        )
+        yield from _expansions([equations.together]) if short else ()
     else:
         for group in equations.groups:
             title = Sentence("Velocities of group {group}", group=Name(group.label))
-            yield Section(title, _blocks(_solution(group.velocities)))
-        yield from _expansions([group.velocities for group in equations.groups])
+            yield Section(title, _blocks(_solution(group.velocities, short=short)))
+        yield from _expansions([group.velocities for group in equations.groups]) if short else ()
     if equations.groups:
         explained = equations.together is None
         normal = [line for group in equations.groups for line in _normal_form(group, explained)]
@@ -262,7 +267,7 @@ def _given(one: Drivenness) -> Iterator[Line | Block]:
     yield rate, GivenNumber(one.speed)
 
 
-def _solution(solution: GroupSolution) -> Iterator[Line | Block]:
+def _solution(solution: GroupSolution, *, short: bool) -> Iterator[Line | Block]:
     """The system of the rates, its determinants, and Cramer's rule."""
     system = solution.system
     right = tuple(map(_entry, system.right))
@@ -275,35 +280,36 @@ def _solution(solution: GroupSolution) -> Iterator[Line | Block]:
         text = Sentence("The determinants have too many terms to print; the system is solved numerically.")
         yield Paragraph(text)
         return
-    yield _determinant(solution, None, short=True)
+    yield _determinant(solution, None, short=short)
     for column, letter in enumerate(system.unknowns):
-        yield _determinant(solution, column, short=True)
+        yield _determinant(solution, column, short=short)
         yield _letter(letter), _cramer(solution, letter)
 
 
 def _determinant(solution: GroupSolution, column: int | None, *, short: bool) -> Line:
-    """A determinant of Cramer's rule with its cofactor expansion: in the `short` form where that is one product."""
+    """A determinant of Cramer's rule with its cofactor expansion.
+
+    In the `short` form two rows are multiplied out, of more the first step is shown where that is one product.
+    """
     system = solution.system
     assert system.determinant is not None and system.numerators is not None
     formula = system.determinant if column is None else system.numerators[column]
     letter = solution.under if column is None else _numerator(system.unknowns[column])
     expansion = system.expansion(column)
-    steps = () if short and not expansion.fits else tuple(map(Cofactors, expansion.steps))
-    return (_letter(letter), *steps, FactoredFormula(formula, differences_first=True))
+    steps = expansion.steps
+    if short and len(steps) > 1:
+        steps = steps[:1] if expansion.fits else ()
+    return (_letter(letter), *map(Cofactors, steps), FactoredFormula(formula, differences_first=True))
 
 
 def _expansions(solutions: Iterable[GroupSolution]) -> Iterator[Section]:
-    """The cofactor expansions that are longer than one product, as a detail."""
+    """The cofactor expansions of determinants of three rows and more in all their steps, as a detail."""
     lines = []
     for solution in solutions:
         system = solution.system
-        if len(system.unknowns) > 1 and system.determinant is not None:
+        if len(system.unknowns) > 2 and system.determinant is not None:
             columns = (None, *range(len(system.unknowns)))
-            lines += [
-                _determinant(solution, column, short=False)
-                for column in columns
-                if not system.expansion(column).fits
-            ]
+            lines += [_determinant(solution, column, short=False) for column in columns]
     if lines:
         yield Section(Sentence("Determinants by cofactor expansion"), (Formula(tuple(lines)),), detail=True)
 

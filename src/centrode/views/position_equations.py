@@ -71,7 +71,7 @@ def numbered_sections(equations: Equations) -> Iterator[Section]:
 def _reached(equations: Equations) -> Iterator[tuple[int, Values]]:
     """Samples at which the positions have numbers."""
     if isinstance(equations, PlacedEquations):
-        for sample, values in enumerate(equations.positions):
+        for sample, values in enumerate(equations.place_values):
             if values is not None:
                 yield sample, values
 
@@ -85,7 +85,7 @@ class _Positions:
         self.values: Values | None = None
         self.signs = {branch.letter: branch.initial for branch in self.functions.branches}
         if sample is not None and isinstance(equations, PlacedEquations):
-            self.values = equations.positions[sample] or {}
+            self.values = equations.place_values[sample] or {}
             self.signs = {letter: int(self.values[letter]) for letter in self.signs}
         self.units = {letter: one.unit for letter, one in equations.board.alphabet.meanings.items()}
         self.units |= {line.letter: line.unit for line in self.functions.lines}
@@ -113,7 +113,9 @@ class _Positions:
         """What atan2 is, and which of two solutions the formulas are for."""
         sentences: list[Text] = []
         if any("atan2" in _functions(line) for line in self.functions.lines):
-            sentences.append(Sentence("atan2(y, x) is the direction of the vector with the components x and y."))
+            sentences.append(
+                Sentence("atan2(y, x) is the direction of the vector with the components x and y.")
+            )
         if self.signs:
             sentences.append(
                 Sentence(
@@ -135,7 +137,9 @@ class _Positions:
                     group=label, letters=letters,
                 )  # fmt: skip
             return Sentence(
-                "{group} is not written in closed form; found numerically: {letters}.", group=label, letters=letters
+                "{group} is not written in closed form; found numerically: {letters}.",
+                group=label,
+                letters=letters,
             )
         if group.branch is None:
             return None
@@ -213,7 +217,10 @@ class _Positions:
         if self.values is None:
             return
         length, _unit = display_unit("m", str(self.equations.mechanism.display.length))
-        values = {letter: x * (length if self.units.get(letter) == "m" else 1.0) for letter, x in self.values.items()}
+        values = {
+            letter: x * (length if self.units.get(letter) == "m" else 1.0)
+            for letter, x in self.values.items()
+        }
         for line in self.functions.lines:
             formula = put_signs(line.formula, self.signs)
             letters = formula.total.letters if isinstance(formula, SymbolFormula) else formula.letters

@@ -11,8 +11,20 @@ from centrode.locale import chosen_language, coordinate_separator, decimal_mark
 
 GREEK = frozenset(
     (
-        "alpha", "beta", "gamma", "delta", "epsilon", "theta", "kappa", "rho", "phi", "psi", "omega", "Delta",
-        "pi", "pi/2",
+        "alpha",
+        "beta",
+        "gamma",
+        "delta",
+        "epsilon",
+        "theta",
+        "kappa",
+        "rho",
+        "phi",
+        "psi",
+        "omega",
+        "Delta",
+        "pi",
+        "pi/2",
     )
 )
 DOTS = {"dot": "dot", "ddot": "dot.double"}
@@ -88,7 +100,7 @@ class TypstSpelling(FormulaSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         top = self.join(above) or "1"
         if len(top) > LONG:
-            return f"frac(1, {self.join(below)}) {top}"
+            return f"frac(1, {strip_brackets(self.join(below))}) {top}"
         whole = strip_brackets(top) if len(above) == 1 else top
         return f"frac({whole}, {strip_brackets(self.join(below))})"
 
