@@ -1,4 +1,4 @@
-"""Positions in closed form, letter by letter, against the motion, which knows nothing of auxiliary vectors and angles."""
+"""Positions in closed form, letter by letter, against the motion, which knows nothing of auxiliary vectors."""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -492,7 +492,7 @@ class PlanePositions:
 
     def _initial_places(self) -> dict[Letter, float]:
         """Letters by which the signs are told: x_B and y_B of points whose lines are still to come."""
-        found = {}
+        found: dict[Letter, float] = {}
         for point in self.board.moving:
             at = self.board.at(point)
             found |= {_coordinate("x", point): at.real, _coordinate("y", point): at.imag}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 
@@ -68,7 +69,7 @@ class SpherePositions:
         return PositionLine(letter, formula, unit)
 
     def _closing(self, closure: SphereClosure, number: int, label: str) -> GroupPositions:
-        """p cos x + q sin x = r by an auxiliary angle: x = atan2(q, p) + k arccos(r/sqrt(p^2 + q^2))."""
+        """The closure p cos x + q sin x = r by auxiliary angles: x = atan2(q, p) + k arccos(r/sqrt(p^2 + q^2))."""
         one = closure.closing
         p, q, rest = by_wave(one.right, closure.turn)
         r = merge_waves(one.left - rest)
@@ -106,7 +107,7 @@ class SpherePositions:
         _cosine, slope, rest = by_wave(one.left, closure.lean)
         total = merge_waves(one.right - rest)
         (term, number), *_others = slope.terms.items()
-        formula = formula_of(total.divide(term).scale(1 / number if number != 1 else 1))
+        formula = formula_of(total.divide(term).scale(1 / Fraction(number)))
         line = self._line(closure.lean, ArcFunction("arcsin", formula), "rad")
         return GroupPositions(closure.label, "", (line,))
 
@@ -114,9 +115,9 @@ class SpherePositions:
         """Where a point or a pole lies in the initial position."""
         board = self.board
         if name in board.ready.assembled.positions.points:
-            return board.at(name).tolist()
+            return [float(x) for x in board.at(name)]
         body = next(body for body, points in board.inside.items() if name in points)
-        return board.carried(body, board.inside[body][name]).tolist()
+        return [float(x) for x in board.carried(body, board.inside[body][name])]
 
     def _spherical(self, point: str, at: SpherePlace) -> SphericalCoordinates | None:
         """Angles of a point from the z axis and about it, where its coordinates are short."""

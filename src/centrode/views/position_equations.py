@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -130,21 +131,23 @@ class _Positions:
         """What is done in a group; nothing where its lines speak for themselves."""
         label = Name(group.label)
         if group.unsolved:
-            letters = Joined(tuple(SumFormula(Sum.letter(letter)) for letter in group.unsolved))
+            unsolved = Joined(tuple(SumFormula(Sum.letter(letter)) for letter in group.unsolved))
             if group.kind == "higher class":
                 return Sentence(
                     "{group} is of higher class and has no closed form; found numerically: {letters}.",
-                    group=label, letters=letters,
+                    group=label, letters=unsolved,
                 )  # fmt: skip
             return Sentence(
                 "{group} is not written in closed form; found numerically: {letters}.",
                 group=label,
-                letters=letters,
+                letters=unsolved,
             )
         if group.branch is None:
             return None
         sentence = self._sentences(group)[self.signs[group.branch.letter] > 0]
-        letters = {f"letter{k}": SumFormula(Sum.letter(one)) for k, one in enumerate(group.auxiliary)}
+        letters: dict[str, Text] = {
+            f"letter{k}": SumFormula(Sum.letter(one)) for k, one in enumerate(group.auxiliary)
+        }
         point, centre, other = map(Name, group.names)
         if self.equations.mechanism.space == "sphere":
             turn = Angle.of(group.lines[-1].letter)
@@ -258,11 +261,11 @@ def _spherical(points: tuple[SphericalCoordinates, ...]) -> Iterator[Block]:
             letter, formula = one.tangent
             tangent = InverseFormula(put_signs(formula, {formula.branch: formula.sign}))  # type: ignore[arg-type]
             lines.append((FunctionOfLetter("tan", one.polar), FunctionOfLetter("tan", letter), tangent))
-        longitude = FunctionOfLetter("tan", one.longitude)
+        tangent_of = FunctionOfLetter("tan", one.longitude)
         if not one.y:
-            lines.append((longitude, SumFormula(one.y)))
+            lines.append((tangent_of, SumFormula(one.y)))
         elif len(one.x.terms) == 1:
             (term, number), *_others = one.x.terms.items()
-            ratio = formula_of(one.y.divide(term).scale(1 if number == 1 else 1 / number))
-            lines.append((longitude, FactoredFormula(ratio)))
+            ratio = formula_of(one.y.divide(term).scale(1 / Fraction(number)))
+            lines.append((tangent_of, FactoredFormula(ratio)))
     yield Formula(tuple(lines))
