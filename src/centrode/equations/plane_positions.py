@@ -163,7 +163,7 @@ class PlanePositions:
                         lines.branch,
                         lines.auxiliary,
                         lines.unsolved,
-                    )  # fmt: skip
+                    )
                 )
         moving = {name: tuple(self.places[name]) for name in self.board.moving if name in self.places}
         return PositionFunctions(tuple(found), moving)

@@ -98,7 +98,7 @@ BACK = Angle((), 2)
 
 
 class SphereClosure(NamedTuple):
-    """A dyad that is solved: the angles that its two conditions give, and the triangle that decides between two answers.
+    """A dyad that is solved: the angles that its two conditions give, and the triangle that decides between answers.
 
     Attributes
     ----------

@@ -97,9 +97,15 @@ class SpherePositions:
             self.tangents[closure.turn] = TangentOfAngle(p, q, r, sign, initial)
         centre, far, point = closure.places
         return GroupPositions(
-            label, self.board.ready.structure.groups[closure.plan].kind, tuple(lines), (point, centre, far), Branch(sign, None, initial, closure.places),
-            (size, base, corner), (), dict(self.tangents) if whole else {},
-        )  # fmt: skip
+            label,
+            self.board.ready.structure.groups[closure.plan].kind,
+            tuple(lines),
+            (point, centre, far),
+            Branch(sign, None, initial, closure.places),
+            (size, base, corner),
+            (),
+            dict(self.tangents) if whole else {},
+        )
 
     def _leaning(self, closure: SphereClosure) -> GroupPositions:
         """The angle of the coupler to the path of its point, from the law of cosines."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from centrode.equations.instants import PlacedEquations
+from centrode.equations.inverse_functions import VectorDirection
 from centrode.equations.position_functions import put_signs
 from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.symbols import Angle, Letter, Sum
@@ -113,9 +114,14 @@ class _Positions:
     def _explain(self) -> Iterator[Block]:
         """What atan2 is, and which of two solutions the formulas are for."""
         sentences: list[Text] = []
-        if any("atan2" in _functions(line) for line in self.functions.lines):
+        if any(isinstance(line.formula, VectorDirection) for line in self.functions.lines):
+            x, y = (Sum.letter(Letter(0, axis)) for axis in "xy")
+            direction = InverseFormula(VectorDirection(y, x))
             sentences.append(
-                Sentence("atan2(y, x) is the direction of the vector with the components x and y.")
+                Sentence(
+                    "{direction} is the direction of the vector with the components x and y.",
+                    direction=direction,
+                )
             )
         if self.signs:
             sentences.append(
@@ -230,11 +236,6 @@ class _Positions:
             size = formula.size if isinstance(formula, SymbolFormula) else 1
             if letters and size <= BIGGEST:
                 yield SumFormula(Sum.letter(line.letter)), _leaf(formula, values), self._number(line)
-
-
-def _functions(line: PositionLine) -> str:
-    """Whether a line has a direction of a vector."""
-    return "atan2" if type(line.formula).__name__ == "VectorDirection" else ""
 
 
 def _leaf(formula: PositionFormula, values: Values | None = None) -> Leaf:
