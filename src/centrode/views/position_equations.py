@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from centrode.equations.instants import PlacedEquations
-from centrode.equations.inverse_functions import VectorDirection
+from centrode.equations.inverse_functions import AngleSum, VectorDirection
 from centrode.equations.position_functions import put_signs
 from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.symbols import Angle, Letter, Sum
@@ -234,7 +234,8 @@ class _Positions:
             formula = put_signs(line.formula, self.signs)
             letters = formula.total.letters if isinstance(formula, SymbolFormula) else formula.letters
             size = formula.size if isinstance(formula, SymbolFormula) else 1
-            if letters and size <= BIGGEST:
+            same = isinstance(formula, AngleSum) and len(formula.total.terms) == 1
+            if letters and size <= BIGGEST and not same:
                 yield SumFormula(Sum.letter(line.letter)), _leaf(formula, values), self._number(line)
 
 
