@@ -15,7 +15,10 @@ import centrode as ct
 from centrode.equations.derivation import Equations
 from centrode.equations.instants import PlacedEquations, equation_results, instant_of, position_values
 from centrode.equations.sphere_chains import SphereBoard
+from centrode.equations.symbols import Sum
 from centrode.errors import Status
+from centrode.sheets.sheet import Formula
+from centrode.views.equations import sheet
 from growing import descriptions, mechanism_of
 from growing_sphere import Growing
 from growing_sphere import mechanisms as spherical_mechanisms
@@ -215,3 +218,24 @@ def test_spherical_coordinates_of_the_thesis() -> None:
         assert abs(float(b.z.value(np, values.__getitem__)) - at["B"][2]) <= 8 * EPS
         longitude = float(b.y.value(np, values.__getitem__)) / float(b.x.value(np, values.__getitem__))
         assert abs(longitude - math.tan(math.atan2(at["B"][1], at["B"][0]))) <= 16 * EPS
+
+
+@pytest.mark.parametrize(("name", "instant"), [("six-bar-press", 2.0), ("spherical-crank-rocker", 0.7)])
+def test_documents_have_the_values_of_the_first_instant(name: str, instant: float) -> None:
+    """Every line of the chapter ends with its number at the instant, the detail has the numbers put in."""
+    found = equation_results(ct.example(name), None, [instant, instant + 1.0])
+    assert isinstance(found, PlacedEquations) and found.place_values[0] is not None
+    sections = sheet(found).chapters["equations"].sections
+    titles = [str(section.title) for section in sections]
+    (place,) = [k for k, title in enumerate(titles) if "with their values at" in title]
+    shown = [
+        (line[0].total, line[-1].value)  # type: ignore[union-attr]
+        for block in sections[place].blocks
+        if isinstance(block, Formula)
+        for line in block.lines
+    ]
+    lines = found.position_functions.lines
+    assert [total for total, _value in shown] == [Sum.letter(line.letter) for line in lines]
+    for (_total, value), line in zip(shown, lines, strict=True):
+        assert abs(value - found.place_values[0][line.letter]) <= 8 * EPS
+    assert sections[place + 1].detail and not sections[place].detail
