@@ -55,6 +55,21 @@ class Written(FormulaSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         return f"(({self.join(above) or '1'})/({self.join(below)}))"
 
+    def root(self, text: str) -> str:
+        return f"sqrt({text})"
+
+    def function(self, name: str, text: str) -> str:
+        return f"{name}({text})"
+
+    def function_of(self, name: str, letter: Letter) -> str:
+        return f"{name}({self.letter(letter)})"
+
+    def product(self, factors: Sequence[str]) -> str:
+        return "*".join(factors)
+
+    def minor(self, rows: Sequence[Sequence[str]]) -> str:
+        return "det([" + ",".join(f"[{','.join(row)}]" for row in rows) + "])"
+
     def derivative(self, letter: Letter) -> str:
         return "None"
 
@@ -72,7 +87,11 @@ class Values(dict[str, Any]):
         return number_of(name)
 
 
-KNOWN = {"sin": mpmath.sin, "cos": mpmath.cos, "mpf": mpmath.mpf, "V": Values(), "t": number_of("t")}
+KNOWN = {
+    "sin": mpmath.sin, "cos": mpmath.cos, "tan": mpmath.tan, "arcsin": mpmath.asin, "arccos": mpmath.acos,
+    "sqrt": mpmath.sqrt, "atan2": mpmath.atan2, "det": lambda rows: mpmath.det(mpmath.matrix(rows)),
+    "mpf": mpmath.mpf, "V": Values(), "t": number_of("t"),
+}  # fmt: skip
 DIGITS, KEPT = 60, 40
 """Digits that are computed with, and those that must agree: no formula here loses twenty."""
 

@@ -8,8 +8,15 @@ from typing import Any
 
 import mpmath
 
-TOKEN = re.compile(r'\s*("(?:[^"\\]|\\.)*"|\d+(?:\.\d+)?|[A-Za-z]+(?:\.[a-z]+)*|[-+(),_^])')
-WAVES = {"sin": mpmath.sin, "cos": mpmath.cos}
+TOKEN = re.compile(r'\s*("(?:[^"\\]|\\.)*"|\d+(?:\.\d+)?|[A-Za-z]+(?:\.[a-z]+)*|[-+(),;:/_^])')
+WAVES = {
+    "sin": mpmath.sin,
+    "cos": mpmath.cos,
+    "tan": mpmath.tan,
+    "arcsin": mpmath.asin,
+    "arccos": mpmath.acos,
+}
+ENDS = ("", "+", "-", ")", ",", ";")
 NUMBER = re.compile(r'"?\d+[.,]?\d*"?')
 
 
@@ -48,7 +55,7 @@ class TypstReader:
 
     def product(self) -> Any:
         value = self.factor()
-        while self.next() not in ("", "+", "-", ")", ","):
+        while self.next() not in ENDS:
             if self.next() == "dot.op":
                 self.take()
             value *= self.factor()
@@ -71,6 +78,19 @@ class TypstReader:
         self.take()
         return int(self.inside())
 
+    def determinant(self) -> Any:
+        """Determinant of a matrix between bars."""
+        for token in ("(", "delim", ":", '"|"'):
+            self.take(token)
+        rows: list[list[Any]] = []
+        sign = self.take(",")
+        while sign != ")":
+            if sign == ";" or not rows:
+                rows.append([])
+            rows[-1].append(self.sum())
+            sign = self.take()
+        return mpmath.det(mpmath.matrix(rows))
+
     def factor(self) -> Any:
         token = self.take()
         if token == "(":
@@ -84,6 +104,25 @@ class TypstReader:
             below = self.sum()
             self.take(")")
             return above / below
+        if token == "sqrt":
+            self.take("(")
+            value = mpmath.sqrt(self.sum())
+            self.take(")")
+            return value
+        if token == '"atan2"':
+            self.take("(")
+            y = self.sum()
+            self.take()
+            x = self.sum()
+            self.take(")")
+            return mpmath.atan2(y, x)
+        if token == "mat":
+            return self.determinant()
+        if token == "op":  # tangent of other languages
+            assert self.inside() == '"tg"'
+            return mpmath.tan(self.factor())
+        if token == "pi" and self.next() == "/":
+            return self.value(token + self.take() + self.take())
         if token == "abs":
             self.take("(")
             value = abs(self.sum())

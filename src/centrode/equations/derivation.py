@@ -17,8 +17,11 @@ from centrode.equations.linear import (
     UnknownPlace,
     system_of,
 )
+from centrode.equations.plane_positions import PlanePositions
+from centrode.equations.position_functions import PositionFunctions, put_signs
 from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.sphere_chains import SphereBoard, SpherePlace, laid_on_sphere
+from centrode.equations.sphere_positions import SpherePositions
 from centrode.equations.symbol_table import Lettering, SymbolTable
 from centrode.equations.symbols import ZERO, Letter, Meaning, Sum
 from centrode.errors import InputError
@@ -174,6 +177,7 @@ class Equations:
     points : whose velocities are written out: where none are named, those on guides of the frame, and where nothing is
         unknown, all moving points
     board : letters with their ranks, places of the points
+    position_functions : positions in closed form, letter by letter
     """
 
     mechanism: Mechanism
@@ -183,6 +187,7 @@ class Equations:
     together: GroupSolution | None
     points: tuple[str, ...]
     board: SymbolTable | SphereBoard
+    position_functions: PositionFunctions
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -193,6 +198,13 @@ class Equations:
     def rates(self) -> Mapping[str, Any]:
         """Cauchy normal form: rate -> expression."""
         return {name: found for group in self.groups for name, found in group.rates.items()}
+
+    @cached_property
+    def positions(self) -> Mapping[str, Any]:
+        """Positions in closed form: letter -> expression of the letters before it, for the branches described."""
+        signs = {one.letter: one.initial for one in self.position_functions.branches}
+        lines = self.position_functions.lines
+        return {line.letter.name: put_signs(line.formula, signs).expression for line in lines}
 
     @cached_property
     def accelerations(self) -> Mapping[str, Any]:
@@ -210,7 +222,8 @@ class Equations:
         conditions = [one for group in self.groups for one in group.conditions]
         sums = [side for one in conditions for side in (one.full, one.left, one.right, one.rate(moves))]
         sums += [side for point in points for side in self.velocity(point).place]
-        used = {letter for one in sums for letter in one.letters} | {one.letter for one in self.given.drives}
+        used = {letter for one in sums for letter in one.letters} | self.position_functions.letters
+        used |= {one.letter for one in self.given.drives}
         known = [letter for letter in used if letter in meanings]
         return [meanings[x] for x in sorted(known, key=lambda x: (not meanings[x].moves, x))]
 
@@ -258,6 +271,7 @@ def equations(mechanism: MechanismSource, points: Sequence[str] | None = None) -
     groups = tuple(
         _group(made, board, draft, given, closed, delta) for draft, delta in zip(drafts, deltas, strict=True)
     )
+    positions = _positions(made, board, drafts)
     if points is None:
         sliding = dict.fromkeys(guide.point for guide in mechanism.guides if guide.on == FRAME)
         points = list(sliding) if groups else board.moving
@@ -271,6 +285,7 @@ def equations(mechanism: MechanismSource, points: Sequence[str] | None = None) -
         _together(board, drafts, given),
         tuple(points),
         board,
+        positions,
     )
 
 
@@ -341,6 +356,15 @@ def _substitute_rates(
         )
         found.append(put_in if put_in.single else None)
     return tuple(found)
+
+
+def _positions(made: Ready, board: SymbolTable | SphereBoard, drafts: Sequence[Draft]) -> PositionFunctions:
+    """Positions in closed form, the groups by their names in the structural formula."""
+    labels = {number: _label(made, draft) for draft in drafts for number in draft.plan}
+    if isinstance(board, SymbolTable):
+        conditions = [one for draft in drafts for one in draft.conditions]
+        return PlanePositions(board, conditions).written(labels)
+    return SpherePositions(board).written(labels)
 
 
 def _together(board: Lettering, drafts: tuple[Draft, ...], given: Given) -> GroupSolution | None:

@@ -7,6 +7,7 @@ the motion in closed form has.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
@@ -22,6 +23,7 @@ from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
+from centrode.model.labels import ROLLING
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
@@ -294,25 +296,37 @@ class NumbersAtInstant:
 
 
 @dataclass(frozen=True)
-class NumberedEquations(Equations):
+class PlacedEquations(Equations):
+    """The equations of a mechanism with the numbers of its positions in closed form.
+
+    Attributes
+    ----------
+    motion : at the instants
+    place_values : letter -> number at each of them [SI]; None where the mechanism does not get there
+    """
+
+    motion: xr.Dataset
+    place_values: tuple[Mapping[Letter, float] | None, ...]
+
+
+@dataclass(frozen=True)
+class NumberedEquations(PlacedEquations):
     """The equations of a planar mechanism with the numbers of its motion.
 
     Attributes
     ----------
     check : of the constraints over the motion; None where there are none, or no position is reached
-    motion : at the instants
     numbers : at each of them, lengths in the unit of the display; None where the mechanism does not get there
     """
 
     check: ConstraintCheck | None
-    motion: xr.Dataset
     numbers: tuple[NumbersAtInstant | None, ...]
 
 
 def equation_results(
     mechanism: Mechanism, points: Sequence[str] | None = None, instants: Sequence[float] | None = None
 ) -> Equations:
-    """The equations of a mechanism, in the plane with their numbers at instants where these are given.
+    """The equations of a mechanism, with their numbers at instants where these are given.
 
     Parameters
     ----------
@@ -326,16 +340,24 @@ def equation_results(
         As `equations` and `motion` do.
     """
     found = equations(mechanism, points)
-    if instants is None or mechanism.space != "plane":
+    if instants is None:
         return found
     own = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
-    length, _unit = display_unit("m", str(mechanism.display.length))
     places = motion(mechanism, at=list(instants))
+    place_values = tuple(
+        position_values(found, places, sample) if status == Status.OK else None
+        for sample, status in enumerate(places["status"].values.tolist())
+    )
+    if mechanism.space != "plane":
+        return PlacedEquations(**own, motion=places, place_values=place_values)
+    length, _unit = display_unit("m", str(mechanism.display.length))
     numbers = tuple(
         _numbers(found, places, sample, length) if status == Status.OK else None
         for sample, status in enumerate(places["status"].values.tolist())
     )
-    return NumberedEquations(**own, check=_check(found), motion=places, numbers=numbers)
+    return NumberedEquations(
+        **own, motion=places, place_values=place_values, check=_check(found), numbers=numbers
+    )
 
 
 def _numbers(found: Equations, places: xr.Dataset, sample: int, length: float) -> NumbersAtInstant:
@@ -373,3 +395,61 @@ def _size(instant: Instant) -> float:
 
 def _is_rate(name: str) -> bool:
     return name.startswith(("omega", "epsilon", "Delta")) or name.endswith(("_dot", "_ddot"))
+
+
+# Positions in closed form with the numbers of one position: constants, drives and branches, letter by letter.
+
+
+def position_values(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
+    """Number of every letter of the positions in closed form at a sample [SI].
+
+    Of the motion nothing is taken but the drives, the branches, whole turns of angles, and what has no closed form.
+    """
+    functions, board = equations.position_functions, equations.board
+    values = dict(board.alphabet.values)
+    if isinstance(board, SymbolTable):
+        values |= NumericValues(board, dataset, sample).values()
+        values |= _bearings(equations, values)
+    else:
+        values |= {x: float(dataset["drive_value"].sel(drive=one)[sample]) for x, one in board.driven.items()}
+    values |= _measured(equations, dataset, sample)
+    for branch in functions.branches:
+        if branch.measure is not None:
+            measure = _value(branch.measure, values)
+        elif set(branch.places) <= {*dataset["point"].values.tolist()}:
+            measure = float(np.linalg.det(dataset["position"].sel(point=list(branch.places)).values[sample]))
+        else:  # a pole without a name that moves
+            measure = branch.initial
+        values[branch.letter] = 1.0 if measure >= 0.0 else -1.0
+    return {letter: float(value) for letter, value in functions.values(values).items()}
+
+
+def _bearings(equations: Equations, values: Mapping[Letter, float]) -> dict[Letter, float]:
+    """Directions of wheels' centres with the whole turns that the angles of the wheels have."""
+    found = {}
+    meanings = equations.board.alphabet.meanings
+    for condition in (one for group in equations.groups for one in group.conditions):
+        residual = condition.residual
+        for letter in residual.letters:
+            if (
+                condition.name.startswith(ROLLING)
+                and letter in meanings
+                and meanings[letter].kind == "bearing"
+            ):
+                slope = _value(residual.slope(letter), values)
+                away = _value(residual, values) / slope
+                found[letter] = values[letter] - math.tau * round(away / math.tau)
+    return found
+
+
+def _measured(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
+    """Coordinates of points as the motion has them, by the letters in which branches are told."""
+    found: dict[Letter, float] = {}
+    if not isinstance(equations.board, SymbolTable):
+        return found
+    for point, place in equations.position_functions.places.items():
+        at = dataset["position"].sel(point=point).values[sample]
+        for axis, total, value in zip("xy", place, at.tolist(), strict=True):
+            found[Letter(0, f"{axis}({point})")] = value
+            found |= {letter: value for letter in total.letters if letter.name == f"{axis}_{point}"}
+    return found

@@ -9,6 +9,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import Any, NamedTuple, TypeAlias
 
+from centrode.equations.cofactors import CofactorExpansion
 from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.symbols import ZERO, Angle, Letter, Sum, SumTerm, expression, matrix, merge_waves
 
@@ -53,6 +54,16 @@ class LinearSystem:
                 )
             )
             for i in range(len(self.unknowns))
+        )
+
+    def expansion(self, column: int | None = None) -> CofactorExpansion:
+        """Cofactor expansion of the determinant, or of that with the right side in the place of a column."""
+        if column is None:
+            return CofactorExpansion(self.matrix)
+        return CofactorExpansion(
+            tuple(
+                (*row[:column], b, *row[column + 1 :]) for row, b in zip(self.matrix, self.right, strict=True)
+            )
         )
 
     def solved(self, name: Letter) -> tuple[SymbolFormula, ...] | None:

@@ -85,6 +85,7 @@ class Closing:
             board.points[line.point] = polar(at.along(heading), heading).plus(
                 polar(constant, heading.turned(1))
             )
+        board.constants[line.name] = constant
         draft.conditions.append(Condition(name, left, long, constant))
 
     def _on_body(self, line: SymbolLine, draft: Draft) -> None:

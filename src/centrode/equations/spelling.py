@@ -14,8 +14,8 @@ from typing import Any, Protocol
 from centrode.equations.symbols import Coefficient, Letter, Parts, Sum, SumTerm, Wave, expression, merge_waves
 
 GREEK = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "epsilon": "ε", "theta": "θ", "kappa": "κ", "rho": "ρ",
-    "phi": "φ", "psi": "ψ", "omega": "ω", "Delta": "Δ",
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "theta": "θ", "kappa": "κ", "rho": "ρ",
+    "phi": "φ", "psi": "ψ", "omega": "ω", "Delta": "Δ", "pi": "π", "pi/2": "π/2",
 }  # fmt: skip
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 POWERS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -113,6 +113,30 @@ class FormulaSpelling:
     def derivative(self, letter: Letter) -> str:
         """Derivative of a letter by time."""
         return f"d{self.letter(letter)}/dt"
+
+    def root(self, text: str) -> str:
+        """A square root."""
+        return f"√{self.bracket(text)}"
+
+    def function(self, name: str, text: str) -> str:
+        """A function of a formula: arcsin, arccos, tan."""
+        return f"{name}{self.bracket(text)}"
+
+    def function_of(self, name: str, letter: Letter) -> str:
+        """A sine, cosine or tangent of a letter."""
+        return f"{name} {self.letter(letter)}"
+
+    def direction(self, y: str, x: str) -> str:
+        """The direction of a vector by its components."""
+        return f"atan2({y}, {x})"
+
+    def product(self, factors: Sequence[str]) -> str:
+        """A product of formulas, its factors told apart."""
+        return " · ".join(factors)
+
+    def minor(self, rows: Sequence[Sequence[str]]) -> str:
+        """A determinant of entries."""
+        return f"|{'; '.join(', '.join(row) for row in rows)}|"
 
     def times(self, front: str, other: str) -> str:
         """A fraction in front of something."""

@@ -22,6 +22,7 @@ from centrode.equations.symbols import (
     TURN,
     ZERO,
     Angle,
+    Letter,
     Sum,
     merge_waves,
     quarters_of,
@@ -96,6 +97,27 @@ AXES = Axes(
 BACK = Angle((), 2)
 
 
+class SphereClosure(NamedTuple):
+    """A dyad that is solved: the angles that its two conditions give, and the triangle that decides between answers.
+
+    Attributes
+    ----------
+    plan : number of the group
+    turn, lean : letters of the angle about the carrying centre and of that to the path
+    closing, leaning : their conditions
+    places : the carrying centre, the holding one, and the new point
+    label : what the group of the second angle is called
+    """
+
+    plan: int
+    turn: Letter
+    closing: Condition
+    lean: Letter
+    leaning: Condition
+    places: tuple[str, str, str]
+    label: str
+
+
 # The board of the sphere: bodies by arcs from their first point, turned in it by angles.
 
 Vector = npt.NDArray[np.float64]
@@ -125,6 +147,8 @@ class SphereBoard(Lettering):
         }
         self.poles = {guide: self._pole(guide, body) for guide, body in self.numbers.bodies.items()}
         """Of every guide the point about which its circle runs."""
+        self.closures: list[SphereClosure] = []
+        """Of every dyad, in the order of the plan."""
         self._begin(pivots)
 
     def _pole(self, guide: str, body: str) -> str:
@@ -368,6 +392,13 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
     draft.conditions.append(Condition(f"cos {rod.centre}{point}", left, left, far.dot(there.at)))
     leaning, angle, side = _leaning_angle(board, carrier, rod, point, held)
     board.place(rod.link, point, rod.centre, there.leaning(angle, side))
+    letters = (turn.parts[0][0], angle.parts[0][0])
+    places = (carrier.centre, rod.centre, point)
+    board.closures.append(
+        SphereClosure(
+            number, letters[0], draft.conditions[0], letters[1], leaning.conditions[0], places, leaning.label
+        )
+    )
     return [draft, leaning]
 
 

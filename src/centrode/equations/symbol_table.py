@@ -168,6 +168,8 @@ class SymbolTable(Lettering):
         """In angles, lengths and slides alone."""
         self.placed: set[str] = {FRAME}
         self.guides = lines_of(ready)
+        self.constants: dict[str, Sum] = {}
+        """Guide of the frame -> the constant of what it says of its point."""
         for name, at in self.numbers.frame.items():
             self.points[name] = self.full[name] = self._fixed_place(name, (float(at[0]), float(at[1])))
 
@@ -255,10 +257,19 @@ class SymbolTable(Lettering):
 
     def arm(self, link: str, first: str, second: str) -> UnknownPlace:
         """Vector from one point of a link to another."""
+        names = list(self.local(link))
+        if names.index(first) > names.index(second):
+            return ORIGIN.plus(self.arm(link, second, first), -1)
+        size, direction = self.arm_direction(link, first, second)
+        return polar(size, direction) if size else ORIGIN
+
+    def arm_direction(self, link: str, first: str, second: str) -> tuple[Sum, Angle]:
+        """Length and direction of the vector from one point of a link to another."""
         local = self.local(link)
         names = list(local)
         if names.index(first) > names.index(second):
-            return ORIGIN.plus(self.arm(link, second, first), -1)
+            size, direction = self.arm_direction(link, second, first)
+            return size, direction.turned(2)
         (ax, ay), (bx, by) = local[first], local[second]
         number = self.order[link]
         main = names[:2] == [first, second]
@@ -268,10 +279,10 @@ class SymbolTable(Lettering):
             math.hypot(bx - ax, by - ay),
         )  # fmt: skip
         if not size:
-            return ORIGIN
+            return size, self.angles[link]
         name = f"alpha{number}" if main else f"alpha_{index}"
         turn = self.alphabet.angle(name, "angle in link", (link, first, second), (bx - ax, by - ay))
-        return polar(size, self.angles[link].plus(turn))
+        return size, self.angles[link].plus(turn)
 
     def spot(self, body: str, local: Vector, label: str, full: bool = False) -> UnknownPlace:
         """Place of coordinates of a placed body; `label` names them where no point of the body is there."""

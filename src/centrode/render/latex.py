@@ -14,7 +14,21 @@ LONG = 150
 WIDE = 190
 """Letters of LaTeX on one line."""
 GREEK = {"phi": "varphi", "epsilon": "varepsilon"} | {
-    name: name for name in ("alpha", "beta", "gamma", "theta", "kappa", "rho", "psi", "omega", "Delta")
+    name: name
+    for name in (
+        "alpha",
+        "beta",
+        "gamma",
+        "delta",
+        "theta",
+        "kappa",
+        "rho",
+        "psi",
+        "omega",
+        "Delta",
+        "pi",
+        "pi/2",
+    )
 }
 SPECIAL = re.compile(r"([#$%&_{}])|([\\^~])")
 
@@ -59,6 +73,25 @@ class LatexSpelling(FormulaSpelling):
     def initial(self, text: str) -> str:
         return f"{text}(0)"
 
+    def root(self, text: str) -> str:
+        return rf"\sqrt{{{text}}}"
+
+    def function(self, name: str, text: str) -> str:
+        return f"\\{name}{self.bracket(text)}"
+
+    def function_of(self, name: str, letter: Letter) -> str:
+        return f"\\{name} {self.letter(letter)}"
+
+    def direction(self, y: str, x: str) -> str:
+        return rf"\operatorname{{atan2}}{self.bracket(f'{y}, {x}')}"
+
+    def product(self, factors: Sequence[str]) -> str:
+        return r" \cdot ".join(factors)
+
+    def minor(self, rows: Sequence[Sequence[str]]) -> str:
+        inside = r" \\ ".join(" & ".join(row) for row in rows)
+        return rf"\begin{{vmatrix}} {inside} \end{{vmatrix}}"
+
     def derivative(self, letter: Letter) -> str:
         return self.letter(Letter(letter.rank, f"{letter.name}_dot"))
 
@@ -69,9 +102,10 @@ class LatexSpelling(FormulaSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         top = self.join(above) or "1"
         if len(top) > LONG:
-            return rf"\frac{{1}}{{{self.join(below)}}} {top}"
+            return rf"\frac{{1}}{{{self.unbracketed(self.join(below))}}} {top}"
         whole = self.unbracketed(top) if len(above) == 1 else top
-        return rf"\frac{{{whole}}}{{{self.join(below)}}}"
+        bottom = self.join(below)
+        return rf"\frac{{{whole}}}{{{self.unbracketed(bottom) if len(below) == 1 else bottom}}}"
 
     def ratio(self, above: Sequence[str], below: Sequence[str]) -> str:
         return self.fraction(above, below)
@@ -109,6 +143,7 @@ def _broken(text: str) -> str:
     pieces = [""]
     for word in split_at_signs(text):
         whole = pieces[-1].count("{") == pieces[-1].count("}") and r"\left(" not in pieces[-1]
+        whole &= pieces[-1].count(r"\begin{") == pieces[-1].count(r"\end{")
         if len(pieces[-1]) + len(word) > WIDE and pieces[-1].strip() and whole:
             pieces.append("")
         pieces[-1] += word

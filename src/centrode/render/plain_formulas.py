@@ -34,11 +34,19 @@ def _broken(line: str, number: int) -> list[str]:
     """A long line in pieces, each but the first beginning with a sign; brackets inside of brackets stay whole."""
     indent = "  " if number else ""
     pieces = [indent]
-    for word in split_at_signs(line):
+    for word in (part for term in split_at_signs(line) for part in _rows(term)):
         if width_of(pieces[-1]) + width_of(word) > WIDTH and pieces[-1].strip():
             pieces.append("      ")
         pieces[-1] += word
     return [piece.rstrip() for piece in pieces]
+
+
+def _rows(word: str) -> list[str]:
+    """A word that no line holds, cut behind the rows of its determinant."""
+    if width_of(word) <= WIDTH:
+        return [word]
+    *rows, last = word.split("; ")
+    return [*(f"{row}; " for row in rows), last]
 
 
 def split_at_signs(line: str) -> list[str]:

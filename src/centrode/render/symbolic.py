@@ -9,9 +9,12 @@ import lazy_loader
 
 from centrode.sheets.symbolic import (
     AbsoluteProduct,
+    Cofactors,
     FactoredFormula,
+    FunctionOfLetter,
     GivenNumber,
     InitialValue,
+    InverseFormula,
     SumFormula,
     SymbolicLeaf,
     TimeDerivative,
@@ -47,6 +50,12 @@ def spell_symbolic(leaf: SymbolicLeaf, spelling: FormulaSpelling) -> str:
             return spelling.decimal(value)
         case AbsoluteProduct():
             return _absolute_product(leaf, spelling)
+        case InverseFormula(formula):
+            return formula.text(spelling)
+        case FunctionOfLetter(function, letter):
+            return spelling.function_of(function, letter)
+        case Cofactors(step):
+            return step.text(spelling)
         case _:
             assert_never(leaf)
 

@@ -46,7 +46,7 @@ _FRAMES: Mapping[str, str] = {
     "arrow": mark("vector {operand}"), "abs": mark("the magnitude of {operand}"),
     "overline": mark("{operand} with a bar"),
     "hat": mark("{operand} with a hat"), "sqrt": mark("the square root of {operand}, end of the root"),
-    "bold": "{operand}", "upright": "{operand}", "italic": "{operand}",
+    "op": "{operand}", "bold": "{operand}", "upright": "{operand}", "italic": "{operand}",
 }  # fmt: skip
 """How what a function shows is called, its operand put in."""
 _DOTS: Mapping[str, str] = {
@@ -173,6 +173,8 @@ class _Reader:
     def _base(self, token: str) -> str:
         if token == "frac" and self._opens():
             return self._fraction()
+        if token == "mat" and self._opens():
+            return self._determinant()
         if token in _FRAMES and self._opens():
             operand = _joined(self._bracket())
             frame = _FRAMES[token]
@@ -211,6 +213,24 @@ class _Reader:
             _("{above} over {below}") if simple else _("fraction: {above}, over {below}, end of the fraction")
         )
         return frame.format(above=_joined(above), below=_joined(below))
+
+    def _determinant(self) -> str:
+        """A matrix between bars, entry by entry, its rows parted."""
+        for _delimiter in ("(", "delim", ":", '"|"', ","):
+            self._take()
+        rows: list[list[list[str]]] = [[[]]]
+        while (token := self._next()) and token != ")":
+            if token == ",":
+                self._take()
+                rows[-1].append([])
+            elif token == ";":
+                self._take()
+                rows.append([[]])
+            else:
+                rows[-1][-1].append(self._term())
+        self._take()
+        spoken = "; ".join(", ".join(map(_joined, row)) for row in rows)
+        return _("determinant with the rows {rows}, end of the determinant").format(rows=spoken)
 
     def _sum(self, token: str) -> str:
         below, above, _primes = self._attachments()

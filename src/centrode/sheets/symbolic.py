@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
+    from centrode.equations.cofactors import ExpansionStep
+    from centrode.equations.inverse_functions import PositionFormula
     from centrode.equations.spelling import SymbolFormula
     from centrode.equations.symbols import Letter, Sum
 
@@ -81,6 +83,35 @@ class AbsoluteProduct:
     factors: tuple[tuple[Letter, int, bool], ...]
 
 
+@dataclass(frozen=True)
+class InverseFormula:
+    """A root, an arc function, or the direction of a vector over sums of letters.
+
+    Attributes
+    ----------
+    formula : the formula
+    values : letter -> number where it is written with its numbers; angles in rad
+    """
+
+    formula: PositionFormula
+    values: Mapping[Letter, float] | None = None
+
+
+@dataclass(frozen=True)
+class FunctionOfLetter:
+    """A sine, cosine or tangent of a letter."""
+
+    function: str
+    letter: Letter
+
+
+@dataclass(frozen=True)
+class Cofactors:
+    """A step of the cofactor expansion of a determinant."""
+
+    step: ExpansionStep
+
+
 SymbolicLeaf: TypeAlias = (
     SumFormula
     | FactoredFormula
@@ -89,4 +120,7 @@ SymbolicLeaf: TypeAlias = (
     | UniformMotion
     | GivenNumber
     | AbsoluteProduct
+    | InverseFormula
+    | FunctionOfLetter
+    | Cofactors
 )

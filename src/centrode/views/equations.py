@@ -27,6 +27,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.symbolic import (
     AbsoluteProduct,
+    Cofactors,
     FactoredFormula,
     GivenNumber,
     InitialValue,
@@ -36,8 +37,10 @@ from centrode.sheets.symbolic import (
 )
 from centrode.sheets.texts import NOTHING, Expression, Leaf, Name, Number, Sentence, Text
 from centrode.views.instants import instant_title
+from centrode.views.position_equations import numbered_sections, position_sections
 
 if TYPE_CHECKING:
+    from centrode.equations.cofactors import CofactorExpansion
     from centrode.equations.derivation import Drivenness, Equations, PointVelocity
     from centrode.equations.instants import Instant, NumbersAtInstant, SolvedSystem
     from centrode.equations.linear import Condition, GroupEquations, GroupSolution, Unknown
@@ -62,24 +65,29 @@ ROUNDING = 1e-14
 
 def sheet(equations: Equations) -> Sheet:
     """The page of the equations; in documents constraints and derivation are chapters, with numbers where known."""
-    explained, derived = tuple(_explain_constraints(equations)), tuple(_derive_systems(equations))
+    explained, derived = (
+        tuple(_explain_constraints(equations)),
+        tuple(_derive_systems(equations, first_step=True)),
+    )
+    positions, placed = tuple(position_sections(equations)), tuple(numbered_sections(equations))
+    printed = (*explained, *positions, *_derive_systems(equations, first_step=False))
     if equations.mechanism.space == "sphere":
         text = Sentence(
             "Each dyad adds one point: the law of cosines in the triangle of the dyad's two centres and this "
             "point gives one angle, from which the angle of the other arc follows."
         )
-        sections = (Section(NOTHING, (Paragraph(text),)), *explained, *derived)
-        return Sheet(printed=(*explained, *derived), chapters={"equations": _constraints(sections)})
+        sections = (Section(NOTHING, (Paragraph(text),)), *explained, *placed, *derived)
+        return Sheet(printed=printed, chapters={"equations": _constraints(sections)})
     checked: tuple[Section, ...] = ()
     numbered: tuple[Section, ...] = ()
     if isinstance(equations, NumberedEquations):
         checked, numbered = tuple(_check_constraints(equations)), tuple(_put_numbers(equations))
     title = Sentence("Velocities and accelerations")
     chapters = {
-        "equations": _constraints((*explained, *checked)),
+        "equations": _constraints((*explained, *placed, *checked)),
         "derivation": Chapter(title, (*derived, *numbered)),
     }
-    return Sheet(printed=(*explained, *derived), chapters=chapters)
+    return Sheet(printed=printed, chapters=chapters)
 
 
 def _constraints(sections: tuple[Section, ...]) -> Chapter:
@@ -98,14 +106,23 @@ def _explain_constraints(equations: Equations) -> Iterator[Section]:
     yield Section(Sentence("Given by the drives (SI)"), _blocks(given))
 
 
-def _derive_systems(equations: Equations) -> Iterator[Section]:
-    """Systems and determinants, normal form, accelerations, velocities of points."""
+def _derive_systems(equations: Equations, *, first_step: bool) -> Iterator[Section]:
+    """Systems and determinants, normal form, accelerations, velocities of points.
+
+    Cofactor expansions of more than two rows stand in a section of their own, which is a detail; their `first_step`
+    stands with the determinants where it is one product.
+    """
     if equations.together is not None:
-        yield Section(Sentence("Velocities: Cramer's rule"), _blocks(_solution(equations.together)))
+        yield Section(
+            Sentence("Velocities: Cramer's rule"),
+            _blocks(_solution(equations.together, first_step=first_step)),
+        )
+        yield from _expansions([equations.together])
     else:
         for group in equations.groups:
             title = Sentence("Velocities of group {group}", group=Name(group.label))
-            yield Section(title, _blocks(_solution(group.velocities)))
+            yield Section(title, _blocks(_solution(group.velocities, first_step=first_step)))
+        yield from _expansions([group.velocities for group in equations.groups])
     if equations.groups:
         explained = equations.together is None
         normal = [line for group in equations.groups for line in _normal_form(group, explained)]
@@ -256,7 +273,7 @@ def _given(one: Drivenness) -> Iterator[Line | Block]:
     yield rate, GivenNumber(one.speed)
 
 
-def _solution(solution: GroupSolution) -> Iterator[Line | Block]:
+def _solution(solution: GroupSolution, *, first_step: bool) -> Iterator[Line | Block]:
     """The system of the rates, its determinants, and Cramer's rule."""
     system = solution.system
     right = tuple(map(_entry, system.right))
@@ -269,10 +286,45 @@ def _solution(solution: GroupSolution) -> Iterator[Line | Block]:
         text = Sentence("The determinants have too many terms to print; the system is solved numerically.")
         yield Paragraph(text)
         return
-    yield _letter(solution.under), FactoredFormula(system.determinant, differences_first=True)
-    for letter, one in zip(system.unknowns, system.numerators, strict=True):
-        yield _letter(_numerator(letter)), FactoredFormula(one, differences_first=True)
+    yield _determinant(solution, None, first_step=first_step)
+    for column, letter in enumerate(system.unknowns):
+        yield _determinant(solution, column, first_step=first_step)
         yield _letter(letter), _cramer(solution, letter)
+
+
+def _determinant(solution: GroupSolution, column: int | None, *, first_step: bool) -> Line:
+    """A determinant of Cramer's rule; of two rows multiplied out, of more with the `first_step` of its expansion.
+
+    That step is shown where it is one product.
+    """
+    letter, expansion, formula = _parts_of(solution, column)
+    fits = len(expansion.steps) == 1 or (first_step and expansion.fits)
+    steps = expansion.steps[:1] if fits else ()
+    return (letter, *map(Cofactors, steps), formula)
+
+
+def _parts_of(
+    solution: GroupSolution, column: int | None
+) -> tuple[SumFormula, CofactorExpansion, FactoredFormula]:
+    """Letter of a determinant, its expansion, and what it comes to."""
+    system = solution.system
+    assert system.determinant is not None and system.numerators is not None
+    formula = system.determinant if column is None else system.numerators[column]
+    letter = solution.under if column is None else _numerator(system.unknowns[column])
+    return _letter(letter), system.expansion(column), FactoredFormula(formula, differences_first=True)
+
+
+def _expansions(solutions: Iterable[GroupSolution]) -> Iterator[Section]:
+    """The cofactor expansions of determinants of three rows and more in all their steps, as a detail."""
+    lines: list[Line] = []
+    for solution in solutions:
+        system = solution.system
+        if len(system.unknowns) > 2 and system.determinant is not None:
+            for column in (None, *range(len(system.unknowns))):
+                letter, expansion, formula = _parts_of(solution, column)
+                lines.append((letter, *map(Cofactors, expansion.steps), formula))
+    if lines:
+        yield Section(Sentence("Determinants by cofactor expansion"), (Formula(tuple(lines)),), detail=True)
 
 
 def _cramer(solution: GroupSolution, letter: Letter) -> SumFormula:

@@ -15,7 +15,7 @@ from centrode.render.document.typst import TypstSpelling, in_degrees, quote, sho
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
 from centrode.render.symbolic import spell_symbolic
-from centrode.sheets.symbolic import FactoredFormula, SymbolicLeaf
+from centrode.sheets.symbolic import FactoredFormula, InverseFormula, SymbolicLeaf
 from centrode.sheets.texts import (
     Expression,
     Factor,
@@ -146,7 +146,7 @@ class DocumentSpelling(Spelling):
 
     def _letters(self, leaf: SymbolicLeaf) -> TypstSpelling:
         """How the letters of a formula are written: as letters, or as the numbers that it brings along."""
-        if isinstance(leaf, FactoredFormula) and leaf.values is not None:
+        if isinstance(leaf, (FactoredFormula, InverseFormula)) and leaf.values is not None:
             return NumberSpelling(leaf.values, self.numbers)
         return TypstSpelling()
 

@@ -7,10 +7,25 @@ from collections.abc import Sequence
 
 from centrode.equations.spelling import FormulaSpelling, parts_of
 from centrode.equations.symbols import Letter, Wave
-from centrode.locale import decimal_mark
+from centrode.locale import chosen_language, coordinate_separator, decimal_mark
 
 GREEK = frozenset(
-    ("alpha", "beta", "gamma", "epsilon", "theta", "kappa", "rho", "phi", "psi", "omega", "Delta")
+    (
+        "alpha",
+        "beta",
+        "gamma",
+        "delta",
+        "epsilon",
+        "theta",
+        "kappa",
+        "rho",
+        "phi",
+        "psi",
+        "omega",
+        "Delta",
+        "pi",
+        "pi/2",
+    )
 )
 DOTS = {"dot": "dot", "ddot": "dot.double"}
 LONG = 110
@@ -57,6 +72,25 @@ class TypstSpelling(FormulaSpelling):
     def initial(self, text: str) -> str:
         return f"{text} (0)"
 
+    def root(self, text: str) -> str:
+        return f"sqrt({text})"
+
+    def function(self, name: str, text: str) -> str:
+        return f"{name} {self.bracket(text)}"
+
+    def function_of(self, name: str, letter: Letter) -> str:
+        shown = name if name != "tan" or chosen_language() == "en" else 'op("tg")'
+        return f"{shown} {self.letter(letter)}"
+
+    def direction(self, y: str, x: str) -> str:
+        return f'"atan2" {self.bracket(f"{y}{coordinate_separator()}{x}")}'
+
+    def product(self, factors: Sequence[str]) -> str:
+        return " dot.op ".join(factors)
+
+    def minor(self, rows: Sequence[Sequence[str]]) -> str:
+        return f'mat(delim: "|", {"; ".join(", ".join(row) for row in rows)})'
+
     def derivative(self, letter: Letter) -> str:
         return f"frac(d {self.letter(letter)}, d t)"
 
@@ -66,7 +100,7 @@ class TypstSpelling(FormulaSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         top = self.join(above) or "1"
         if len(top) > LONG:
-            return f"frac(1, {self.join(below)}) {top}"
+            return f"frac(1, {strip_brackets(self.join(below))}) {top}"
         whole = strip_brackets(top) if len(above) == 1 else top
         return f"frac({whole}, {strip_brackets(self.join(below))})"
 
