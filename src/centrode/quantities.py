@@ -416,6 +416,14 @@ FORCES = (
         "moment_of_loads", "M_c", "N m", mark("moment of loads and weights, reduced to the drive"), by_drive=1
     ),
     Quantity("driving_moment", "M_d", "N m", mark("driving moment"), by_drive=1),
+    Quantity("moment_of_links", "M_b", "N m", mark("balancing moment of the links"), by_drive=1),
+    Quantity(
+        "inertia_moment_of_group",
+        "M_Φ",
+        "N m",
+        mark("inertia moment of the masses that turn with the drive"),
+        by_drive=1,
+    ),
     Quantity("work_of_loads", "A_c", "J", mark("work of loads and weights")),
     Quantity("work_of_drive", "A_d", "J", mark("work of the drive")),
     Quantity("work", "A", "J", mark("work of drive and loads")),

@@ -221,10 +221,10 @@ def test_extremes_of_a_drive_by_a_law_are_told_by_their_time(centrode: Centrode,
 
 
 def test_the_real_speed_of_a_machine(centrode: Centrode) -> None:
-    done = centrode("reactions", "six-bar-press", "--steady", "--samples", 13)
+    done = centrode("reactions", "six-bar-press", "--motion", "real", "--samples", 13)
     assert done.code == 0, done
     assert done.rows["speed of the drive"].endswith("the real speed of the machine")
-    done = centrode("reactions", "six-bar-press", "--steady", "--from", "0 deg")
+    done = centrode("reactions", "six-bar-press", "--motion", "real", "--from", "0 deg")
     assert done.code == 2
     assert "whole cycle" in done.err
 
@@ -256,7 +256,7 @@ def test_several_drives_have_a_row_each(centrode: Centrode, folder: Path) -> Non
         (("", ""), ("--at", "1 rad", "--samples", "5"), "remove one of the two"),
         (("", ""), ("--at", "1 rad") * 101, "101 instants"),
         (("", ""), ("--from", "nan"), "--from"),
-        (("", ""), ("--steady",), "[machine]"),
+        (("", ""), ("--motion", "real"), "[machine]"),
     ],
 )
 def test_wrong_input_ends_with_2(

@@ -51,7 +51,11 @@ def test_the_press(centrode: Centrode, folder: Path) -> None:
     assert done.rows["loads"] == "force H, weight AB, weight CD, weight DH, weight slider"
     assert done.rows["speed of the drive"] == "-6.80678 rad/s, the mean speed of the machine"
     assert done.rows["jumps and kinks of the loads at"] == "-138.177219 deg; 25.2708308 deg"
-    assert sorted(path.name for path in (folder / "result").iterdir()) == ["reduction.csv", "reduction.nc"]
+    assert sorted(path.name for path in (folder / "result").iterdir()) == [
+        "loads.csv",
+        "reduction.csv",
+        "reduction.nc",
+    ]
     with (folder / "result" / "reduction.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     expected = ct.reduce(ct.example("six-bar-press"), samples=37)

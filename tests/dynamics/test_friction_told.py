@@ -244,7 +244,7 @@ def test_what_knows_no_reactions_refuses() -> None:
         with pytest.raises(ct.NotComputedYet, match="needs the reactions; compute the reactions"):
             compute(machine)
     with pytest.raises(ct.NotComputedYet, match="the real speed of a machine with Coulomb friction"):
-        ct.reactions(machine, speed="steady")
+        ct.reactions(machine, motion="real")
 
 
 def test_there_is_none_on_the_sphere_yet() -> None:

@@ -336,10 +336,10 @@ def test_what_is_missing_is_said(change: dict[str, Any], says: str) -> None:
 
 
 def test_wrong_arguments_are_refused() -> None:
-    with pytest.raises(ct.InputError, match="is not a speed"):
-        ct.reactions(parallelogram(), speed="fast")  # type: ignore[arg-type]
+    with pytest.raises(ct.InputError, match="is not a motion"):
+        ct.reactions(parallelogram(), motion="fast")  # type: ignore[arg-type]
     with pytest.raises(ct.InputError, match="whole cycle"):
-        ct.reactions(ct.example("six-bar-press"), start=0.0, speed="steady")
+        ct.reactions(ct.example("six-bar-press"), start=0.0, motion="real")
     with pytest.raises(ct.InputError, match="give at most"):
         ct.reactions(parallelogram(), samples=900_000)
     with pytest.raises(ct.InputError, match="neither masses nor loads"):
@@ -363,7 +363,7 @@ def test_the_steady_motion_gives_the_driving_moment() -> None:
     """The drive's moment less what its own inertia takes is what group II needs, at the machine's real speed."""
     press = ct.example("six-bar-press")
     steady = ct.steady_motion(press, 91)
-    found = ct.reactions(press, 91, speed="steady")
+    found = ct.reactions(press, 91, motion="real")
     assert found.attrs["rate_from"] == "steady"
     assert np.array_equal(found.drive_value, steady.drive_value)
     needed = steady.driving_moment - steady.attrs["inertia"] * steady.drive_acceleration

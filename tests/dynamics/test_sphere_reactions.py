@@ -329,7 +329,7 @@ def test_steady_motion(ring: bool) -> None:
     if ring:
         parts["links"]["BC"] = RING
     mechanism = ct.Mechanism(**parts)
-    found, steady = ct.reactions(mechanism, 25, speed="steady"), ct.steady_motion(mechanism, 25)
+    found, steady = ct.reactions(mechanism, 25, motion="real"), ct.steady_motion(mechanism, 25)
     rate, bend = steady.drive_speed.to_numpy(), steady.drive_acceleration.to_numpy()
     reduced = Reducer.of(mechanism).at(found.drive_value.to_numpy()[:, 0], rate)
     wanted = reduced.inertia * bend + 0.5 * reduced.inertia_slope * rate**2 - reduced.moment

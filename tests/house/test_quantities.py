@@ -111,6 +111,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {f"{front}_{end}" for front in ("lift", "swing") for end in ends}
     cams |= {"share", "rise_share", "peak_coefficient", "torque_coefficient", "first_jump"}
     known |= cams
+    known |= {"moment_of_links", "inertia_moment_of_group"}
     known |= {
         "bearing_load",
         "load_on_journal",

@@ -40,8 +40,8 @@ def test_places_and_ends_of_a_motion(compute: Callable[..., xr.Dataset]) -> None
 def test_places_in_steady_motion() -> None:
     same(ct.steady_motion(PRESS, at=["60 deg"]), ct.steady_motion(PRESS, at=[60 * DEGREE]))
     same(
-        ct.reactions(PRESS, at="60 deg", speed="steady"),
-        ct.reactions(PRESS, at=[60 * DEGREE], speed="steady"),
+        ct.reactions(PRESS, at="60 deg", motion="real"),
+        ct.reactions(PRESS, at=[60 * DEGREE], motion="real"),
     )
 
 

@@ -233,3 +233,59 @@ def test_force_polygons_fit_between_the_margins(corrected: dict[str, ChapterBloc
     drawings = blocks_of(corrected["force-polygons"], Picture)
     assert len(drawings) == 4
     assert all(one.width * 25.4 <= 170.0 for one in drawings)  # so that they are not scaled down
+
+
+CLOSING = "M_upright(b) + J_upright(I) epsilon"
+
+
+def test_reports_close_the_balance_of_the_drive() -> None:
+    """In the real motion, by default: balancing moment of the links + J_I epsilon = driving moment (seeds, 2)."""
+    with blank_pictures():
+        found = {one.name: one for one in made("six-bar-press", FORCES, digits=DIGITS, instants=("120 deg",))}
+    for name in ("real-motion", "reactions", "force-polygons"):
+        _left, with_numbers, total = line(found[name], CLOSING)
+        links, taken = with_numbers.split(" + ")
+        inertia, acceleration = taken.split(" dot.op ")
+        assert float(links) == pytest.approx(6310.25, abs=0.005), name
+        assert float(inertia) == pytest.approx(1459.23, abs=0.005)
+        assert float(acceleration.strip("()")) == pytest.approx(-2.7735, abs=0.00005)
+        assert value_of(total) == pytest.approx(2263.0, abs=0.05)
+        assert value_of(line(found[name], "M_upright(d)")[-1]) == pytest.approx(2263.0, abs=0.05)
+    checks = [one for one in blocks_of(found["reactions"], CheckBlock) if "driving moment" in one.text]
+    assert len(checks) == 2 and all(one.holds for one in checks)
+    (check,) = (one for one in blocks_of(found["force-polygons"], CheckBlock) if "driving moment" in one.text)
+    assert check.holds
+
+
+@pytest.mark.parametrize("motion", ["mean", None])
+def test_a_description_chooses_the_motion_of_the_forces(motion: str | None) -> None:
+    text = ct.mechanism_text(ct.example("six-bar-press"))
+    wish = f'[report]\nmotion = "{motion}"\n' if motion else ""
+    mechanism = ct.parse_mechanism(text + wish)
+    with blank_pictures():
+        options = ReportOptions(chapters=("reactions", "force-polygons"), motion=None if motion else "mean")
+        chapters = report(mechanism, options).chapters
+    for chapter in chapters:
+        said = str(chapter)
+        assert "the mean speed of the machine" in said and CLOSING not in said
+    assert mechanism.report.motion == motion
+
+
+def test_a_machine_with_friction_by_coefficients_has_the_mean_motion() -> None:
+    text = ct.mechanism_text(ct.example("six-bar-press"))
+    rubbed = (
+        text + '[[loads]]\nkind = "friction"\npoint = "A"\nlink = "AB"\ncoefficient = 0.1\nradius = 0.01\n'
+    )
+    description = ct.parse_mechanism(rubbed)
+    study = ReportStudy(description, settle_options(description, ReportOptions(), CHAPTERS))
+    assert study.motion_of_forces == "mean"
+    chosen = ReportStudy(description, settle_options(description, ReportOptions(motion="real"), CHAPTERS))
+    assert chosen.motion_of_forces == "real" and "reactions" in chosen.study.refusals
+
+
+def test_another_motion_of_forces_is_refused() -> None:
+    with pytest.raises(ct.InputError, match="is not a motion of the drive"):
+        settle_options(ct.example("six-bar-press"), ReportOptions(motion="fast"), CHAPTERS)  # type: ignore[arg-type]
+    text = ct.mechanism_text(ct.example("six-bar-press")) + '[report]\nmotion = "fast"\n'
+    with pytest.raises(ct.InputError, match=r"(?s)\[report\].*motion.*real"):
+        ct.parse_mechanism(text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 import lazy_loader
@@ -72,6 +72,14 @@ _options, _writing = (
         "The full or the compact form; by default as [report] has it, and full if chapters are chosen."
     ),
 )
+@click.option(
+    "--motion",
+    type=click.Choice(("real", "mean")),
+    help=mark(
+        "Forces at the real speed and acceleration of a machine, or at its mean speed; by default as [report] has it, "
+        "and real where it can be computed."
+    ),
+)
 def report(
     description: str,
     out: Path | None,
@@ -81,6 +89,7 @@ def report(
     points: str | None,
     digits: int | None,
     full: bool | None,
+    motion: Literal["real", "mean"] | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
     described = library.load_either(description)
@@ -94,6 +103,7 @@ def report(
             None if points is None else _names_in(points),
             digits,
             full,
+            motion,
         )
     if isinstance(described, ct.Mechanism):
         echo_values(described, *(("--at", place) for place in places))

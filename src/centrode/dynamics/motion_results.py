@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.bearings.results import ReactionResults, with_bearings
-from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
+from centrode.dynamics.bearings.results import ReactionResults, reaction_results, with_bearings
+from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive, check_motion, input_motion_of
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
@@ -87,12 +87,15 @@ def study(
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
+    *,
+    motion: MotionOfDrive = "mean",
 ) -> MotionResults:
     """Check a mechanism and compute its motion, its machine and its reactions.
 
     Parameters
     ----------
     samples, start, stop : as of `motion`
+    motion : of the reactions: "mean", or "real", over the cycle of the machine
 
     Raises
     ------
@@ -107,9 +110,10 @@ def study(
     >>> results.unreached
     0
     """
+    check_motion(motion)
     prepared = ready(mechanism)
     solved = solve(prepared, requested_grid(prepared, samples, start, stop))
-    return _results(solved, dataset_of(solved), samples)
+    return _results(solved, dataset_of(solved), samples, of_forces=motion)
 
 
 def results_of_motion(mechanism: Mechanism, course: xr.Dataset) -> MotionResults:
@@ -152,7 +156,12 @@ def _is_evenly_spaced(places: npt.NDArray[np.float64]) -> bool:
 
 
 def _results(
-    solved: Solved, data: xr.Dataset, samples: int | None, *, over_range: bool = True
+    solved: Solved,
+    data: xr.Dataset,
+    samples: int | None,
+    *,
+    over_range: bool = True,
+    of_forces: MotionOfDrive = "mean",
 ) -> MotionResults:
     """What follows from a motion that is solved already; `samples` are those of the machine's cycle."""
     prepared, mechanism = solved.ready, solved.ready.mechanism
@@ -163,9 +172,11 @@ def _results(
     except (MotionError, NotComputedYet) as refusal:
         refusals["flywheel"] = refusal
     try:
-        if has_masses_or_loads(mechanism):
+        if has_masses_or_loads(mechanism) and of_forces == "real":
+            reactions = reaction_results(mechanism, samples, motion="real")
+        elif has_masses_or_loads(mechanism):
             reactions = _reactions(mechanism, solved, over_range)
-    except (InputError, NotComputedYet) as refusal:
+    except (InputError, MotionError, NotComputedYet) as refusal:
         refusals["reactions"] = refusal
     most = most_samples(solved)
     by_each_drive = len(mechanism.drives) > 1 and solved.status.size <= most

@@ -437,7 +437,7 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
     if solved.ready.kinematics.path.by_time:
         return reduced_to_several(solved, burden)
     reducer = Reducer(solved.ready, burden)
-    moving = _motion_of_loads(solved, reducer)
+    moving = motion_of_loads(solved, burden)
     reduction = reduce_state(burden, State.of(solved, moving), solved.status[0])
     first, last = np.min(solved.span.parameter), np.max(solved.span.parameter)
     variables = _variables(reduction, solved.ready.parameter.units[0])
@@ -460,12 +460,12 @@ def _by_drive(solved: Solved) -> bool:
     return ready.mechanism.machine is None or not ready.parameter.is_uniform
 
 
-def _motion_of_loads(solved: Solved, reducer: Reducer) -> DriveMotion:
+def motion_of_loads(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
     """The speed that loads see: of a drive of constant speed the machine's, if there is one; else the drive's own."""
     span = solved.span
     if _by_drive(solved):
         return DriveMotion(span.time, span.parameter, span.rate)
-    return reducer.moving(span.parameter)
+    return Reducer(solved.ready, burden).moving(span.parameter)
 
 
 def _variables(found: Reduced, unit: str) -> dict[str, Variable]:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.link_motions import LinkMotion, motions_of_links
+from centrode.dynamics.load_courses import LoadCourse, driving_moments, load_courses
 from centrode.dynamics.reduction import reduce
 from centrode.kinematics.motion import motion
 from centrode.kinematics.several_inputs.limits import End, limits_met
@@ -59,6 +60,8 @@ class ReductionResults:
     instants : dataset of `reduce` at the instants; None without any, and with several drives
     links : in the plane, motion of every link with mass at each of the instants
     limits : what bounds the motion where samples are not reached; none where all are
+    courses : how great every load is at the samples, beside the coordinate that it works along
+    driving : (n) driving moment of a machine [N m], positive as the drive's value grows; None without
     """
 
     mechanism: Mechanism
@@ -67,6 +70,8 @@ class ReductionResults:
     instants: xr.Dataset | None
     links: tuple[tuple[LinkMotion, ...], ...]
     limits: tuple[End, ...]
+    courses: tuple[LoadCourse, ...] = ()
+    driving: Array | None = None
 
 
 def reduction_results(
@@ -111,7 +116,16 @@ def reduction_results(
 def results_of_reduction(mechanism: Mechanism, reduction: xr.Dataset) -> ReductionResults:
     """A dataset of `reduce` with the extremes of each part, and with the limits where it has some."""
     bounds = limits_met(mechanism, reduction["status"].values)
-    return ReductionResults(mechanism, reduction, tuple(_extremes(reduction)), None, (), bounds)
+    return ReductionResults(
+        mechanism,
+        reduction,
+        tuple(_extremes(reduction)),
+        None,
+        (),
+        bounds,
+        load_courses(mechanism, reduction),
+        driving_moments(mechanism, reduction),
+    )
 
 
 def _extremes(reduction: xr.Dataset) -> Iterator[PartExtremes]:

@@ -309,6 +309,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "points": list_of(NAME, 0, reading.POINTS),
         "digits": REPORT_DIGITS,
         "full": {"type": "boolean"},
+        "motion": {"enum": ["real", "mean"]},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
     Description: {

@@ -332,6 +332,9 @@ class ReportWishes(DescriptionPart):
         Significant digits of numbers.
     full : bool
         Everything there is to show, or the compact form; compact if left out, chapters that are chosen excepted.
+    motion : "real" or "mean"
+        Whose forces are told: at the real speed and acceleration of the machine, or at its mean speed; the real one
+        where it can be computed if left out.
     text : names of chapters -> ChapterText
         Own text before and after chapters.
     """
@@ -341,4 +344,5 @@ class ReportWishes(DescriptionPart):
     points: Annotated[tuple[Name, ...], bounded_list(reading.POINTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
     full: Flag | None = None
+    motion: Annotated[Literal["real", "mean"], choice("real", "mean")] | None = None
     text: ChapterTexts = FrozenMap({})

@@ -9,6 +9,8 @@ from typing import Any, TypeVar, cast
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive, check_motion
+from centrode.dynamics.kinetostatics.reactions import has_real_motion
 from centrode.dynamics.motion_results import MotionResults, instants_of, study
 from centrode.equations.derivation import Equations, equations
 from centrode.errors import CentrodeError, InputError, Status
@@ -44,6 +46,8 @@ class ReportOptions:
     digits : significant digits of numbers
     full : everything there is to show; otherwise the compact form, with the checks in one table at the end.
         Chapters that somebody has chosen are full unless this or the description says otherwise
+    motion : of the forces: "real" at the real speed and acceleration of a machine in steady motion, "mean" at its mean
+        speed; by default the real one where it can be computed
 
     Examples
     --------
@@ -57,6 +61,7 @@ class ReportOptions:
     points: tuple[str, ...] | None = None
     digits: int | None = None
     full: bool | None = None
+    motion: MotionOfDrive | None = None
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,7 @@ class Wishes:
     points: tuple[str, ...] | None
     digits: int
     full: bool
+    motion: MotionOfDrive | None = None
 
 
 def settle_options(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
@@ -86,7 +92,10 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
         _first(options.points, points),
         options.digits if options.digits is not None else asked.digits or DIGITS,
         chapters is not None if full is None else full,
+        _first(options.motion, asked.motion if isinstance(asked, ReportWishes) else None),
     )
+    if found.motion is not None:
+        check_motion(found.motion)
     where = "chapters" if options.chapters is not None else "[report] chapters"
     if found.chapters is not None and not found.chapters:
         raise InputError(where, _("no chapter is named"), nearest("", list(known)))
@@ -200,7 +209,16 @@ class ReportStudy:
     @property
     def study(self) -> MotionResults:
         """Everything that `run` computes."""
-        return self.once("study", lambda: study(self.mechanism))
+        return self.once("study", lambda: study(self.mechanism, motion=self.motion_of_forces))
+
+    @property
+    def motion_of_forces(self) -> MotionOfDrive:
+        """The motion at which forces are computed: as wished, else the real one of a machine that has one."""
+        wished = self.wishes.motion
+        if wished is not None:
+            return wished
+        real = self.once("has real motion", lambda: has_real_motion(self.mechanism))
+        return "real" if real else "mean"
 
     @property
     def results(self) -> Mapping[str, Any]:

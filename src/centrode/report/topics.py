@@ -56,7 +56,10 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
             arguments["points"] = study.points
         done = None if document.add_instants is None else study.results.get(topic.name)
         if document.add_instants is not None and done is not None:
+            # it is at the motion of the forces already
             return cast("Sheet", topic.view(document.add_instants(done, **arguments)))
+        if document.motion:
+            arguments["motion"] = study.motion_of_forces
         return cast("Sheet", topic.view(topic.compute(study.description, **arguments)))
 
     return study.once(("sheet", topic.name), compute)

@@ -27,6 +27,11 @@ HAS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "has_curvature_law")
 NEEDS_FOLLOWER = Lazily("centrode.model.cam_files", "with_follower")
 NEEDS_CURVATURE_LAW = Lazily("centrode.model.cam_files", "require_curvature_cam")
 
+MOTION = ChoiceOption(
+    "motion",
+    ("mean", "real"),
+    mark("Forces at the mean speed (default), or at the real speed and acceleration of a machine."),
+)
 WRITTEN_PAGE = mark("Write FILE.txt, FILE.tex (LaTeX) or FILE.md (Markdown) instead of printing.")
 
 INTEGRATE = Topic(
@@ -248,9 +253,7 @@ REACTIONS = Topic(
             InstantsOption(
                 mark('Only at this value of the drive ("120 deg"), or time ("1 s"); may be repeated.')
             ),
-            FlagOption(
-                "steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")
-            ),
+            MOTION,
             FlagOption("frictionless", mark("Omit Coulomb friction.")),
             RangeOptions(),
         ),
@@ -262,6 +265,7 @@ REACTIONS = Topic(
             ChapterOfTopic("reactions", mark("Reactions in the joints"), code="ct.reactions(mechanism)"),
         ),
         add_instants=Lazily("centrode.dynamics.bearings.results", "with_instants"),
+        motion=True,
         may_be_left_out=True,
         may_be_incomplete=True,
     ),
@@ -518,6 +522,7 @@ FORCE_POLYGONS = Topic(
             ValueOption(
                 "paper", mark("SIZE"), mark("Sheet for which scales are chosen: A5, A4 (default) or A3.")
             ),
+            MOTION,
         ),
         samples=False,
         default_instants=True,
@@ -538,6 +543,7 @@ FORCE_POLYGONS = Topic(
         ),
         # drawings on a sheet of this size fit between the margins of a page
         arguments={"paper": "A5", "complete": False},
+        motion=True,
     ),
 )
 
@@ -634,7 +640,7 @@ RUN = Topic(
     view=Lazily("centrode.views.motion", "sheet"),
     command=Command(
         help=mark("Compute the motion of a mechanism: tables and pictures."),
-        options=(RangeOptions(echoed=False),),
+        options=(RangeOptions(echoed=False), MOTION),
         folder="result",
         animation=Lazily("centrode.animation.animate", "animate_results"),
         animation_help=mark("Also write an animation of the motion."),

@@ -191,6 +191,7 @@ class InDocuments:
     chosen_arguments : further ones where somebody has chosen one of its chapters by name
     instants : whether the computation takes the instants of the document
     wished : it takes the instants that somebody wishes, none without, in place of those that a document chooses then
+    motion : the computation takes the motion at which forces are computed, "mean" or "real", as the document has it
     add_instants : (result, instants=..., **arguments) -> result: a document goes on with a result that it has already
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     may_be_incomplete : so is one whose description lacks what the computation needs
@@ -201,6 +202,7 @@ class InDocuments:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     instants: bool = True
     wished: bool = False
+    motion: bool = False
     add_instants: Lazily | None = None
     may_be_left_out: bool = False
     may_be_incomplete: bool = False

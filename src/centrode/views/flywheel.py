@@ -42,6 +42,7 @@ from centrode.sheets.texts import (
     Title,
 )
 from centrode.views.columns import motion_table, rows_shown
+from centrode.views.drive_balance import SENSE, driving_lines, links_line, moment_of_links
 from centrode.views.instants import instant_title
 from centrode.views.motion_plots import (
     PlottedMotion,
@@ -643,6 +644,10 @@ def _at(results: MachineResults, here: xr.Dataset) -> Iterator[Block]:
             ("epsilon", with_numbers, acceleration),
         )
     )
+    yield Paragraph(SENSE)
+    driving = float(here["driving_moment"])
+    terms = (moment_of_links(here), float(here.attrs["inertia"]), float(here["drive_acceleration"]), driving)
+    yield Formula((links_line(here), *driving_lines(*terms)))
     yield Reference(Sentence("Velocities and accelerations follow from {transfer}."))
     mechanism = results.mechanism
     if mechanism.space == "plane":

@@ -44,6 +44,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
+from centrode.views.drive_balance import REAL_MOTION, SENSE, drive_balance, printed_balance
 from centrode.views.force_equations import lever_equation, step_equations
 from centrode.views.force_pages import RIGHT_ANGLE, group_page, lever_page
 from centrode.views.instants import body_text, instant_title, place_number
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     )
     from centrode.dynamics.force_polygons.results import ForcePolygonResults
     from centrode.dynamics.force_polygons.statics import MomentTerm, StaticJoint
+    from centrode.dynamics.kinetostatics.applied_forces import DriveGroup
     from centrode.model.mechanism import Mechanism
 
 NONE = 1e-13
@@ -97,6 +99,15 @@ def _printed_instant(found: ForcePolygons, place: float | str) -> Iterator[Block
         yield Section(_group_title(found, group), (_steps(found, group),))
     yield _forces(found)
     yield _routes(found)
+    if found.group is not None:
+        yield printed_balance(*_driving_terms(found, found.group))
+
+
+def _driving_terms(found: ForcePolygons, group: DriveGroup) -> tuple[float, float, float, float]:
+    """Moment of the links, inertia of group I, acceleration, and driving moment, in the sense of turning."""
+    (balancing,) = found.balancing.values()
+    links = group.sense * balancing
+    return links, group.inertia, float(group.acceleration[0]), float(group.driving[0])
 
 
 # Facts
@@ -126,6 +137,8 @@ def _speed(found: ForcePolygons) -> Text:
     speeds = Joined([_rate(found.mechanism, drive, rate) for drive, rate in found.speed.items()])
     if found.speed_from == "machine":
         return Sentence("{speed}, the mean speed of the machine", speed=speeds)
+    if found.speed_from == "steady":
+        return Sentence("{speed}, the real speed of the machine", speed=speeds)
     return speeds
 
 
@@ -495,7 +508,8 @@ def _chapter(results: ForcePolygonResults) -> Chapter:
         "Groups are treated in reverse order: each is isolated, moment equations give the tangential components "
         "of its outer reactions, the force polygon gives the rest. Drawings are to the scales stated."
     )
-    sections = [Section(NOTHING, (Paragraph(text),))]
+    real = any(one is not None and one.group is not None for one in results.polygons)
+    sections = [Section(NOTHING, (Paragraph(text), *((Paragraph(REAL_MOTION),) if real else ())))]
     for sample, found in enumerate(results.polygons):
         title = instant_title(results.mechanism, results.motion, sample)
         blocks = _without_forces(results, sample) if found is None else _instant(found)
@@ -545,6 +559,11 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
         yield lever_equation(lever, NONE * greatest)
     yield _routes(found, Sentence("Balancing moment or force by three routes"))
     yield from _checks(found)
+    if found.group is not None:
+        size, error = float(found.group.size[0]), float(found.group.error[0])
+        bound = ROUNDINGS * float(np.finfo(float).eps) + error / size
+        yield Paragraph(SENSE)
+        yield from drive_balance(*_driving_terms(found, found.group), size, bound)
 
 
 def _checks(found: ForcePolygons) -> Iterator[Check]:

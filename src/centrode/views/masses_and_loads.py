@@ -26,9 +26,21 @@ from centrode.model.loads import (
     Torque,
 )
 from centrode.model.reading import FRAME
-from centrode.sheets.sheet import Block, Chapter, Column, Fact, FactTable, Paragraph, Section, Sheet, Table
+from centrode.sheets.sheet import (
+    Block,
+    Chapter,
+    Column,
+    Fact,
+    FactTable,
+    Illustration,
+    Paragraph,
+    Section,
+    Sheet,
+    Table,
+)
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Place, Sentence, Symbol, Text
 from centrode.views.load_names import KINDS, load_text
+from centrode.views.load_plots import table_diagram
 
 if TYPE_CHECKING:
     from centrode.dynamics.masses import LinkMasses
@@ -132,6 +144,8 @@ def _loads(mechanism: Mechanism) -> Iterator[Block]:
         names = ("load", "kind", "acts_on", "amount")
         columns = zip(names, zip(*texts, strict=True), heads, strict=True)
         yield Table(tuple(Column(name, values, head=head) for name, values, head in columns))
+    for diagram in filter(None, (table_diagram(mechanism, one) for one in mechanism.loads)):
+        yield Illustration(diagram, diagram.title)
 
 
 def _acts_on(load: AnyLoad) -> Text:

@@ -54,6 +54,7 @@ def pictures(results: ReactionResults) -> Iterator[tuple[str, Picture]]:
         "centre-forces": (Sentence("Forces of the centre of the sphere"), _centre(reactions)),
         "other-reactions": (Sentence("Reactions of guides, gears and wheels"), _others(reactions)),
         "balancing": (Sentence("Balancing moments and forces of the drives"), _drives(results)),
+        "drive-balance": (Sentence("Balance of the moments on the drive"), _balance(reactions)),
         "friction": (Sentence("Losses to friction"), _friction(reactions)),
         "frame-force": (Sentence("Force and moment on the frame"), _frame(reactions)),
     }
@@ -179,6 +180,21 @@ def _drives(results: ReactionResults) -> list[CurvePanel]:
                 panel = CurvePanel(panel.label, both)
             panels.append(panel)
     return panels
+
+
+def _balance(reactions: xarray.Dataset) -> list[CurvePanel]:
+    """In the real motion: what the links need, what the flywheel takes, and the driving moment that both are."""
+    if "driving_moment" not in reactions:
+        return []
+    parts = (
+        (Sentence("links"), reactions["moment_of_links"].values),
+        (Sentence("flywheel and shafts"), -reactions["inertia_moment_of_group"].values),
+    )
+    curves = [Curve(name, values, place, role=CurveRole.PART) for place, (name, values) in enumerate(parts)]
+    total = Curve(
+        Sentence("driving moment"), reactions["driving_moment"].values, len(parts), role=CurveRole.SUM
+    )
+    return [CurvePanel(AxisLabel(symbol=Symbol("M"), unit="N m"), (*curves, total))]
 
 
 def _friction(reactions: xarray.Dataset) -> list[CurvePanel]:

@@ -47,6 +47,15 @@ from centrode.sheets.texts import (
     Unit,
 )
 from centrode.views.columns import force_columns, status_column
+from centrode.views.drive_balance import (
+    REAL_MOTION,
+    SENSE,
+    drive_balance,
+    links_line,
+    moment_of_links,
+    printed_balance,
+    terms_of_links,
+)
 from centrode.views.instants import instant_title
 from centrode.views.limits import unreached_failure
 from centrode.views.reaction_figures import pictures
@@ -71,6 +80,10 @@ Array: TypeAlias = NDArray[np.float64]
 VARIABLES = (
     "drive_rate",
     "balancing",
+    "drive_acceleration",
+    "moment_of_links",
+    "inertia_moment_of_group",
+    "driving_moment",
     "joint_force",
     "joint_moment",
     "centre_force",
@@ -196,6 +209,9 @@ def _facts(results: ReactionResults) -> Iterator[Fact]:
     yield Fact(Sentence("massless links"), enumerate_names(massless) if massless else Sentence("none"))
     if "drive_rate" in reactions:
         yield Fact(Sentence("speed of the drive"), _speed(mechanism, reactions))
+    if "driving_moment" in reactions:
+        inertia = Number(reactions.attrs["inertia"], "kg m^2")
+        yield Fact(Sentence("inertia of group I"), inertia)
     status = reactions["reaction_status"].values
     counts = tuple(
         Joined((STATUSES[Status(code)], Number(int(np.sum(status == code)))), " ")
@@ -263,6 +279,11 @@ def _residuals(reactions: xarray.Dataset) -> tuple[Fact, ...]:
         Number(float(reactions.attrs[name]), digits=".1e")
         for name in ("equilibrium_residual", "frame_residual", "power_residual")
     )
+    closing: tuple[Fact, ...] = ()
+    if "driving_residual" in reactions.attrs:
+        driving = Number(float(reactions.attrs["driving_residual"]), digits=".1e")
+        text = Sentence("difference {share} of its terms from links, flywheel and shafts", share=driving)
+        closing = (Fact(Sentence("driving moment"), text),)
     return (
         Fact(
             Sentence("equilibrium of links"),
@@ -276,6 +297,7 @@ def _residuals(reactions: xarray.Dataset) -> tuple[Fact, ...]:
             Sentence("power balance"),
             Sentence("difference {share} of the greatest power from virtual work", share=power),
         ),
+        *closing,
     )
 
 
@@ -332,7 +354,7 @@ def _joint_text(joint: TabledJoint) -> Text:
             return Sentence("cylinder {drive}", drive=name)
 
 
-def _printed_parts(results: ReactionResults) -> Iterator[Table]:
+def _printed_parts(results: ReactionResults) -> Iterator[Table | Section]:
     """Extremes and what friction takes, or the reactions at single places, each under its place."""
     if not results.at:
         yield _extremes(results.mechanism, results.reactions)
@@ -342,6 +364,21 @@ def _printed_parts(results: ReactionResults) -> Iterator[Table]:
         yield _instant_table(
             results.mechanism, results.reactions, sample, Sentence("at {value}", value=where)
         )
+        if "driving_moment" in results.reactions:
+            yield from _printed_balance(results.reactions.isel(sample=sample))
+
+
+def _printed_balance(here: xarray.Dataset) -> Iterator[Section]:
+    """What drives, with its numbers, where the reactions of the sample are known."""
+    if np.isfinite(float(here["moment_of_links"])):
+        yield printed_balance(*_driving_terms(here))
+
+
+def _driving_terms(here: xarray.Dataset) -> tuple[float, float, float, float]:
+    """Moment of the links, inertia of group I, acceleration, and driving moment at a sample of the real motion."""
+    names = ("moment_of_links", "drive_acceleration", "driving_moment")
+    links, acceleration, driving = (float(here[name]) for name in names)
+    return links, float(here.attrs["inertia"]), acceleration, driving
 
 
 def _first_columns(reactions: Iterable[ReactionSeries | BearingLoad]) -> tuple[Column, Column]:
@@ -553,6 +590,7 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
         "centre-forces": Sentence("Forces of the centre of the sphere"),
         "other-reactions": Sentence("Reactions of guides, gears and wheels"),
         "balancing": Sentence("Balancing moments and forces of the drives"),
+        "drive-balance": Sentence("Moments of the links, of flywheel and shafts, and the driving moment"),
         "friction": Sentence("Losses to friction"),
         "frame-force": Sentence("Force and moment on the frame"),
         "bearing-loads": Sentence("Loads of the bearings on the bushes, in the axes of the frame"),
@@ -564,7 +602,9 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
     note = Paragraph(Sentence("Extremes are found between the samples too; means are over time."))
     losses = (Table(table.columns, Sentence("Losses to friction")) for table in _losses(reactions))
     sections = (
-        Section(NOTHING, (*_relations(mechanism), FactTable(tuple(_facts(results))))),
+        Section(
+            NOTHING, (*_relations(mechanism), *_real_motion(reactions), FactTable(tuple(_facts(results))))
+        ),
         Section(Sentence("Table of joints"), (Paragraph(meaning), joints), detail=True),
         *(() if results.instants is None else _instants(mechanism, results.instants)),
         # where friction jams every sample nothing is determined
@@ -573,6 +613,11 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
         illustrations(captions, captions, DETAILS),
     )
     return Chapter(Sentence("Reactions in the joints"), sections)
+
+
+def _real_motion(reactions: xarray.Dataset) -> tuple[Block, ...]:
+    """That the forces are those of the real motion; nothing where they are not."""
+    return (Paragraph(REAL_MOTION),) if "driving_moment" in reactions else ()
 
 
 def _relations(mechanism: Mechanism) -> tuple[Block, ...]:
@@ -627,7 +672,9 @@ def _inertia(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -> Ite
         return
     columns = [Column("link", names, head=Sentence("link"))]
     if flat and mechanism.motion_parameter.is_uniform and "drive_rate" in here:
-        columns += _accelerations(mechanism, instants.motion.isel(sample=k), float(here["drive_rate"]))
+        columns += _accelerations(
+            mechanism, instants.motion.isel(sample=k), float(here["drive_rate"]), _second_rate(here)
+        )
     force, moment = here["inertia_force"].values, here["inertia_moment"].values
     axes = here["axis"].values.tolist()
     if np.isfinite(force).all() and force.any():
@@ -642,14 +689,24 @@ def _inertia(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -> Ite
     yield Table(tuple(columns), caption)
 
 
-def _accelerations(mechanism: Mechanism, here: xarray.Dataset, rate: float) -> list[Column]:
-    """Accelerations of the centres of mass and of the links at the constant rate of the drive."""
+def _second_rate(here: xarray.Dataset) -> float:
+    """Second derivative of the drive's value by time at a sample; 0 at a constant rate."""
+    if "drive_acceleration" not in here:
+        return 0.0
+    # the acceleration counts in the sense in which the drive turns
+    return float(np.copysign(1.0, here["drive_rate"]) * here["drive_acceleration"])
+
+
+def _accelerations(mechanism: Mechanism, here: xarray.Dataset, rate: float, second: float) -> list[Column]:
+    """Accelerations of the centres of mass and of the links at a rate of the drive and its derivative by time."""
     links = motions_of_links(mechanism, here)
-    centres = np.array([one.acceleration * rate**2 for one in links])
+    centres = np.array([one.acceleration * rate**2 + one.velocity * second for one in links])
     return [
         _in_si("a_x", centres.real, "m/s^2"),
         _in_si("a_y", centres.imag, "m/s^2"),
-        _in_si("epsilon", np.array([one.bending * rate**2 for one in links]), "rad/s^2"),
+        _in_si(
+            "epsilon", np.array([one.bending * rate**2 + one.turning * second for one in links]), "rad/s^2"
+        ),
     ]
 
 
@@ -660,6 +717,9 @@ def _in_si(letter: str, values: Array, unit: str) -> Column:
 def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -> Iterator[Block]:
     """The balancing moment from the reduction, beside the one from the reactions; at constant rates alone."""
     reactions = instants.reactions.isel(sample=k)
+    if instants.steady is not None:
+        yield from _real_balance(reactions, instants.steady.isel(sample=k))
+        return
     if instants.reduced is None or "drive_rate" not in reactions:
         return
     here, rate = instants.reduced.isel(sample=k), float(reactions["drive_rate"])
@@ -685,6 +745,22 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
         )
 
 
+def _real_balance(here: xarray.Dataset, steady: xarray.Dataset) -> Iterator[Block]:
+    """In the real motion: the links' moment by virtual work, and with the flywheel's the driving moment."""
+    yield Paragraph(SENSE)
+    yield Formula((links_line(steady),))
+    terms = _driving_terms(here)
+    size = terms_of_links(steady) + abs(terms[1] * terms[2]) + abs(terms[3])
+    bound = float(here["reaction_loss"]) + float(here.attrs["driving_error"])
+    yield Check(
+        Sentence("The reactions give the same within {share} of its terms."),
+        abs(moment_of_links(steady) - terms[0]),
+        size,
+        bound,
+    )
+    yield from drive_balance(*terms, size, bound)
+
+
 def _checks(reactions: xarray.Dataset) -> Iterator[Check]:
     """Three sums that are not used to find the reactions; allowed is what rounding can make wrong of them."""
     loss = reactions["reaction_loss"].values
@@ -708,6 +784,13 @@ def _checks(reactions: xarray.Dataset) -> Iterator[Check]:
         ),
     ):
         yield Check(text, float(reactions.attrs[name]), 1.0, allowed)
+    if "driving_residual" in reactions.attrs:
+        text = Sentence(
+            "Over the cycle the moments of links, flywheel and shafts differ from the driving moment by {share} of "
+            "their terms."
+        )
+        residual, error = (float(reactions.attrs[f"driving_{name}"]) for name in ("residual", "error"))
+        yield Check(text, residual, 1.0, allowed + error)
     if reactions.attrs["undetermined"]:
         text = Sentence(
             "Redundant constraints leave undetermined: {names}. These have no values.",

@@ -48,6 +48,7 @@ from centrode.views.formulas import index_symbol, join_expressions, sum_of
 from centrode.views.instants import instant_title
 from centrode.views.limits import unreached_failure
 from centrode.views.load_names import load_text
+from centrode.views.load_plots import load_captions, load_pictures, loads_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,9 +91,12 @@ def sheet(results: ReductionResults) -> Sheet:
     """Everything there is to say about the reduction of masses and loads to the drives."""
     return Sheet(
         facts=tuple(_facts(results)),
-        tables={"reduction": reduction_table(results.reduction)},
+        tables={
+            "reduction": reduction_table(results.reduction),
+            **({"loads": loads_table(results)} if results.courses else {}),
+        },
         datasets={"reduction": results.reduction},
-        pictures=dict(_pictures(results)),
+        pictures={**dict(_pictures(results)), **dict(load_pictures(results))},
         chapters={"reduction": _chapter(results)},
         printed=(_extremes(results),),
         failure=unreached_failure(results.mechanism, results.reduction["status"], results.limits),
@@ -297,6 +301,7 @@ def _chapter(results: ReductionResults) -> Chapter:
         "reduced-moment": Sentence("Reduced moment with the parts of the loads"),
         "inertia-matrix": Sentence("Elements of the inertia matrix"),
         "generalised-forces": Sentence("Generalised forces of the drives"),
+        **load_captions(results),
     }
     sections = [Section(NOTHING, (*_meaning(results), FactTable(tuple(_facts(results)))))]
     if "reduced_inertia" in results.reduction:

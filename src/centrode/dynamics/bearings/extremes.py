@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.bearings.reaction_series import ReactionKind, ReactionSeries, reaction_series
-from centrode.dynamics.kinetostatics.reactions import Speed
+from centrode.dynamics.kinetostatics.reactions import motion_of_reactions
 from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
 from centrode.model.mechanism import Mechanism
 
@@ -157,9 +157,8 @@ def _narrow(
     cuts = [np.linspace(top.low, top.high, PARTS + 1) for top in tops]
     # ends of stretches are shared: every place is computed once
     asked, back = np.unique(np.concatenate(cuts), return_inverse=True)
-    speed: Speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
     rubs = any(str(name).startswith("friction_") for name in reactions)
-    there = reactions_of(mechanism, at=asked, speed=speed, friction=rubs)
+    there = reactions_of(mechanism, at=asked, motion=motion_of_reactions(reactions), friction=rubs)
     values_of = {one.key: one.values for one in reaction_series(mechanism, there, reactions)}
     for top, cut, where in zip(tops, cuts, back.reshape(len(tops), -1), strict=True):
         values = values_of[curves[top.curve].key][where]

@@ -12,8 +12,10 @@ import xarray as xr
 
 from centrode.dynamics.bearings.extremes import BearingLoad, bearing_loads
 from centrode.dynamics.bearings.wear import bearings, motion_beside
-from centrode.dynamics.kinetostatics.reactions import Speed, reactions
+from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive
+from centrode.dynamics.kinetostatics.reactions import motion_of_reactions, reactions
 from centrode.dynamics.reduction import reduce
+from centrode.dynamics.steady_motion.steady import steady_motion
 from centrode.errors import CentrodeError
 from centrode.kinematics.motion import motion
 from centrode.kinematics.several_inputs.limits import End, limits_met
@@ -28,11 +30,13 @@ class ReactionsAtInstants:
     ----------
     reactions, motion : of `reactions` and `motion`
     reduced : of `reduce`, where one drive runs at constant speed; None without, and with friction by coefficients
+    steady : of `steady_motion`, where the reactions are those of the real motion
     """
 
     reactions: xr.Dataset
     motion: xr.Dataset
     reduced: xr.Dataset | None
+    steady: xr.Dataset | None = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,7 @@ def reaction_results(
     stop: float | None = None,
     at: Sequence[float | str] = (),
     *,
-    steady: bool = False,
+    motion: MotionOfDrive = "mean",
     frictionless: bool = False,
     complete: bool = True,
     instants: npt.ArrayLike | None = None,
@@ -78,7 +82,7 @@ def reaction_results(
     ----------
     samples, start, stop : as of `motion`
     at : single places in place of the range, numbers in SI or texts with a unit ("120 deg")
-    steady : at the real speed of a machine in steady motion, not at its mean speed
+    motion : "mean", or "real": at the real speed of a machine in steady motion, over its cycle
     frictionless : without friction by coefficients
     complete : with loads and wear of the bearings, which take several times as long as the reactions
     instants : further places [rad, m or s] for equations with numbers
@@ -90,8 +94,7 @@ def reaction_results(
     """
     instant = mechanism.motion_parameter.instant
     places = [instant.read(place, "at") for place in at] or None
-    speed: Speed = "steady" if steady else "mean"
-    found = reactions(mechanism, samples, start, stop, places, speed=speed, friction=not frictionless)
+    found = reactions(mechanism, samples, start, stop, places, motion=motion, friction=not frictionless)
     results = ReactionResults(mechanism, found, tuple(at))
     if complete and not at:
         results = with_bearings(mechanism, found)
@@ -123,9 +126,20 @@ def with_bearings(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:
 
 
 def with_instants(results: ReactionResults, instants: npt.ArrayLike) -> ReactionResults:
-    """Results with the reactions at further instants [rad, m or s]; friction by coefficients counts there."""
+    """Results with the reactions at further instants [rad, m or s]; friction by coefficients counts there.
+
+    They are those of the motion that the results are computed at.
+    """
     mechanism, places = results.mechanism, np.asarray(instants, dtype=np.float64)
     reduced = None
+    if motion_of_reactions(results.reactions) == "real":
+        there = ReactionsAtInstants(
+            reactions(mechanism, at=places, motion="real"),
+            motion(mechanism, at=places),
+            None,
+            steady_motion(mechanism, at=places),
+        )
+        return replace(results, instants=there)
     if mechanism.motion_parameter.is_uniform:
         # friction by a coefficient has no reduction without the reactions
         with suppress(CentrodeError):

@@ -37,6 +37,13 @@ from centrode.dynamics.force_polygons.statics import (
     outer_actions,
 )
 from centrode.dynamics.force_polygons.steps import Step
+from centrode.dynamics.kinetostatics.applied_forces import (
+    DriveGroup,
+    InputMotion,
+    MotionOfDrive,
+    check_motion,
+    steady_grid,
+)
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduce_state
 from centrode.dynamics.state import DriveMotion, State
@@ -337,7 +344,8 @@ class ForcePolygons(PrintsSummary):
     Attributes
     ----------
     exact : the motion at the instant
-    speed : rate of each drive at which inertia and loads are taken [rad/s or m/s]; `speed_from` "machine" or "drive"
+    speed : rate of each drive at which inertia and loads are taken [rad/s or m/s]; `speed_from` "machine", "drive", or
+        "steady" of the real motion
     names : bodies by number
     groups : in the order in which they were solved, the input link at the end
     reactions : name -> force [N] as a complex number, R12 of body 1 on body 2
@@ -348,6 +356,7 @@ class ForcePolygons(PrintsSummary):
     outer : loads, weights and inertia
     places : point -> place [m]
     paper : the sheet that scales are chosen for
+    group : group I of a machine in its real motion, at the one sample; None otherwise
     """
 
     mechanism: Mechanism
@@ -364,6 +373,7 @@ class ForcePolygons(PrintsSummary):
     outer: tuple[Action, ...]
     places: Mapping[str, complex]
     paper: str
+    group: DriveGroup | None = None
 
     @property
     def paper_size(self) -> Size:
@@ -388,7 +398,9 @@ class ForcePolygons(PrintsSummary):
         return self.levers[0]
 
 
-def force_polygons(mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "A4") -> ForcePolygons:
+def force_polygons(
+    mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "A4", *, motion: MotionOfDrive = "mean"
+) -> ForcePolygons:
     """Reactions and balancing moment at an instant by force polygons, group by group, and by Zhukovsky's lever.
 
     Parameters
@@ -397,6 +409,8 @@ def force_polygons(mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "
         A value of the drive, or a time, as in `motion(at=...)`; a list may hold one.
     paper : "A5", "A4" or "A3"
         The sheet that scales of forces are chosen for.
+    motion : "mean" or "real"
+        At the speed of `reduce`, or at the real speed and acceleration of a machine in steady motion.
 
     Raises
     ------
@@ -415,16 +429,22 @@ def force_polygons(mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "
     ['OA']
     """
     mechanism = mechanism_of(mechanism)
+    check_motion(motion)
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)
     prepared = ready(mechanism)
     at = place_of(prepared.parameter.instant, at)
-    solved = solve(prepared, grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
+    pace = None
+    if motion == "real":
+        prepared, span, pace = steady_grid(mechanism, None, [at])
+    else:
+        span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
+    solved = solve(prepared, span)
     exact = dataset_of(solved)
     _refuse_where_it_is_not(exact, at)
     drawing = drawing_of(prepared, exact, DrawingBoard())
     bodies = FreeBodies.of(prepared.structure)
-    state, rates, machine = _state(solved, burden)
+    state, rates, source = _state(solved, burden) if pace is None else _real_state(solved, pace)
     outer = outer_actions(burden, state, rates, drawing, bodies)
     joints = joints_of(prepared.structure, bodies, drawing)
     ledger = Ledger.of(bodies, joints, outer, float(drawing.numbers.scale))
@@ -435,7 +455,7 @@ def force_polygons(mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "
         mechanism,
         exact,
         _speeds(exact, prepared, rates),
-        "machine" if machine else "drive",
+        source,
         bodies.names,
         groups,
         _reactions(ledger),
@@ -446,6 +466,7 @@ def force_polygons(mechanism: MechanismSource, at: npt.ArrayLike, paper: str = "
         tuple(outer),
         {name: complex(*place) for name, place in drawing.at.points.items()},
         paper,
+        None if pace is None else pace.group,
     )
 
 
@@ -461,15 +482,21 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
         )
 
 
-def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Rates, bool]:
-    """The state at the speed that `reduce` takes, its rates by time, and whether the machine gives the speed."""
+def _real_state(solved: Solved, pace: InputMotion) -> tuple[State, Rates, str]:
+    """The state at the real speed of a machine, its rates by time, and whose they are."""
+    rates = Rates(float(pace.moving.rate[0]), float(pace.acceleration[0]))
+    return State.of(solved, pace.moving), rates, pace.source
+
+
+def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Rates, str]:
+    """The state at the speed that `reduce` takes, its rates by time, and whose they are."""
     span, prepared = solved.span, solved.ready
     by_machine = prepared.mechanism.machine is not None and prepared.parameter.is_uniform
     if by_machine:
         moving = Reducer(prepared, burden).moving(span.parameter)
-        return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), True
+        return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), "machine"
     moving = DriveMotion(span.time, span.parameter, span.rate)
-    return State.of(solved, moving), Rates(float(span.rate[0]), float(span.second_rate[0])), False
+    return State.of(solved, moving), Rates(float(span.rate[0]), float(span.second_rate[0])), "drive"
 
 
 def _speeds(exact: xr.Dataset, prepared: Ready, rates: Rates) -> dict[str, float]:

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import xarray as xr
 
 from centrode.dynamics.force_polygons.polygons import ForcePolygons, force_polygons
+from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.errors import MotionError
-from centrode.kinematics.motion import default_instants, motion
+from centrode.kinematics.motion import default_instants
+from centrode.kinematics.motion import motion as labelled_motion
 from centrode.model.mechanism import Mechanism
 
 
@@ -37,6 +39,7 @@ def force_polygon_results(
     at: Sequence[float | str] = (),
     paper: str = "A4",
     *,
+    motion: MotionOfDrive = "mean",
     instants: Sequence[float] | None = None,
     complete: bool = True,
 ) -> ForcePolygonResults:
@@ -47,6 +50,7 @@ def force_polygon_results(
     at : instants, numbers in SI or texts with a unit ("120 deg"): values of the drive, or times, as in `motion(at=...)`
     paper : "A5", "A4" or "A3"
         The sheet that scales of forces are chosen for.
+    motion : "mean", or "real": at the real speed and acceleration of a machine in steady motion
     instants : the same in SI [rad or m, or s], if `at` is left out; else those of the study, else the initial position
     complete : every instant has to have forces; otherwise one at least
 
@@ -63,13 +67,13 @@ def force_polygon_results(
     refusals: list[MotionError] = []
     for place in places:
         try:
-            found.append(force_polygons(mechanism, place, paper))
+            found.append(force_polygons(mechanism, place, paper, motion=motion))
         except MotionError as refusal:
             refusals.append(refusal)
             found.append(None)
     if refusals and (complete or not any(found)):
         raise refusals[0]
-    return ForcePolygonResults(mechanism, named, motion(mechanism, at=places), tuple(found))
+    return ForcePolygonResults(mechanism, named, labelled_motion(mechanism, at=places), tuple(found))
 
 
 def results_of_force_polygons(mechanism: Mechanism, polygons: ForcePolygons) -> ForcePolygonResults:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +14,14 @@ from centrode.dynamics.loads import AppliedLoad, MassesAndLoads
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer, refuse_drive_in_formulas
 from centrode.dynamics.state import About, DriveMotion, Mass, Spread, State, Vector3
-from centrode.dynamics.steady_motion.steady import solution_of, turned_at
+from centrode.dynamics.steady_motion.steady import SETTLED, SteadySolution, solution_of, turned_at
 from centrode.dynamics.wrenches import Moment, Vector, Wrench, couple, on_link
+from centrode.errors import InputError
 from centrode.geometry.sphere import add, cross, dot, times
 from centrode.kinematics.path import JETS, SampleGrid
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved
+from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.jets import Jet
 
@@ -151,6 +153,72 @@ class _Inertial:
 
 # How the drive moves while reactions are requested.
 
+MotionOfDrive: TypeAlias = Literal["mean", "real"]
+"""The motion at which forces are computed: at the speed of `reduce`, or the real one of a machine."""
+MOTIONS = get_args(MotionOfDrive)
+ROUNDINGS = 16
+"""Times `SETTLED`, by which loads, speed and acceleration of a steady motion may disagree."""
+
+
+def check_motion(motion: str) -> None:
+    """Raise InputError for a motion that is none."""
+    if motion not in MOTIONS:
+        what = _("{name} is not a motion of the drive").format(name=f'"{motion}"')
+        raise InputError("motion", what, _("use one of {known}").format(known=", ".join(MOTIONS)))
+
+
+@dataclass(frozen=True)
+class DriveGroup:
+    """Group I of a machine in its real motion, at samples: what turns with the drive, and the moment that drives it.
+
+    Attributes
+    ----------
+    inertia : float [kg m^2]
+        J_I, of flywheel and shafts, reduced to the drive.
+    acceleration : (n) [rad/s^2]
+        Of the drive, in the sense in which it turns.
+    driving : (n) [N m]
+        Driving moment of the energy equation, in the same sense.
+    sense : +1.0 or -1.0
+        In which the drive's value changes.
+    size, error : (n) [N m]
+        Sum of the sizes of all terms of the equation of motion, and what the acceleration may leave of it.
+    """
+
+    inertia: float
+    acceleration: Array
+    driving: Array
+    sense: float
+    size: Array
+    error: Array
+
+    @classmethod
+    def of(cls, solution: SteadySolution, turned: Array) -> DriveGroup:
+        """Group I of a machine in steady motion at angles turned [rad]."""
+        speed, balance, loads = solution.speed, solution.speed.balance, solution.speed.balance.cycle
+        acceleration, half_square = speed.acceleration(turned), 0.5 * speed.square(turned)
+        moments = (balance.driving.at(turned), loads.moment.at(turned), half_square * loads.slope.at(turned))
+        carried = (speed.inertia + loads.inertia.at(turned)) * acceleration
+        size = sum((np.abs(one) for one in moments), np.abs(carried))
+        # of the series that acceleration and driving moment come from
+        left_out = (
+            balance.total.error_at(turned)
+            + half_square * loads.slope.error_at(turned)
+            + np.abs(acceleration) * loads.inertia.error_at(turned)
+        )
+        # loads and speed were made to agree, to SETTLED, and nothing is known better than its rounding
+        error = left_out + ROUNDINGS * SETTLED * size
+        return cls(speed.inertia, acceleration, moments[0], loads.sense, size, error)
+
+    @property
+    def inertia_moment(self) -> Array:
+        """-J_I epsilon (n) [N m]."""
+        return -self.inertia * self.acceleration
+
+    def moment_of_links(self, balancing: Array) -> Array:
+        """What the links need of the drive [N m], in the sense in which it turns, of what is positive as q grows."""
+        return self.sense * balancing
+
 
 @dataclass(frozen=True)
 class InputMotion:
@@ -160,11 +228,13 @@ class InputMotion:
     ----------
     acceleration : (n)
     source : "drive", "machine" or "steady"
+    group : group I of a machine in its real motion; None otherwise
     """
 
     moving: DriveMotion
     acceleration: Array
     source: str
+    group: DriveGroup | None = None
 
 
 def input_motion_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
@@ -192,7 +262,10 @@ def steady_grid(
         cycle.sense * speed.acceleration(turned),
         # the speed of the steady motion is the sample grid's own
     )
-    return solution.prepared, span, _along(span, "steady")
+    # as in the energies: the time in formulas of loads runs as at the mean speed
+    moving = DriveMotion(turned / solution.machine.mean_speed, span.parameter, span.rate)
+    pace = InputMotion(moving, span.second_rate, "steady", DriveGroup.of(solution, turned))
+    return solution.prepared, span, pace
 
 
 def rates_of(solved: Solved, pace: InputMotion) -> Array:

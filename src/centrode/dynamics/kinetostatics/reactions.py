@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.kinetostatics.applied_forces import (
+    DriveGroup,
     InputMotion,
+    MotionOfDrive,
     Outer,
+    check_motion,
     input_motion_of,
     outer_of,
     rates_of,
@@ -50,8 +53,9 @@ from centrode.dynamics.kinetostatics.joints import (
 )
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State
+from centrode.dynamics.steady_motion.steady import solution_of
 from centrode.dynamics.wrenches import Vector, Wrench, components, total
-from centrode.errors import InputError, NotComputedYet, Status
+from centrode.errors import CentrodeError, InputError, NotComputedYet, Status
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
@@ -282,6 +286,35 @@ def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
     return np.abs(given.sum(axis=-1) + taken), np.full(len(good), greatest)
 
 
+# Group I of a machine in its real motion: what the links need, and what the flywheel takes, is what drives.
+
+
+def drive_group_variables(group: DriveGroup, needed: Array) -> dict[str, Variable]:
+    """Variables of the balance of the drive; `needed` (n) is what the links need. All in the sense of turning."""
+    values = {
+        "drive_acceleration": group.acceleration,
+        "moment_of_links": needed,
+        "inertia_moment_of_group": group.inertia_moment,
+        "driving_moment": group.driving,
+    }
+    return {name: vocabulary_variable(name, ("sample",), value) for name, value in values.items()}
+
+
+def driving_attributes(group: DriveGroup, needed: Array) -> dict[str, float]:
+    """J_I, how far M_links + J_I epsilon is from the driving moment, and how far it may be.
+
+    What the links need (n) comes from the reactions, acceleration and driving moment from the energy equation. Both
+    numbers are shares of the greatest sum of the terms of that equation.
+    """
+    missing, greatest = np.abs(needed - group.inertia_moment - group.driving), float(np.max(group.size))
+    scale = greatest or 1.0
+    return {
+        "inertia": group.inertia,
+        "driving_residual": float(np.max(missing, where=np.isfinite(missing), initial=0.0)) / scale,
+        "driving_error": float(np.max(group.error)) / scale,
+    }
+
+
 # Names and units around friction, beside those of reactions.
 
 
@@ -405,6 +438,11 @@ def reactions_dataset(
         variables |= friction_variables(solved, rubbed, powers, whole)
         coordinates |= friction_coordinates(rubbed.contacts)
         attributes |= friction_attributes(solved, rubbed, powers, whole)
+    if found.pace.group is not None:
+        # of the numbers as they are shown: absent where the reactions are
+        group, needed = found.pace.group, found.pace.group.moment_of_links(parts["balancing"][:, 0])
+        variables |= drive_group_variables(group, needed)
+        attributes |= driving_attributes(group, needed)
     return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes))
 
 
@@ -480,10 +518,6 @@ def _names(found: ReactionSolution) -> dict[str, list[str]]:
     }
 
 
-Speed: TypeAlias = Literal["mean", "steady"]
-SPEEDS = get_args(Speed)
-
-
 def reactions(
     mechanism: MechanismSource,
     samples: int | None = None,
@@ -491,7 +525,7 @@ def reactions(
     stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
     *,
-    speed: Speed = "mean",
+    motion: MotionOfDrive = "mean",
     friction: bool = True,
 ) -> xr.Dataset:
     """Forces in every joint and what the drives must give, from J' lambda = -Q with one list of constraints.
@@ -499,9 +533,10 @@ def reactions(
     Parameters
     ----------
     samples, start, stop, at
-        As for `motion`; with `speed="steady"` as for `steady_motion`, without start and stop.
-    speed : "mean" or "steady"
-        The speed of `reduce`, or the real one of a machine in steady motion.
+        As for `motion`; with `motion="real"` as for `steady_motion`, without start and stop.
+    motion : "mean" or "real"
+        At the speed of `reduce`, or at the real speed and acceleration of a machine in steady motion: then also the
+        inertia moment of what turns with the drive, and the driving moment.
     friction
         Whether Coulomb friction counts; where there is any, `friction_moment`, `friction_force`,
         `friction_power`, `efficiency` and more tell it (docs: friction).
@@ -530,10 +565,8 @@ def reactions(
     mechanism = mechanism_of(mechanism)
     mechanism = mechanism if friction else without_friction(mechanism)
     burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
-    if speed not in SPEEDS:
-        what = _("{name} is not a speed").format(name=f'"{speed}"')
-        raise InputError("speed", what, _("use one of {known}").format(known=", ".join(SPEEDS)))
-    if speed == "steady":
+    check_motion(motion)
+    if motion == "real":
         if start is not None or stop is not None:
             what = _("steady motion is given over a whole cycle")
             raise InputError(_("range"), what, _("omit the ends of the range, or give the positions with at"))
@@ -544,6 +577,22 @@ def reactions(
     span = grid_of(prepared, samples, start, stop, at)
     solved = solve(prepared, span)
     return reactions_at(solved, burden, input_motion_of(solved, burden), contacts, at is None)
+
+
+def motion_of_reactions(found: xr.Dataset) -> MotionOfDrive:
+    """The motion that reactions were computed at."""
+    return "real" if found.attrs.get("rate_from") == "steady" else "mean"
+
+
+def has_real_motion(mechanism: Mechanism) -> bool:
+    """Whether reactions can be computed at the real speed of the machine that the mechanism works in."""
+    if mechanism.machine is None or contacts_of(mechanism):
+        return False
+    try:
+        solution_of(mechanism)
+    except CentrodeError:
+        return False
+    return True
 
 
 def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:

@@ -104,6 +104,10 @@ class PanelSeries:
         """Bound of what the series leave out of `total`: their last two terms, over all panels."""
         return float(np.sum(tails(self.coefficients) * np.diff(self.panels.edges)))
 
+    def error_at(self, places: Array) -> Array:
+        """What the series may leave out of values: the last two terms of the panel of each place."""
+        return tails(self.coefficients)[self._inside(places)[0]]
+
     def _inside(self, places: Array) -> tuple[npt.NDArray[np.intp], Array]:
         """Panel of each place, and where in it, from -1 to 1."""
         edges = self.panels.edges

@@ -85,9 +85,11 @@ def _drives(study: ReportStudy, moment: Moment) -> dict[str, float]:
     """What each drive has to give, where masses or loads are there and reactions can be found."""
     if study.study.reactions is None:
         return {}
-    places = [place.at for place in moments_of(study)]
+    places, motion = [place.at for place in moments_of(study)], study.motion_of_forces
     try:
-        found = study.once("reactions at instants", lambda: reactions(study.mechanism, at=places))
+        found = study.once(
+            "reactions at instants", lambda: reactions(study.mechanism, at=places, motion=motion)
+        )
     except CentrodeError:
         return {}
     here = found.isel(sample=moment.sample)
