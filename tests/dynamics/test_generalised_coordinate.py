@@ -199,6 +199,55 @@ def test_a_slider_that_drives_itself() -> None:
     assert np.allclose(reduction.reduced_moment, -3.0, rtol=0, atol=0)
 
 
+CRANK_DRIVEN_BY_ITS_SLIDER = """
+[frame.points]
+O = [0, 0]
+[links.OA]
+length = 1
+mass = 1
+centre = [0.5, 0]
+inertia = 0.1
+[links.AB]
+length = 3
+mass = 2
+centre = [1.5, 0]
+inertia = 0.3
+[links.slider]
+points = { B = [0, 0] }
+mass = 3
+[[guides]]
+point = "B"
+through = "O"
+direction = [1, 0]
+link = "slider"
+[[drives]]
+guide = "B"
+start = 3
+speed = -0.5
+[assembly]
+sides = { A = "left" }
+[[loads]]
+kind = "torque"
+link = "OA"
+value = 5
+"""
+
+
+def test_a_slider_that_drives_gives_the_same_power_by_all_routes() -> None:
+    """Force polygons, lever, virtual work and reactions along s = 4 m - x; R01, R32 and the rest do not change."""
+    plain = ct.parse_mechanism(CRANK_DRIVEN_BY_ITS_SLIDER)
+    chosen = ct.parse_mechanism(
+        CRANK_DRIVEN_BY_ITS_SLIDER + '[study]\ncoordinate = { guide = "B", zero = "4 m", sense = "against" }'
+    )
+    one, other = ct.force_polygons(plain, at=3.0), ct.force_polygons(chosen, at=1.0)
+    given = -one.balancing["B"]
+    assert other.speed == {"B": 0.5}
+    forces = (other.balancing["B"], other.work["B"], other.levers[0].balancing)
+    for value in (*forces, float(ct.reactions(chosen, at=[1.0]).balancing[0, 0])):
+        assert abs(value - given) <= 1e-12 * abs(given)
+    assert other.reactions == pytest.approx(one.reactions, abs=1e-12)
+
+
 def test_a_cylinder_has_no_length_at_the_upper_end_of_a_mirrored_coordinate() -> None:
     bar = """
         [frame.points]

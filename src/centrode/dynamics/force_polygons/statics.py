@@ -523,7 +523,9 @@ class Ledger:
         if joint.kind == "drive":
             several = len(self.bodies.mechanism.drives) > 1
             name = ("Fb" if joint.has_force else "Mb") + (f"({joint.name})" if several else "")
-            return name if joint.shares[body] > 0 else f"−{name}"
+            # what is driven has the moment or force itself, whichever sense of the coordinate counts it
+            sense = self.bodies.mechanism.motion_parameter.drive(joint.name).sense
+            return name if sense * joint.shares[body] > 0 else f"−{name}"
         if joint.kind == "mesh" and not joint.has_force:
             several = len(self.bodies.mechanism.gears) > 1
             return f"Mz{self.bodies.number(body)}" + (f"({joint.name})" if several else "")
