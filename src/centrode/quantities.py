@@ -32,6 +32,14 @@ LENGTHS: Mapping[str, float] = {
 ANGLES: Mapping[str, float] = {"rad": 1.0, "deg": 180 / math.pi, "turn": 1 / (2 * math.pi)}
 """How many of each angle unit make one radian."""
 
+ANGULAR_VELOCITIES: Mapping[str, float] = {f"{angle}/s": factor for angle, factor in ANGLES.items()} | {
+    "rpm": 30 / math.pi
+}
+"""How many of each unit of angular velocity make one radian per second."""
+
+ANGULAR_ACCELERATIONS: Mapping[str, float] = {f"{angle}/s^2": factor for angle, factor in ANGLES.items()}
+"""How many of each unit of angular acceleration make one radian per second squared."""
+
 
 def display_unit(unit: str, length: str = "m", angle: str = "rad") -> tuple[float, str]:
     """Factor and label that turn numbers in an SI unit into the units they are shown in.

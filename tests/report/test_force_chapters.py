@@ -77,7 +77,7 @@ def line(chapter: ChapterBlocks, left: str, nth: int = -1) -> tuple[str, ...]:
     ("chapter", "left", "printed", "half", "nth"),
     [
         ("reduction", "J", 12.962, 0.0005, -1),
-        ("reduction", "M", 6100.0, 50.0, -1),  # the sheet's sign is that of its angle
+        ("reduction", "M", -6100.0, 50.0, -1),
         ("flywheel", "A_upright(c)", -14220.0, 5.0, 0),
         ("flywheel", "M_upright(d)", 2263.0, 0.5, 0),
         ("flywheel", "J_upright(I)", 1462.0, 0.5, 0),

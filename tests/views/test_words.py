@@ -118,7 +118,7 @@ def test_cranks_and_rockers_are_told_by_their_motion() -> None:
         ("planetary-hypocycloid", 'Wheel "planet" rolls without slip inside a fixed circle.'),
         ("rack-and-pinion", 'Wheel "pinion" rolls without slip on a straight track of link "rack".'),
         ("scissor-lift", 'The slider in E moves along link "platform", which does not turn.'),
-        ("rack-and-pinion", 'Link "pinion" is driven: it turns about O at a constant 180 deg/s.'),
+        ("rack-and-pinion", 'Link "pinion" is driven: it turns about O at a constant 30 rpm.'),
         ("rack-and-pinion", 'Link "rack" moves along its guide by 125.7 mm in total.'),
         ("rolling-wheel-rod", "Coupler PB moves the slider in B along its guide, by 1885 mm in total."),
         ("geared-five-bar", "Crank OA is driven"),

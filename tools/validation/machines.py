@@ -51,7 +51,7 @@ def flywheel() -> Flywheel:
 @cache
 def moving() -> xr.Dataset:
     """The printed machine's real motion at the printed instant, by the source's first-order formula."""
-    return ct.steady_motion(ct.example("six-bar-press-printed"), at=[AT], method="first-order")
+    return ct.steady_motion(ct.example("six-bar-press-printed"), at=["99.1 deg"], method="first-order")
 
 
 def machine_value(quantity: str, symbol: str) -> float:

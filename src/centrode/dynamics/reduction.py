@@ -176,7 +176,7 @@ class Reducer:
         # a time follows from constant speed; at speed zero it is infinite, and only loads of time would see
         # that
         with np.errstate(all="ignore"):
-            elapsed = (values - path.driven[0].start) / speed if time is None else time
+            elapsed = (values - path.start) / speed if time is None else time
         return DriveMotion(
             np.broadcast_to(np.asarray(elapsed, dtype=np.float64), values.shape),
             values,
@@ -544,7 +544,7 @@ def _batch_moving(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
         return DriveMotion(span.time, span.parameter, span.rate)
     speed = Reducer(ready, burden).default_rate
     assert speed is not None
-    start = ready.kinematics.path.driven[0].start
+    start = ready.kinematics.path.start
     return DriveMotion(
         ready.parameter.times(span.parameter, start, speed),
         span.parameter,

@@ -75,10 +75,11 @@ def given_of(board: Lettering) -> Given:
     for letter, drive in board.driven.items():
         rate = board.alphabet.rates[letter]
         second = board.alphabet.seconds[rate]
-        coordinate, start = parameter.drive(drive), path[drive].start
+        coordinate, driven = parameter.drive(drive), path[drive]
+        start = driven.start
         word, speed = "law", 0.0
-        if coordinate.speed is not None:
-            word, speed = "uniform", coordinate.speed
+        if driven.drive.speed is not None:
+            word, speed = "uniform", driven.drive.speed
             values[second] = Sum({})
             if (start, speed, len(path)) == (0.0, 1.0, 1) and coordinate.turns:
                 word = "t"

@@ -214,7 +214,7 @@ def coordinates_of(solved: Solved) -> dict[str, Any]:
 def coordinates_along(solved: Solved) -> dict[str, Any]:
     """Times, values of the drives together, their names, and the values of each by its name."""
     path = solved.ready.kinematics.path
-    values = path.drive_values(ARRAYS, solved.span.parameter)
+    values = path.coordinates(ARRAYS, solved.span.parameter)
     count = len(solved.span.time)
     drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
     units = solved.ready.parameter.units

@@ -168,7 +168,7 @@ JETS = JetFunctions(ARRAYS)
 
 @dataclass(frozen=True)
 class DrivenBy:
-    """A drive with its law: value(t) = start + law(t)."""
+    """A drive with its law: value(t) = start + law(t), of what it drives, whichever coordinate is chosen."""
 
     drive: Drive
     law: Law
@@ -203,6 +203,8 @@ class Path:
     pace : TimeScale
         Of several drives: what time counts as large, stretch by stretch.
     held : drive -> its value, constant along the path; of a batch of paths arrays (lanes, 1)
+
+    With one drive the parameter is its coordinate (`DriveCoordinate`); what it drives has its own measure.
     """
 
     driven: tuple[DrivenBy, ...]
@@ -218,6 +220,11 @@ class Path:
     def by_time(self) -> bool:
         """Whether the parameter is time."""
         return self.parameter.by_time
+
+    @property
+    def start(self) -> float:
+        """Value of the one drive's coordinate at t = 0, without the law's own value there."""
+        return float(self.parameter.drives[0].value_of(self.driven[0].start))
 
     @property
     def turns(self) -> bool:
@@ -244,10 +251,25 @@ class Path:
         return replace(self, held={drive: take(value) for drive, value in self.held.items()})
 
     def drive_values(self, m: Namespace, parameter: Number) -> dict[str, Number]:
-        """Values of all drives at a parameter, over any algebra."""
+        """What all drives give at a parameter, over any algebra: angles, displacements and distances."""
+        if not self.by_time:
+            return {self.driven[0].drive.id: self.parameter.drives[0].measure_at(parameter), **self.held}
+        return {driven.drive.id: driven.value(m, parameter) for driven in self.driven}
+
+    def coordinates(self, m: Namespace, parameter: Number) -> dict[str, Number]:
+        """Values of the coordinates of all drives at a parameter, over any algebra."""
         if not self.by_time:
             return {self.driven[0].drive.id: parameter, **self.held}
-        return {driven.drive.id: driven.value(m, parameter) for driven in self.driven}
+        return self.drive_values(m, parameter)
+
+    def possible(self, low: float, high: float) -> tuple[float, float]:
+        """The part of a range of the one drive's coordinate in which a cylinder is not shorter than zero."""
+        if self.driven[0].drive.kind != "distance":
+            return low, high
+        coordinate = self.parameter.drives[0]
+        least = coordinate.value_of(0.0)
+        # whatever its formulas say
+        return (max(low, least), high) if coordinate.sense > 0.0 else (low, min(high, least))
 
     def impossible(self, parameter: Any) -> Any:
         """Where a cylinder would be shorter than zero: the mechanism is open there, whatever its formulas say."""
@@ -268,7 +290,9 @@ def path_of(mechanism: Mechanism, scale: float) -> Path:
         pace = TimeScale.of(lambda times: _fastest(driven, scale, times))
         return Path(driven, parameter, 0.0, 1.0, pace.unit_at(0.0), scale, pace)
     unit = unit_of(driven[0].drive, scale)
-    return Path(driven, parameter, driven[0].initial, _sense_at_start(driven[0]), unit, scale)
+    coordinate = parameter.drives[0]
+    initial = float(coordinate.value_of(driven[0].initial))
+    return Path(driven, parameter, initial, coordinate.sense * _sense_at_start(driven[0]), unit, scale)
 
 
 def unit_of(drive: Drive, scale: float) -> float:
@@ -530,7 +554,7 @@ def _at_values(path: Path, values: Array) -> SampleGrid:
     if not speed:
         raise InputError(f"[[drives]] {driven.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
     ones = np.ones(len(values))
-    return SampleGrid(path.parameter.times(values, driven.start), values, speed * ones, 0.0 * ones)
+    return SampleGrid(path.parameter.times(values, path.start), values, speed * ones, 0.0 * ones)
 
 
 def _range(
@@ -577,7 +601,11 @@ def _even_times(path: Path, samples: int, start: float | None, stop: float | Non
 def _at_times(path: Path, time: Array) -> SampleGrid:
     if path.by_time:
         return SampleGrid(time, time, np.ones(len(time)), np.zeros(len(time)))
-    return SampleGrid(time, *_derivatives(path.driven[0], time))
+    value, rate, second = _derivatives(path.driven[0], time)
+    coordinate = path.parameter.drives[0]
+    if not coordinate.is_chosen:
+        return SampleGrid(time, value, rate, second)
+    return SampleGrid(time, coordinate.value_of(value), coordinate.sense * rate, coordinate.sense * second)
 
 
 def _one_turn(path: Path) -> float:

@@ -200,7 +200,7 @@ def _reach_if_needed(
     EventScan(continuation, mesh_of(path, ends)).run()
     low, high = continuation.branches.reach(0)
     # a cylinder does not get shorter than zero
-    return (max(low, 0.0), high) if path.driven[0].drive.kind == "distance" else (low, high)
+    return path.possible(low, high)
 
 
 def of_batch(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:

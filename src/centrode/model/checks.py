@@ -16,6 +16,7 @@ from centrode.model.links import Gear, Link, Rolling
 from centrode.model.loads import AnyLoad, TurningLoad
 from centrode.model.look_alikes import letters_note, look_alike
 from centrode.model.reading import FRAME, Place, Problem, nearest, two_points, value_text
+from centrode.model.settings import AGAINST, ALONG
 from centrode.model.values import Placed, Vector, makes_arc, unit_vector
 
 if TYPE_CHECKING:
@@ -385,7 +386,7 @@ def _connected_nodes(start: Node, neighbours: dict[Node, set[Node]]) -> set[Node
 
 def problems_of_parts(mechanism: Description) -> list[Problem]:
     """Everything wrong among the parts; the parts that do not hang together are told only if nothing else is."""
-    checks = (_links, _guides, joining_problems, _drives, space_problems, _rest)
+    checks = (_links, _guides, joining_problems, _drives, _coordinate, space_problems, _rest)
     found = chain.from_iterable(check(mechanism) for check in checks)
     return list(islice(found, reading.PROBLEMS_SOUGHT)) or list(_loose(mechanism))
 
@@ -494,6 +495,35 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
             wrong = list(two_known_points(mechanism, drive.distance, (*at, "distance")))
             yield from wrong or cylinder_problems(mechanism, drive, at)
         yield from follower_problems(mechanism, drive, at)
+
+
+def _coordinate(mechanism: Description) -> Iterator[Problem]:
+    """Problems of a coordinate that is chosen: it is that of the one drive, and its sense is one of its kind."""
+    chosen, at = mechanism.study.coordinate, ("study", "coordinate")
+    if chosen is None:
+        return
+    if len(mechanism.drives) != 1:
+        what = _("a coordinate is chosen for a mechanism with one drive, and it has {n}")
+        yield Problem(what.format(n=len(mechanism.drives)), _("remove the coordinate"), at)
+        return
+    drive = mechanism.drives[0]
+    if chosen.link is not None and chosen.guide is not None:
+        yield Problem(_("{names} are given together").format(names="link, guide"), _("keep one of them"), at)
+    for key, name, driven, names in (
+        ("link", chosen.link, drive.link, list(mechanism.links)),
+        ("guide", chosen.guide, drive.guide, [guide.id for guide in mechanism.guides]),
+    ):
+        if name is None or name == driven:
+            continue
+        unknown = list(unknown_name_problems(name, names, key, (*at, key)))
+        yield from unknown
+        if not unknown:
+            repair = _("the coordinate is that of the drive: name {name}").format(name=drive.id)
+            yield Problem(_("{name} is not driven").format(name=value_text(name)), repair, (*at, key))
+    senses = [each[0 if drive.kind == "angle" else 1] for each in (ALONG, AGAINST)]
+    if chosen.sense is not None and chosen.sense not in senses:
+        what = _("the sense {sense} does not fit what is driven").format(sense=value_text(chosen.sense))
+        yield Problem(what, _("use one of {known}").format(known=", ".join(senses)), (*at, "sense"))
 
 
 def _rest(mechanism: Description) -> Iterator[Problem]:

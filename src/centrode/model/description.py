@@ -102,7 +102,12 @@ class Description(DescriptionPart):
     @property
     def motion_parameter(self) -> MotionParameter:
         """What a motion is a function of: the value of the one drive, or time; its unit and how instants are stated."""
-        return motion_parameter_of(self.drives, self.space, refuses_bare=self.display.refuses_bare_angles)
+        return motion_parameter_of(
+            self.drives,
+            self.space,
+            self.study.coordinate,
+            refuses_bare=self.display.refuses_bare_angles,
+        )
 
     def with_range(self, word: str | None) -> Self:
         """The mechanism whose study has a range by a word ("reachable") in place of its own; itself without a word.
@@ -111,7 +116,12 @@ class Description(DescriptionPart):
         """
         if word is None:
             return self
-        study = Study(samples=self.study.samples, instants=self.study.instants, range=word)
+        study = Study(
+            samples=self.study.samples,
+            instants=self.study.instants,
+            range=word,
+            coordinate=self.study.coordinate,
+        )
         return self.model_copy(update={"study": study})
 
     @property

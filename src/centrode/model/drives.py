@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Self
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import PlainValidator, ValidationInfo, field_validator, model_validator
 
@@ -26,12 +27,15 @@ from centrode.model.values import (
     Flag,
     Name,
     TableColumns,
+    angular_speed,
     positive,
-    quantity,
     read_rows,
     read_text,
     si,
 )
+
+if TYPE_CHECKING:
+    from centrode.model.settings import ChosenCoordinate
 
 _LAWS = ("speed", "law", "table", "segments", "cam")
 _OF_CAM = ("cam_speed", "cam_angle", "cam_point", "lowers")
@@ -90,7 +94,7 @@ class Drive(DescriptionPart):
     segments: tuple[Segment, ...] | None = None
     repeat: Flag = False
     cam: Annotated[PlateCam, PlainValidator(read_plate_cam)] | None = None
-    cam_speed: Annotated[float, quantity("angular speed", positive)] | None = None
+    cam_speed: Annotated[float, PlainValidator(partial(angular_speed, read=positive))] | None = None
     cam_angle: Angle = 0.0
     cam_point: Name | None = None
     lowers: Flag = False
@@ -115,7 +119,8 @@ class Drive(DescriptionPart):
     def _number(cls, value: object, info: ValidationInfo) -> float | None:
         if value is None:
             return None
-        return si(value, _kind(info, rate=info.field_name == "speed"))
+        kind = _kind(info, rate=info.field_name == "speed")
+        return angular_speed(value) if kind == "angular speed" else si(value, kind)
 
     @field_validator("table", mode="plain")
     @classmethod
@@ -203,8 +208,17 @@ def _check_cam(drive: Drive, cam: PlateCam) -> None:
 
 
 def motion_parameter_of(
-    drives: Sequence[Drive], space: str, *, refuses_bare: bool = False
+    drives: Sequence[Drive],
+    space: str,
+    chosen: ChosenCoordinate | None = None,
+    *,
+    refuses_bare: bool = False,
 ) -> MotionParameter:
-    """What a motion of a mechanism with these drives, in the plane or on the sphere, is a function of."""
-    coordinates = (drive_coordinate(one.id, one.kind, space, one.speed, refuses_bare) for one in drives)
-    return MotionParameter(tuple(coordinates), by_time=len(drives) > 1)
+    """What a motion of a mechanism with these drives, in the plane or on the sphere, is a function of.
+
+    The value of one drive alone may be a coordinate that is chosen.
+    """
+    coordinates = tuple(drive_coordinate(one.id, one.kind, space, one.speed, refuses_bare) for one in drives)
+    if chosen is not None and len(coordinates) == 1:
+        coordinates = (coordinates[0].measured_from(chosen.zero, chosen.way),)
+    return MotionParameter(coordinates, by_time=len(drives) > 1)

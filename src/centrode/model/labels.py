@@ -60,7 +60,8 @@ def place_words(
     values = motion["drive_value"].values[sample].tolist()
     texts = []
     for drive, value in zip(mechanism.drives, values, strict=True):
-        unit = mechanism.motion_parameter.drive(drive.id).unit
-        texts.append(f"{drive.id} {value_with_unit(value, unit, mechanism.display, unit_name)}")
+        coordinate = mechanism.motion_parameter.drive(drive.id)
+        shown = value_with_unit(value, coordinate.unit, mechanism.display, unit_name)
+        texts.append(f"{coordinate.label} {shown}")
     status = int(motion["status"][sample])
     return ", ".join(texts) + ("" if status == Status.OK else f" ({status_word(status)})")

@@ -8,7 +8,7 @@ because a law of time may pass the same value more than once.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, TypeAlias
 
 from centrode.errors import InputError
@@ -89,11 +89,42 @@ class DriveCoordinate(MotionVariable):
     name : id of the drive
     driven : "angle" of a link, "displacement" along a guide, "distance" of two points
     speed : float [rad/s or m/s], where it is constant; None for every other law of time
+    zero : float [rad or m]
+        The angle, displacement or distance at which the coordinate is zero.
+    sense : +1.0 or -1.0
+        Whether it grows with that quantity or against it.
+    is_chosen : bool
+        Whether the author of the description chose zero and sense; else the coordinate is the quantity itself.
     """
 
     name: str
     driven: str
     speed: float | None
+    zero: float = field(default=0.0, kw_only=True)
+    sense: float = field(default=1.0, kw_only=True)
+    is_chosen: bool = field(default=False, kw_only=True)
+
+    def measured_from(self, zero: float, sense: float) -> DriveCoordinate:
+        """The same quantity with a chosen zero [rad or m] and sense."""
+        speed = None if self.speed is None else sense * self.speed
+        return replace(self, speed=speed, zero=zero, sense=sense, is_chosen=True)
+
+    def value_of(self, measure: Number) -> Number:
+        """Value of the coordinate where the angle, displacement or distance is `measure`, over any algebra."""
+        if not self.is_chosen:
+            return measure
+        return measure - self.zero if self.sense > 0.0 else self.zero - measure
+
+    def measure_at(self, value: Number) -> Number:
+        """The angle, displacement or distance at a value of the coordinate, over any algebra."""
+        if not self.is_chosen:
+            return value
+        return value + self.zero if self.sense > 0.0 else self.zero - value
+
+    @property
+    def label(self) -> str:
+        """What stands before a value: the drive's id, or the letter of a coordinate that is chosen."""
+        return self.symbol if self.is_chosen else self.name
 
     @property
     def speed_kind(self) -> str:

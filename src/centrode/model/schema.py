@@ -53,6 +53,8 @@ from centrode.model.loads import FITS, FORMS, KINDS, Load
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
 from centrode.model.settings import (
+    AGAINST,
+    ALONG,
     LEAST_DIGITS,
     MOST_CHAPTERS,
     MOST_DIGITS,
@@ -62,6 +64,7 @@ from centrode.model.settings import (
     Assembly,
     CamReportWishes,
     ChapterText,
+    ChosenCoordinate,
     Display,
     FlywheelShape,
     Machine,
@@ -72,6 +75,7 @@ from centrode.model.settings import (
 from centrode.model.simulation import MOST_STEPS, SCHEMES, Motor, Simulation
 from centrode.model.units import KINDS as QUANTITIES
 from centrode.numerics.text_formula import TEXT_LENGTH
+from centrode.quantities import ANGULAR_ACCELERATIONS, ANGULAR_VELOCITIES
 
 # What schemas of descriptions are made of: quantities, names, lists, tables, and the whole of one.
 
@@ -162,7 +166,12 @@ _POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAM
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
 
 PROPERTIES: dict[type[DescriptionPart], Schema] = {
-    Display: {"length": TEXT, "angle": TEXT},
+    Display: {
+        "length": TEXT,
+        "angle": TEXT,
+        "angular_velocity": {"enum": list(ANGULAR_VELOCITIES)},
+        "angular_acceleration": {"enum": list(ANGULAR_ACCELERATIONS)},
+    },
     Frame: {"points": table_of(_POSITION, reading.POINTS)},
     Link: {
         "points": _POINTS,
@@ -301,6 +310,13 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "from": AMOUNT,
         "to": AMOUNT,
         "range": {"enum": [REACHABLE]},
+        "coordinate": reference_to(ChosenCoordinate),
+    },
+    ChosenCoordinate: {
+        "link": NAME,
+        "guide": NAME,
+        "zero": AMOUNT,
+        "sense": {"enum": [*ALONG, *AGAINST]},
     },
     ChapterText: CHAPTER_TEXT,
     ReportWishes: {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Mapping
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, PlainValidator
@@ -24,12 +25,14 @@ from centrode.model.reading import (
     value_text,
 )
 from centrode.model.values import (
+    READING,
     Angle,
     EndOfMotion,
     Flag,
     Name,
     PlaceOfMotion,
     Text,
+    angular_speed,
     not_negative,
     positive,
     quantity,
@@ -37,7 +40,7 @@ from centrode.model.values import (
     si,
 )
 from centrode.numerics.text_formula import compile_formula
-from centrode.quantities import ANGLES, LENGTHS, display_unit
+from centrode.quantities import ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_VELOCITIES, LENGTHS, display_unit
 
 REACHABLE = "reachable"
 """The range that a drive reaches from its initial position."""
@@ -57,10 +60,25 @@ def read_samples(value: object) -> int:
 
 
 class Display(DescriptionPart):
-    """Units in which tables and figures show lengths and angles."""
+    """Units in which tables and figures show lengths and angles.
+
+    Attributes
+    ----------
+    length, angle : str
+    angular_velocity, angular_acceleration : str
+        By the unit of angles if left out.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> ct.Display(angle="deg", angular_velocity="rad/s").angular_velocity
+    'rad/s'
+    """
 
     length: Annotated[str, choice(*LENGTHS)] = "m"
     angle: Annotated[str, choice(*ANGLES)] = "rad"
+    angular_velocity: Annotated[str, choice(*ANGULAR_VELOCITIES)] | None = None
+    angular_acceleration: Annotated[str, choice(*ANGULAR_ACCELERATIONS)] | None = None
 
     @property
     def refuses_bare_angles(self) -> bool:
@@ -73,11 +91,16 @@ def shown_as(unit: str, display: Display | None) -> tuple[float, str]:
 
     Inside, everything is SI and radians. Lengths and angles change their unit wherever they stand ("m/s^2" becomes
     "mm/s^2", "rad/s" becomes "deg/s"), except that kinematic coefficients stay per radian of the drive: only so are
-    they the analogs of velocity and acceleration that textbooks print.
+    they the analogs of velocity and acceleration that textbooks print. Angular velocities and accelerations may have
+    units of their own; higher derivatives by time go with the accelerations.
     """
     if display is None or unit in ("", "1"):
         return 1.0, unit
+    if unit == "rad/s" and display.angular_velocity is not None:
+        return ANGULAR_VELOCITIES[display.angular_velocity], display.angular_velocity
     angle = "rad" if "/rad" in unit else str(display.angle)
+    if unit.startswith("rad/s^") and display.angular_acceleration is not None:
+        angle = display.angular_acceleration.removesuffix("/s^2")
     return display_unit(unit, str(display.length), angle)
 
 
@@ -108,6 +131,51 @@ class Assembly(DescriptionPart):
     continuation: Annotated[Literal["smooth", "keep"], choice("smooth", "keep")] = "smooth"
 
 
+ALONG = ("counter-clockwise", "along")
+"""Senses in which a coordinate grows with the angle, or with the displacement or distance."""
+AGAINST = ("clockwise", "against")
+"""Senses in which it falls."""
+
+
+def _read_zero(value: object) -> float:
+    return si(value, READING.get().parameter.drives[0].kind)
+
+
+class ChosenCoordinate(DescriptionPart):
+    r"""The generalised coordinate to which results belong, where its author chooses zero and sense.
+
+    It stands in place of the value of the one drive: the drive's motion stays what it is.
+
+    Attributes
+    ----------
+    link, guide : str
+        What is driven, for the reader; a cylinder needs neither.
+    zero : float [rad or m]
+        The angle, displacement or distance at which the coordinate is zero.
+    sense : "counter-clockwise" or "clockwise" of an angle, "along" or "against" of a displacement or distance
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> press = ct.mechanism_text(ct.example("six-bar-press"))
+    >>> chosen = 'coordinate = { link = "OA", zero = "219.1 deg", sense = "clockwise" }'
+    >>> press = ct.parse_mechanism(press.replace("[study]", f"[study]\n{chosen}"))
+    >>> motion = ct.motion(press, at=["99.1 deg"])
+    >>> round(float(motion.velocity_coefficient.sel(point="H", axis="x")[0]), 3)
+    0.675
+    """
+
+    link: Name | None = None
+    guide: Name | None = None
+    zero: Annotated[float, PlainValidator(_read_zero)] = 0.0
+    sense: Annotated[str, choice(*ALONG, *AGAINST)] | None = None
+
+    @property
+    def way(self) -> float:
+        """+1.0 where the coordinate grows with what is driven, -1.0 where it falls."""
+        return -1.0 if self.sense in AGAINST else 1.0
+
+
 class Study(DescriptionPart):
     """What is to be computed.
 
@@ -121,6 +189,8 @@ class Study(DescriptionPart):
         Range of the drive's value; "from" and "to" in a file.
     range : "reachable"
         In place of these: between the limits about the initial position, without limits one turn.
+    coordinate : ChosenCoordinate or None
+        Zero and sense of the generalised coordinate; left out, it is the value of the drive.
 
     Examples
     --------
@@ -134,6 +204,7 @@ class Study(DescriptionPart):
     start: Annotated[EndOfMotion | None, Field(alias="from")] = None
     stop: Annotated[EndOfMotion | None, Field(alias="to")] = None
     range: Annotated[Literal["reachable"], choice(REACHABLE)] | None = None
+    coordinate: ChosenCoordinate | None = None
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -237,7 +308,7 @@ class Machine(DescriptionPart):
         How the driving moment goes, up to a factor; constant if left out.
     """
 
-    mean_speed: Annotated[float, quantity("angular speed", positive)]
+    mean_speed: Annotated[float, PlainValidator(partial(angular_speed, read=positive))]
     fluctuation: Annotated[float, quantity("ratio", _fluctuation)] | None = None
     shafts: Annotated[tuple[Shaft, ...], bounded_list(SHAFTS)] = ()
     flywheel: FlywheelShape = FlywheelShape()

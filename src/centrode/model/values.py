@@ -38,11 +38,20 @@ Vector = tuple[float, float]
 
 
 BareAngles = Literal["radians", "refused", "marked"]
-RAD = "rad"
+RAD, RPM = "rad", "rpm"
 
 
 class Radians(float):
     """An angle of a description that is written with its unit."""
+
+
+class TurnsPerMinute(float):
+    """A speed [rad/s] that a description gives in turns per minute: sentences name it so."""
+
+    @property
+    def rpm(self) -> float:
+        """Turns per minute."""
+        return self * 30 / math.pi
 
 
 @dataclass(frozen=True)
@@ -90,6 +99,13 @@ def si(value: object, kind: str) -> float:
         raise Problem(error.what, error.repair)
     number = _bounded_number(value, kind)
     return Radians(number) if bare_angles == "marked" else number
+
+
+def angular_speed(value: object, read: Callable[[object, str], float] = si) -> float:
+    """A speed [rad/s] by `read`, `TurnsPerMinute` where it is given in them."""
+    number = read(value, "angular speed")
+    in_turns = isinstance(value, str) and value.rstrip().endswith(RPM)
+    return TurnsPerMinute(number) if in_turns or isinstance(value, TurnsPerMinute) else number
 
 
 def _is_bare(value: object, kind: str) -> bool:

@@ -100,9 +100,10 @@ def _description_text(study: ReportStudy) -> DescriptionText:
     description, instants = study.description, study.wishes.instants
     if not isinstance(description, Mechanism):
         return DescriptionText(cam_text(description), "cam", instants)
-    uniform = description.motion_parameter.is_uniform and len(description.drives) == 1
-    start = description.drives[0].start if uniform else 0.0
-    return DescriptionText(mechanism_text(description), "mechanism", instants or (start or 0.0,))
+    parameter = description.motion_parameter
+    uniform = parameter.is_uniform and len(description.drives) == 1
+    start = parameter.drives[0].value_of(description.drives[0].start or 0.0) if uniform else 0.0
+    return DescriptionText(mechanism_text(description), "mechanism", instants or (start,))
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:

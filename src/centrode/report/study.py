@@ -307,8 +307,8 @@ def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
     numbers = study.numbers
     values = data["drive_value"].values[sample]
     told = [
-        f"{drive.id} = {drive_value_text(float(value), study.mechanism.motion_parameter.drive(drive.id).unit, numbers)}"
-        for drive, value in zip(study.mechanism.drives, values, strict=True)
+        f"{drive.label} = {drive_value_text(float(value), drive.unit, numbers)}"
+        for drive, value in zip(study.mechanism.motion_parameter.drives, values, strict=True)
     ]
     if not study.mechanism.motion_parameter.is_uniform:
         told.insert(0, f"t = {numbers.measured(float(data['time'][sample]), 's')}")

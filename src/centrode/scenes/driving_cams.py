@@ -202,7 +202,8 @@ def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Itera
         if drive.cam.body.base_radius is None and not has_bounds(drive.cam):
             continue
         time = np.asarray(dataset["time"], dtype=float)
-        values = np.asarray(dataset["drive_value"].sel(drive=drive.id), dtype=float)
+        coordinate = mechanism.motion_parameter.drive(drive.id)
+        values = coordinate.measure_at(np.asarray(dataset["drive_value"].sel(drive=drive.id), dtype=float))
         apart = values - np.asarray(drive.motion_law.jet(ARRAYS, time), dtype=float)
         zero = float(np.nanmedian(apart)) if np.isfinite(apart).any() else math.nan
         # Where a simulation moves the linkage, the cam does not.

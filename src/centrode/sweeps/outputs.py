@@ -248,7 +248,7 @@ class Variable:
         if self.kind == "time":
             return solved.span.time[None, :]
         path = solved.ready.kinematics.path
-        drives = path.drive_values(ARRAYS, solved.span.parameter)
+        drives = path.coordinates(ARRAYS, solved.span.parameter)
         return np.broadcast_to(drives[self.source], (1, len(solved.span.time)))
 
 

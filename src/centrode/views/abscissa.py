@@ -49,6 +49,8 @@ def drive_label(coordinate: DriveCoordinate) -> AxisLabel:
 def text_of_drive(coordinate: DriveCoordinate) -> Text:
     """What a drive moves, with its symbol."""
     name, symbol = Name(coordinate.name), Symbol(coordinate.symbol)
+    if coordinate.is_chosen:
+        return Sentence("generalised coordinate {symbol}", symbol=symbol)
     match coordinate.driven:
         case "angle":
             return Sentence("angle {symbol} of link {name}", symbol=symbol, name=name)

@@ -13,6 +13,7 @@ from centrode.equations.spelling import SymbolFormula, formula_of
 from centrode.equations.symbols import ZERO, Letter, Sum, SumTerm
 from centrode.errors import Status
 from centrode.model.labels import GEAR, ROLLING
+from centrode.model.settings import shown_as
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -515,7 +516,7 @@ class _Numbers:
         """A number with the unit of its letter; angles also in degrees where these are shown."""
         unit = self.units[letter]
         number = Number(self.values[letter], unit, unit_fixed=True)
-        if unit.startswith("rad") and str(self.equations.mechanism.display.angle) == "deg":
+        if shown_as(unit, self.equations.mechanism.display)[1].startswith("deg"):
             return Expression(
                 "{radians} = {degrees}", radians=number, degrees=Number(self.values[letter], unit)
             )

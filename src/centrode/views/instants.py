@@ -25,7 +25,7 @@ def place_title(mechanism: Mechanism, values: Sequence[float], time: float) -> T
     """The same of values of the drives [rad or m] and a time [s]."""
     parameter = mechanism.motion_parameter
     parts: list[Text] = [
-        _equal(drive.name, Number(value, drive.unit, digits="", degrees_too=True))
+        _equal(drive.label, Number(value, drive.unit, digits="", degrees_too=True))
         for drive, value in zip(parameter.drives, values, strict=True)
     ]
     if not parameter.is_uniform:
@@ -42,7 +42,7 @@ def instant_place(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text
     """Where a sample is: the values of the drives, and its status where it is not ok."""
     values = motion["drive_value"].values[sample]
     parts = [
-        Joined((Name(drive.name), Number(float(value), drive.unit, ".9g", degrees_too=True)), " ")
+        Joined((Name(drive.label), Number(float(value), drive.unit, ".9g", degrees_too=True)), " ")
         for drive, value in zip(mechanism.motion_parameter.drives, values, strict=True)
     ]
     status = Status(int(motion["status"][sample]))

@@ -135,7 +135,7 @@ def _at(results: IntegrationResults, time: float) -> Text:
     return Sentence(
         "{time} ({drive} at {value})",
         time=place_number(time, "s"),
-        drive=Name(parameter.drives[0].name),
+        drive=Name(parameter.drives[0].label),
         value=place_number(value, parameter.variable.unit),
     )
 

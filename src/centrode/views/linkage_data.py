@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.model.mechanism import FRAME, Placed
+from centrode.model.values import TurnsPerMinute
 from centrode.sheets.sheet import Block, Chapter, Column, Paragraph, Section, Table
 from centrode.sheets.texts import NOTHING, Expression, Joined, Name, Number, Place, Sentence, Text
 from centrode.views.follower_data import driving_cam
@@ -230,14 +231,44 @@ def _drives(mechanism: Mechanism) -> Iterator[Block]:
             Column("law", laws, head=Sentence("law")),
         )
         yield Table(columns, Sentence("Drives"))
+        yield from _chosen_coordinate(mechanism)
     for drive in drives:
         if drive.cam is not None:
             yield from driving_cam(drive, drive.cam)
 
 
+def _chosen_coordinate(mechanism: Mechanism) -> Iterator[Block]:
+    """What the results belong to, where the author chose zero and sense."""
+    drives = mechanism.motion_parameter.drives
+    if len(drives) != 1 or not drives[0].is_chosen:
+        return
+    coordinate = drives[0]
+    symbol, quantity = Name(coordinate.symbol), _given(mechanism.drives[0])
+    # Translators: {symbol} is the letter of the coordinate, {quantity} such as "angle of link OA", {zero} a value of it
+    if coordinate.sense < 0.0:
+        text = Sentence(
+            "The generalised coordinate {symbol} = {zero} − {quantity} stands in place of the value of the drive."
+        )
+    elif coordinate.zero < 0.0:
+        text = Sentence(
+            "The generalised coordinate {symbol} = {quantity} + {zero} stands in place of the value of the drive."
+        )
+    else:
+        text = Sentence(
+            "The generalised coordinate {symbol} = {quantity} − {zero} stands in place of the value of the drive."
+        )
+    size = coordinate.zero if coordinate.sense < 0.0 else abs(coordinate.zero)
+    zero = Number(size, coordinate.unit, digits="")
+    yield Paragraph(text.fill(symbol=symbol, quantity=quantity, zero=zero))
+
+
 def _law(drive: Drive, speed_unit: str) -> Text:
     if drive.speed is not None:
-        return Sentence("constant {rate}", rate=Number(drive.speed, speed_unit, digits=""))
+        rate: Text = Number(drive.speed, speed_unit, digits="")
+        if isinstance(drive.speed, TurnsPerMinute):
+            turns = Number(drive.speed.rpm, "rpm", digits="", unit_fixed=True)
+            rate = Sentence("{value} ({remark})", value=turns, remark=rate)
+        return Sentence("constant {rate}", rate=rate)
     if drive.cam is not None:
         return Sentence("lift of a cam")
     if drive.law is not None:

@@ -26,6 +26,7 @@ from centrode.model.loads import (
     Torque,
 )
 from centrode.model.reading import FRAME
+from centrode.model.values import TurnsPerMinute
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -207,7 +208,10 @@ def _bracketed_vector(values: Sequence[object]) -> Text:
 
 
 def _machine(machine: Machine) -> Iterator[Fact]:
-    speed = Number(machine.mean_speed, "rad/s", unit_fixed=True)
+    speed: Text = Number(machine.mean_speed, "rad/s", unit_fixed=True)
+    if isinstance(machine.mean_speed, TurnsPerMinute):
+        turns = Number(machine.mean_speed.rpm, "rpm", unit_fixed=True)
+        speed = Sentence("{value} ({remark})", value=turns, remark=speed)
     yield Fact(Sentence("mean speed of the drive"), speed)
     if machine.fluctuation is not None:
         yield Fact(Sentence("admissible coefficient of fluctuation"), Number(machine.fluctuation))

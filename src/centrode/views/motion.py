@@ -146,7 +146,7 @@ def _extremes(results: MotionResults) -> Iterator[tuple[str, str, float, float]]
     """Name, unit, least and greatest value of each drive among the samples."""
     values = results.motion["drive_value"].values
     for drive, one in zip(results.mechanism.motion_parameter.drives, values.T, strict=True):
-        yield drive.name, drive.unit, float(np.min(one)), float(np.max(one))
+        yield drive.label, drive.unit, float(np.min(one)), float(np.max(one))
 
 
 def _events(results: MotionResults, kind: int) -> Text:

@@ -300,10 +300,10 @@ def _front(results: MotionResults, rows: tuple[int, ...]) -> list[Column]:
     data, mechanism = results.motion, results.mechanism
     columns = [_time(data)]
     for k, drive in enumerate(mechanism.drives):
-        if drive.link is not None and drive.relative_to == FRAME:
+        coordinate = mechanism.motion_parameter.drive(drive.id)
+        if drive.link is not None and drive.relative_to == FRAME and not coordinate.is_chosen:
             continue  # its angle stands among those of the links
-        unit = mechanism.motion_parameter.drive(drive.id).unit
-        columns.append(Column("", data["drive_value"].values[:, k], unit, Name(drive.id)))
+        columns.append(Column("", data["drive_value"].values[:, k], coordinate.unit, Name(coordinate.label)))
     status = data["status"].values
     if (status[list(rows)] != Status.OK).any():
         words = tuple(Sentence(STATUS_WORDS[Status(code)]) for code in status.tolist())
@@ -336,7 +336,7 @@ def _hinges_over_motion(results: MotionResults, rows: tuple[int, ...]) -> Table:
     data, parameter = results.motion, results.mechanism.motion_parameter
     columns = [_time(data)]
     if parameter.is_uniform:
-        head = Name(parameter.drives[0].name)
+        head = Name(parameter.drives[0].label)
         columns = [Column("", np.asarray(parameter.instants(data)), parameter.instant.unit, head)]
     for kind, value, rate, letter in (
         ("joint", "joint_angle", "joint_velocity", "psi"),

@@ -101,7 +101,7 @@ def _table(plan: PositionPlan) -> Table:
             tuple(Number(number, digits="d") for number in range(count)),
             head=Sentence("position"),
         ),
-        Column(f"drive_{drive.name}", data["drive_value"].values[:, 0], drive.unit, Name(drive.name)),
+        Column(f"drive_{drive.name}", data["drive_value"].values[:, 0], drive.unit, Name(drive.label)),
     ]
     for point in plan.points or _numbered_points(plan):
         place = np.where(ok[:, None], data["position"].sel(point=point).values, np.nan)

@@ -380,7 +380,8 @@ def _drive_moments(mechanism: Mechanism, here: xarray.Dataset) -> Iterator[Momen
     for drive in mechanism.drives:
         value = float(here["balancing"].sel(drive=drive.id))
         if drive.kind == "angle" and drive.link is not None and np.isfinite(value) and value != 0.0:
-            yield MomentOnBody("Mb", next(iter(mechanism.links[drive.link].coordinates)), value)
+            sense = mechanism.motion_parameter.drive(drive.id).sense
+            yield MomentOnBody("Mb", next(iter(mechanism.links[drive.link].coordinates)), sense * value)
 
 
 def _line(vector: VectorOnBody) -> Text:

@@ -75,6 +75,8 @@ VARIABLES = (
     "generalised_force_part",
 )
 IN_TABLE = (("reduced_inertia", "J"), ("reduced_inertia_slope", "J'"), ("reduced_moment", "M"))
+LETTERS = {"angle": "phi", "displacement": "s", "distance": "l"}
+"""What a chosen coordinate is called in formulas, by what is driven."""
 WHOLES = {"reduced_inertia": Sentence("reduced inertia"), "reduced_moment": Sentence("reduced moment")}
 JUMPS_SHOWN = 12
 MOST = 11
@@ -321,23 +323,34 @@ def _meaning(results: ReductionResults) -> tuple[Block, ...]:
         )
         lines: Lines = (("T", "1/2 sum_(i, k) M_(i k) dot(q)_i dot(q)_k"), ("P", "sum_i Q_i dot(q)_i"))
         return Paragraph(text), Formula(lines)
-    text = Sentence(
-        "The mechanism is replaced by its drive alone, with an inertia $J(q)$ of the same kinetic energy and a "
-        "moment $M(q)$ of the same power. Primes denote derivatives with respect to the value $q$ of the drive."
+    coordinate = results.mechanism.motion_parameter.drives[0]
+    letter = LETTERS[coordinate.driven] if coordinate.is_chosen else "q"
+    text = (
+        Sentence(
+            "The mechanism is replaced by its drive alone, with an inertia $J$ of the same kinetic energy and a moment "
+            "$M$ of the same power. Primes denote derivatives with respect to the generalised coordinate {symbol}.",
+            symbol=Expression(letter),
+        )
+        if coordinate.is_chosen
+        else Sentence(
+            "The mechanism is replaced by its drive alone, with an inertia $J(q)$ of the same kinetic energy and a "
+            "moment $M(q)$ of the same power. Primes denote derivatives with respect to the value $q$ of the drive."
+        )
     )
+    kinetic = f"1/2 J dot({letter})^2"
     if results.mechanism.space == "sphere":
         meaning = Sentence(
             "$omega_k$ is the angular velocity of link $k$, $upright(bold(I))_k$ its tensor of inertia about the"
             " centre of the sphere."
         )
         inertia = "sum_k arrow(omega)'_k dot.op upright(bold(I))_k arrow(omega)'_k"
-        lines = (("T", "1/2 J dot(q)^2"), ("J", inertia), ("M", "sum_j arrow(M)_j dot.op arrow(omega)'_j"))
+        lines = (("T", kinetic), ("J", inertia), ("M", "sum_j arrow(M)_j dot.op arrow(omega)'_j"))
         return Paragraph(text), Paragraph(meaning), Formula(lines, "reduction")
     meaning = Sentence(
         "$v_k$ is the velocity of the centre of mass of link $k$, $phi_k$ the angle of the link."
     )
     lines = (
-        ("T", "1/2 J dot(q)^2"),
+        ("T", kinetic),
         ("J", "sum_k (m_k v'_k^2 + J_k phi'_k^2)"),
         ("J'", "2 sum_k (m_k arrow(v)'_k dot.op arrow(v)''_k + J_k phi'_k phi''_k)"),
         ("M", "sum_j arrow(F)_j dot.op arrow(r)'_j + sum_j M_j phi'_j"),
@@ -348,7 +361,7 @@ def _meaning(results: ReductionResults) -> tuple[Block, ...]:
 def _course(results: ReductionResults) -> Table:
     """A few even samples."""
     parameter, data = results.mechanism.motion_parameter, results.reduction
-    head = Name(parameter.drives[0].name) if parameter.is_uniform else Expression(parameter.instant.symbol)
+    head = Name(parameter.drives[0].label) if parameter.is_uniform else Expression(parameter.instant.symbol)
     quantities = (
         Column(name, data[name].values, str(data[name].attrs["units"]), Expression(letter))
         for name, letter in IN_TABLE

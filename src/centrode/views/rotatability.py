@@ -253,7 +253,8 @@ class _Turning:
 
     def place(self, at: float) -> Text:
         """A value of the drive."""
-        return Joined((Name(self.turning.drive), _number(at, self.turning.unit)), " = ")
+        label = self.mechanism.motion_parameter.drive(self.turning.drive).label
+        return Joined((Name(label), _number(at, self.turning.unit)), " = ")
 
     def facts(self) -> Iterator[Fact]:
         turning = self.turning

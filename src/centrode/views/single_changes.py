@@ -129,7 +129,7 @@ def _motion(found: SingleChanges) -> Text:
     low, high = (Number(end, drive.unit, ".9g") for end in (required.low, required.high))
     return Sentence(
         "the range of {drive} from {low} to {high} with transmission angles of {angle} or more",
-        drive=Name(drive.name),
+        drive=Name(drive.label),
         low=low,
         high=high,
         angle=margin,

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from centrode.model.reading import FRAME, two_points
+from centrode.model.values import TurnsPerMinute
 from centrode.sheets.sheet import Chapter, Paragraph, Section, Sheet
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text
 from centrode.structure.assur import assur_groups
@@ -79,6 +80,13 @@ def _angle(mechanism: Mechanism, angle: float) -> Number:
     if str(mechanism.display.angle) in ("deg", "rad"):
         return Number(math.degrees(angle), "°", ".3g", unit_fixed=True)
     return Number(angle, "rad", ".3g")
+
+
+def speed_as_given(speed: float, unit: str, digits: str = "") -> Number:
+    """The size of a speed, in turns per minute where the description gives it so."""
+    if isinstance(speed, TurnsPerMinute):
+        return Number(abs(speed.rpm), "rpm", digits, unit_fixed=True)
+    return Number(abs(speed), unit, digits)
 
 
 def _length(mechanism: Mechanism, length: float) -> Number:
@@ -388,7 +396,7 @@ def _on_drive(drive: Drive, roles: LinkRoles) -> Text:
         return _on_cam(drive, mechanism)
     constant = drive.speed is not None
     unit = mechanism.motion_parameter.drive(drive.id).speed_unit
-    speed = NOTHING if drive.speed is None else Number(abs(drive.speed), unit, ".4g")
+    speed = NOTHING if drive.speed is None else speed_as_given(drive.speed, unit, ".4g")
     if drive.kind == "distance":
         return DRIVEN["cylinder", constant].fill(name=Name(drive.id), speed=speed)
     if drive.guide is not None:
@@ -412,7 +420,7 @@ def _on_drive(drive: Drive, roles: LinkRoles) -> Text:
 
 def _on_cam(drive: Drive, mechanism: Mechanism) -> Text:
     """What a cam drives, and how fast it turns."""
-    speed = Number(drive.turning or 0.0, "rad/s", ".4g")
+    speed = speed_as_given(drive.turning or 0.0, "rad/s", ".4g")
     if drive.guide is None:
         return BY_CAM["link"].fill(link=quoted_name(drive.link or ""), speed=speed)
     guide = mechanism.guide(drive.guide)

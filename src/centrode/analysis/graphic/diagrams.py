@@ -114,12 +114,12 @@ def positions_at(prepared: Ready, exact: xr.Dataset) -> Positions:
 
 
 def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], dict[str, float]]:
-    """First and second derivatives by time of every drive's value."""
+    """First and second derivatives by time of what every drive gives."""
     path = prepared.kinematics.path
     # one drive at a given speed has the rates of the grid; laws are differentiated by time
     if not path.by_time:
-        drive = path.driven[0].drive.id
-        return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
+        drive, sense = path.driven[0].drive.id, path.parameter.drives[0].sense
+        return {drive: sense * float(span.rate[0])}, {drive: sense * float(span.second_rate[0])}
     first, second = {}, {}
     for driven in path.driven:
         value = driven.value(JETS, Jet.variable(span.time, 2))

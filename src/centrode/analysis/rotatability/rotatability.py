@@ -236,13 +236,17 @@ def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
         if event.at == value
     ]
     # the formulas close for a negative length as well, so this limit is no event
-    if tour.drive.kind == "distance" and tour.low == 0.0 and not any(limit.value == 0.0 for limit in limits):
-        name = tour.drive.id
+    name, coordinate = tour.drive.id, prepared.parameter.drive(tour.drive.id)
+    least = float(coordinate.value_of(0.0))
+    end: Literal["low", "high"] = "low" if coordinate.sense > 0.0 else "high"
+    reached = (tour.low if end == "low" else tour.high) == least
+    if tour.drive.kind == "distance" and reached and not any(limit.value == least for limit in limits):
         group, cause = (
             _("cylinder {name} of no length").format(name=name),
             Cause(CauseKind.NO_LENGTH, ((Tracer.CYLINDER, name),)),
         )
-        limits.insert(0, LimitFound(0.0, name, "low", group, (), cause, f"{name} = 0"))
+        found = LimitFound(least, name, end, group, (), cause, f"{name} = 0")
+        limits.insert(0 if end == "low" else len(limits), found)
     return tuple(limits)
 
 

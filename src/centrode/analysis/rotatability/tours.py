@@ -190,8 +190,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> DriveSwee
     if not only:
         check_closed(continuation)
     low, high = continuation.branches.reach(0)
-    if chosen.kind == "distance":
-        low = max(low, 0.0)  # a cylinder is not shorter than zero, whatever its formulas say
+    low, high = path.possible(low, high)
     return DriveSweep(prepared, chosen, dict(held), continuation, low, high, extent)
 
 

@@ -643,7 +643,7 @@ def _sampled_range(
     span = grid_of(prepared, samples, start, stop, at)
     if mechanism.machine is not None and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
-        time = path.parameter.times(span.parameter, path.driven[0].start, rate)
+        time = path.parameter.times(span.parameter, path.start, rate)
         return prepared, SampleGrid(time, span.parameter, rate, 0.0 * rate)
     return prepared, span
 

@@ -262,8 +262,10 @@ def lever_of(
     structure: Structure, drawing: VectorDrawing, bodies: FreeBodies, outer: Sequence[Action], drive: Drive
 ) -> Lever:
     """The lever of one drive, the others held; raises as velocity diagrams do at dead points."""
+    coordinate = structure.mechanism.motion_parameter.drive(drive.id)
     stage = ConstructionStage(
-        drawing, {one.id: float(one.id == drive.id) for one in structure.mechanism.drives}
+        drawing,
+        {one.id: coordinate.sense if one.id == drive.id else 0.0 for one in structure.mechanism.drives},
     )
     stage.points |= dict.fromkeys(drawing.numbers.frame, 0j)
     construct(structure, stage)
@@ -282,7 +284,7 @@ def lever_of(
     images = {name: -1j * rate for name, rate in stage.points.items()}
     return Lever(
         drive.id,
-        structure.mechanism.motion_parameter.drive(drive.id).force_unit,
+        coordinate.force_unit,
         images,
         links,
         tuple(forces),

@@ -260,23 +260,24 @@ def _axes(bodies: FreeBodies, wheel: str, carrier: str) -> list[str]:
 
 
 def _drive(drive: Drive, bodies: FreeBodies, drawing: VectorDrawing) -> StaticJoint:
-    """Its moment on the driven link, positive as the angle grows; its force, positive as the way grows."""
+    """Its moment on the driven link, or its force, positive as its coordinate grows."""
+    sense = bodies.mechanism.motion_parameter.drive(drive.id).sense
     if drive.link is not None:
-        shares = {drive.relative_to: -1.0, drive.link: 1.0}
+        shares = {drive.relative_to: -sense, drive.link: sense}
         both = [point for point, names in bodies.at_point.items() if set(shares) <= set(names)]
         at = drawing.point(both[0]) if both else 0j
         return StaticJoint("drive", drive.id, shares, at, ((0j, 1.0),))
     if drive.guide is not None:
         guide = bodies.mechanism.guide(drive.guide)
         along = _heading(drawing, guide.on, drawing.numbers.direction[guide.id])
-        shares, at = {guide.on: -1.0, bodies.carrier(guide): 1.0}, drawing.point(guide.point)
+        shares, at = {guide.on: -sense, bodies.carrier(guide): sense}, drawing.point(guide.point)
         return StaticJoint("drive", drive.id, shares, at, ((along, 0.0),), along)
     assert drive.distance is not None
     first, second = drive.distance
     at = drawing.point(second)
     along = at - drawing.point(first)
     along /= abs(along)
-    shares = {bodies.host(first): -1.0, bodies.host(second): 1.0}
+    shares = {bodies.host(first): -sense, bodies.host(second): sense}
     return StaticJoint("drive", drive.id, shares, at, ((along, 0.0),), along)
 
 
@@ -522,7 +523,9 @@ class Ledger:
         if joint.kind == "drive":
             several = len(self.bodies.mechanism.drives) > 1
             name = ("Fb" if joint.has_force else "Mb") + (f"({joint.name})" if several else "")
-            return name if joint.shares[body] > 0 else f"−{name}"
+            # what is driven has the moment or force itself, whichever sense of the coordinate counts it
+            sense = self.bodies.mechanism.motion_parameter.drive(joint.name).sense
+            return name if sense * joint.shares[body] > 0 else f"−{name}"
         if joint.kind == "mesh" and not joint.has_force:
             several = len(self.bodies.mechanism.gears) > 1
             return f"Mz{self.bodies.number(body)}" + (f"({joint.name})" if several else "")

@@ -15,15 +15,17 @@ from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.rounding import SAFETY
 from centrode.structure.constraints import (
+    AngleDrive,
     Constraint,
     Contact,
+    DisplacementDrive,
+    DistanceDrive,
     Entity,
     GearRatio,
     NoSlip,
     NoTurning,
     PointInLink,
     PointOnGuide,
-    is_drive,
 )
 from centrode.structure.gearing import Straight
 
@@ -129,7 +131,13 @@ def reactions_of(forces: ForceSystem, sides: Sequence[JointSide]) -> dict[str, A
         for kind in (PointOnGuide, GearRatio, Contact, NoSlip)
     }
     samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
-    drives = [_value(forces, c) for c in structure.constraints if is_drive(c)]
+    # along the coordinates of the drives, as everything that is reduced to them
+    senses = {one.name: one.sense for one in structure.mechanism.motion_parameter.drives}
+    drives = [
+        senses[c.drive] * _value(forces, c)
+        for c in structure.constraints
+        if isinstance(c, AngleDrive | DisplacementDrive | DistanceDrive)
+    ]
     parts = {
         "joint_force": tables([*side_forces(forces, sides).values()], axes, samples),
         "balancing": columns(drives, samples),

@@ -438,7 +438,7 @@ class ReducedCycle:
     def __init__(self, reducer: Reducer) -> None:
         self.reducer = reducer
         path = reducer.ready.kinematics.path
-        self.first, self.steady = path.driven[0].start, reducer.default_rate or path.forward
+        self.first, self.steady = path.start, reducer.default_rate or path.forward
 
     def at(self, values: Array, rate: Array) -> tuple[Array, Array, Array]:
         """Inertia, its derivative and moment at values and rates of the drive."""

@@ -79,8 +79,9 @@ def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value]
 
 
 def initial_values(ready: Ready) -> dict[str, float]:
-    """Values of all drives in the initial position."""
-    return {name: float(value) for name, value in ready.assembled.positions.drives.items()}
+    """Values of the coordinates of all drives in the initial position."""
+    found = ready.assembled.positions.drives
+    return {name: float(ready.parameter.drive(name).value_of(value)) for name, value in found.items()}
 
 
 def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float | Array]) -> Path:
@@ -135,8 +136,9 @@ def _as_float(x: Any) -> float:
 def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     """The position after moving all drives from their initial values to others."""
     old = ready.kinematics.path
-    start = initial_values(ready)
-    ways = {name: target[name] - value for name, value in start.items()}
+    # the way is one of what the drives give, whichever coordinates are chosen
+    start = {name: float(value) for name, value in ready.assembled.positions.drives.items()}
+    ways = {name: ready.parameter.drive(name).measure_at(target[name]) - start[name] for name in start}
     # all drives arrive at time 1
     driven = tuple(
         DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
@@ -322,8 +324,7 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
     # after the search, as it needs the events
     check_closed(continuation)
     low, high = continuation.branches.reach(0)
-    if path.driven[0].drive.kind == "distance":
-        low = max(low, 0.0)  # a cylinder is not shorter than zero, whatever its formulas say
+    low, high = path.possible(low, high)
 
     def end(value: float) -> End | None:
         if not isfinite(value):

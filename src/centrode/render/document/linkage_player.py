@@ -251,7 +251,7 @@ def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[n
     """The value of the only drive at each sample, else the time, with symbol and unit."""
     parameter = mechanism.motion_parameter
     values, unit, name = parameter.values(motion)[samples], parameter.variable.unit, parameter.variable.symbol
-    if not parameter.by_time:
+    if not parameter.by_time and not parameter.drives[0].is_chosen:
         name = f"{name} ({mechanism.drives[0].id})"
     numbers = Numbers(mechanism.display, DIGITS)
     label = numbers.shown(unit)[1]

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from centrode.locale import decimal_mark
-from centrode.model.settings import DIGITS, Display
-from centrode.quantities import DEGREES, display_unit, spelled_unit, with_unit
+from centrode.model.settings import DIGITS, Display, shown_as
+from centrode.quantities import DEGREES, spelled_unit, with_unit
 from centrode.render.document.typst import decimal
 
 MINUS, NOTHING, ENDLESS, NARROW, NO_BREAK = "\u2212", "\u2014", "\u221e", "\u202f", "\u00a0"
@@ -58,8 +58,7 @@ class Numbers:
 
     def shown(self, unit: str) -> tuple[float, str]:
         """Factor and label of the unit in which a quantity of an SI unit is shown; analogs stay by radian."""
-        angle = "rad" if "/rad" in unit else str(self.display.angle)
-        factor, label = display_unit(unit, str(self.display.length), angle)
+        factor, label = shown_as(unit, self.display)
         return factor, spelled_unit(label)
 
     def head(self, name: str, unit: str) -> str:
