@@ -33,6 +33,16 @@ from centrode.model.cam import (
 )
 from centrode.model.description import Description
 from centrode.model.drives import Drive
+from centrode.model.explanatory_note import (
+    FIRST_YEAR,
+    LAST_YEAR,
+    LINE_LENGTH,
+    MOST_SOURCES,
+    PROSE_LENGTH,
+    SOURCE_LENGTH,
+    STANDARDS,
+    TitlePage,
+)
 from centrode.model.follower_cam import (
     CONTACTS,
     MOST,
@@ -54,9 +64,12 @@ from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
 from centrode.model.settings import (
     LEAST_DIGITS,
+    LEAST_ROWS,
     MOST_CHAPTERS,
     MOST_DIGITS,
-    PROSE_LENGTH,
+    MOST_POSITIONS,
+    MOST_RK4_STEPS,
+    MOST_ROWS,
     REACHABLE,
     SHAFTS,
     Assembly,
@@ -143,6 +156,25 @@ CHAPTER_TEXT: dict[str, Schema] = {
     key: {"type": "string", "maxLength": PROSE_LENGTH} for key in ("before", "after")
 }
 REPORT_DIGITS: Schema = {"type": "integer", "minimum": LEAST_DIGITS, "maximum": MOST_DIGITS}
+_LINE: Schema = {"type": "string", "minLength": 1, "maxLength": LINE_LENGTH}
+_PARAGRAPHS: Schema = {
+    "type": "string",
+    "minLength": 1,
+    "maxLength": PROSE_LENGTH,
+    "description": "paragraphs in Markdown",
+}
+TITLE_PAGE: dict[str, Schema] = {
+    **dict.fromkeys(("ministry", "institution", "faculty", "department", "work", "course", "title"), _LINE),
+    "variant": {"anyOf": [{"type": "integer"}, _LINE]},
+    **dict.fromkeys(("author", "group", "teacher", "city"), _LINE),
+    "year": {"type": "integer", "minimum": FIRST_YEAR, "maximum": LAST_YEAR},
+}
+NOTE: dict[str, Schema] = {
+    "standard": {"enum": list(STANDARDS)},
+    "title_page": reference_to(TitlePage),
+    **dict.fromkeys(("task", "abstract", "introduction", "conclusions"), _PARAGRAPHS),
+    "sources": list_of({"type": "string", "minLength": 1, "maxLength": SOURCE_LENGTH}, 0, MOST_SOURCES),
+}
 _NAMES = list_of(NAME, 2, 2)
 _COORDINATES = list_of(quantity_schema("length"), 2, 3)
 _PAIR = list_of(quantity_schema("ratio"), 2, 2)
@@ -303,11 +335,17 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "range": {"enum": [REACHABLE]},
     },
     ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
     ReportWishes: {
+        **NOTE,
         "chapters": CHAPTERS,
         "instants": list_of(AMOUNT, 0, reading.INSTANTS),
         "points": list_of(NAME, 0, reading.POINTS),
         "digits": REPORT_DIGITS,
+        "rows": {"type": "integer", "minimum": LEAST_ROWS, "maximum": MOST_ROWS},
+        "positions": {"type": "integer", "minimum": 2, "maximum": MOST_POSITIONS},
+        "rk4_steps": {"type": "integer", "minimum": 1, "maximum": MOST_RK4_STEPS},
+        "angle_step": above_zero("angle"),
         "full": {"type": "boolean"},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
     },
@@ -396,7 +434,9 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "show_undercut": {"type": "boolean"},
     },
     ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
     CamReportWishes: {
+        **NOTE,
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
@@ -485,7 +525,9 @@ CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
     },
     ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
     CamReportWishes: {
+        **NOTE,
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
