@@ -16,7 +16,7 @@ from centrode.model.reading import FRAME
 from centrode.sheets.sheet import Block, Chapter, Check, Items, Section
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Text
 from centrode.views.instants import place_number
-from centrode.views.reaction_names import balancing_text, reaction_text
+from centrode.views.reaction_names import reaction_text
 
 if TYPE_CHECKING:
     import xarray
@@ -250,12 +250,21 @@ def _reactions(results: MotionResults, loads: tuple[BearingLoad, ...]) -> Iterat
         yield Sentence("The greatest reactions: {reactions}.", reactions=Joined(told, "; "))
     for load in loads:
         if load.kind is ReactionKind.BALANCING and isfinite(_size(load)[0]):
-            yield Sentence(
-                "The {balancing} is at most {moment} in magnitude, at {place}.",
-                balancing=balancing_text(Name(load.names[0]), load.unit),
-                moment=Number(_size(load)[0], load.unit, ".4g"),
-                place=_at(results, _size(load)[1]),
-            )
+            values: dict[str, Text] = {
+                "drive": Name(load.names[0]),
+                "greatest": Number(_size(load)[0], load.unit, ".4g"),
+                "place": _at(results, _size(load)[1]),
+            }
+            if load.unit == "N m":
+                yield Sentence(
+                    "The balancing moment at the drive {drive} is greatest in magnitude at {place}, {greatest}.",
+                    **values,
+                )
+            else:
+                yield Sentence(
+                    "The balancing force at the drive {drive} is greatest in magnitude at {place}, {greatest}.",
+                    **values,
+                )
 
 
 def _size(load: BearingLoad) -> tuple[float, float]:
