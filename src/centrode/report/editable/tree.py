@@ -92,6 +92,8 @@ class DocumentTree:
             "lang": [_text(report.language)],
             "toc-title": [_text(_("Contents"))],
         }
+        if report.title_page is not None:  # the title stands on it
+            del details["title"], details["subtitle"]
         meta = {key: {"t": "MetaInlines", "c": value} for key, value in details.items()}
         return json.dumps({"pandoc-api-version": API, "meta": meta, "blocks": blocks}).encode()
 

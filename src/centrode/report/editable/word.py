@@ -217,8 +217,14 @@ def _finished(report: Report) -> Mapping[str, Callable[[str], str]]:
     def document(text: str) -> str:
         return _captions(_page(text, page), style.separator.rstrip())
 
+    def properties(text: str) -> str:
+        title = f"<dc:title>{escape(report.title)}</dc:title>"
+        return re.sub(r"<dc:title>.*?</dc:title>|<dc:title ?/>", lambda _found: title, text, count=1)
+
     kind = "header" if style.number == "top-right" else "footer"
+    named: Mapping[str, Callable[[str], str]] = {"docProps/core.xml": properties} if first else {}
     return {
+        **named,
         "word/numbering.xml": _numbering,
         "word/document.xml": document,
         "[Content_Types].xml": lambda text: _types(text).replace("footer+xml", f"{kind}+xml"),
@@ -271,6 +277,11 @@ RULE = '<w:{side} w:val="single" w:sz="{width}" w:space="0" w:color="auto"/>'
 RULES = "".join(
     RULE.format(side=side, width=width) for side, width in (("top", 6), ("bottom", 6), ("insideH", 2))
 )
+GRID = "".join(
+    RULE.format(side=side, width=4) for side in ("top", "left", "bottom", "right", "insideH", "insideV")
+)
+"""Lines of a table: of the program's own style, and of the standards, which bound cells on all sides."""
+SHADE = '<w:shd w:val="clear" w:color="auto" w:fill="F0F0F0"/>'
 CELLS = (
     '<w:tblInd w:w="0" w:type="dxa"/><w:tblBorders>{rules}</w:tblBorders><w:tblCellMar>'
     '<w:top w:w="20" w:type="dxa"/><w:left w:w="60" w:type="dxa"/>'
@@ -279,7 +290,7 @@ CELLS = (
 HEAD_ROW = (
     '<w:tblStylePr w:type="firstRow"><w:rPr><w:b/></w:rPr><w:tcPr>'
     f"<w:tcBorders>{RULE.format(side='bottom', width=6)}</w:tcBorders>"
-    '<w:shd w:val="clear" w:color="auto" w:fill="F0F0F0"/><w:vAlign w:val="center"/></w:tcPr></w:tblStylePr>'
+    f'{SHADE}<w:vAlign w:val="center"/></w:tcPr></w:tblStylePr>'
 )
 STYLES = {
     "Title": _style("Title", "Title", "Normal", f"{_spacing(120, 6)}{CENTRE}", f"<w:b/>{_size(22)}"),
@@ -365,7 +376,10 @@ def styles_of(standard: Standard, is_note: bool) -> Mapping[str, str]:
             ),
             "Heading2": _heading(2, style.size, 12),
             "Heading3": _heading(3, style.size, 12),
-            "Table": styles["Table"].replace(_size(9), _size(style.tables[-1])),
+            "Table": styles["Table"]
+            .replace(RULES, GRID)
+            .replace(SHADE, "")
+            .replace(_size(9), _size(style.tables[-1])),
         }
     if is_note:
         centred = f"{new_page}{_spacing(0, 12)}{CENTRE}"
