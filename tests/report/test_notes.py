@@ -1,4 +1,4 @@
-"""Reports as explanatory notes: title page, order, parts, captions, pages by GOST and DSTU, in every kind of document."""
+"""Reports as explanatory notes: title page, order, parts, captions, pages by standards, in every kind of document."""
 
 from __future__ import annotations
 
