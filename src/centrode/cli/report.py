@@ -17,14 +17,16 @@ from centrode.cli.instants import echo_values
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
+from centrode.model.explanatory_note import STANDARDS
 
 if TYPE_CHECKING:
+    from centrode.model.explanatory_note import Standard
     from centrode.render.document.blocks import Report
 
 # What they import is too much for a list of commands.
-_options, _writing = (
+_options, _writing, _outline = (
     functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
-    for name in ("report.study", "report.files")
+    for name in ("report.study", "report.files", "render.document.outline")
 )
 
 
@@ -80,6 +82,24 @@ _options, _writing = (
         "and real where it can be computed."
     ),
 )
+@click.option(
+    "--standard",
+    type=click.Choice(STANDARDS),
+    help=mark("Page style: GOST 2.105, DSTU 3008 or plain; of a note by default that of the language."),
+)
+@click.option("--rows", type=int, metavar=mark("N"), help=mark("Rows of a table over the motion, at most."))
+@click.option("--positions", type=int, metavar=mark("N"), help=mark("Positions in the plan of positions."))
+@click.option(
+    "--rk4-steps",
+    type=int,
+    metavar=mark("N"),
+    help=mark("Also integrate by N fixed Runge-Kutta steps: their rows and their errors."),
+)
+@click.option(
+    "--angle-step",
+    metavar=mark("ANGLE"),
+    help=mark('Reading step of directions in the graph-analytic check ("1 deg"); exact by default.'),
+)
 def report(
     description: str,
     out: Path | None,
@@ -90,6 +110,11 @@ def report(
     digits: int | None,
     full: bool | None,
     motion: Literal["real", "mean"] | None,
+    standard: Standard | None,
+    rows: int | None,
+    positions: int | None,
+    rk4_steps: int | None,
+    angle_step: str | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
     described = library.load_either(description)
@@ -104,6 +129,11 @@ def report(
             digits,
             full,
             motion,
+            standard,
+            rows,
+            positions,
+            rk4_steps,
+            angle_step,
         )
     if isinstance(described, ct.Mechanism):
         echo_values(described, *(("--at", place) for place in places))
@@ -138,7 +168,11 @@ def _names_in(text: str) -> tuple[str, ...]:
 
 def _summary(made: Report) -> str:
     """Title, and chapters with their numbers."""
-    chapters = [(str(number), chapter.title) for number, chapter in enumerate(made.chapters, start=1)]
+    chapters = [
+        (heading.number, heading.title)
+        for chapter in _outline().outline_of(made)
+        for heading in chapter.headings
+    ]
     return f"{made.title}\n\n{render.aligned(chapters)}"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol, TypeAlias
 
@@ -640,11 +640,13 @@ class IntegrationResults:
     mechanism : Mechanism
     integration : the dataset of `integrate`
     closed : the motion in closed form over the same range, whose curves stand under the integrated ones
+    fixed : the dataset of `integrate` by fixed steps that a document has besides; None where nobody wishes it
     """
 
     mechanism: Mechanism
     integration: xr.Dataset
     closed: xr.Dataset
+    fixed: xr.Dataset | None = None
 
 
 def integration_results(
@@ -653,16 +655,23 @@ def integration_results(
     steps: int = 100,
     tolerance: float | None = None,
     stop: float | None = None,
+    rk4_steps: int | None = None,
 ) -> IntegrationResults:
     """The motion by integration, with the mechanism and the motion in closed form.
 
-    Arguments and failures are those of `integrate`; InputError also for a tolerance of fixed steps.
+    Arguments and failures are those of `integrate`; InputError also for a tolerance of fixed steps. With `rk4_steps`
+    the motion by so many fixed steps stands beside it.
     """
     if tolerance is not None and method == "rk4":
         what = _("fixed steps have no tolerance")
         raise InputError("--tolerance", what, _("add --method adaptive, or increase --steps"))
     integration = integrate(mechanism, method, steps, FINE if tolerance is None else tolerance, stop)
-    return results_of_integration(mechanism, integration)
+    found = results_of_integration(mechanism, integration)
+    return (
+        found
+        if rk4_steps is None
+        else replace(found, fixed=integrate(mechanism, "rk4", rk4_steps, stop=stop))
+    )
 
 
 def results_of_integration(mechanism: Mechanism, integration: xr.Dataset) -> IntegrationResults:

@@ -33,6 +33,16 @@ from centrode.model.cam import (
 )
 from centrode.model.description import Description
 from centrode.model.drives import Drive
+from centrode.model.explanatory_note import (
+    FIRST_YEAR,
+    LAST_YEAR,
+    LINE_LENGTH,
+    MOST_SOURCES,
+    PROSE_LENGTH,
+    SOURCE_LENGTH,
+    STANDARDS,
+    TitlePage,
+)
 from centrode.model.follower_cam import (
     CONTACTS,
     MOST,
@@ -56,9 +66,12 @@ from centrode.model.settings import (
     AGAINST,
     ALONG,
     LEAST_DIGITS,
+    LEAST_ROWS,
     MOST_CHAPTERS,
     MOST_DIGITS,
-    PROSE_LENGTH,
+    MOST_POSITIONS,
+    MOST_RK4_STEPS,
+    MOST_ROWS,
     REACHABLE,
     SHAFTS,
     Assembly,
@@ -147,6 +160,25 @@ CHAPTER_TEXT: dict[str, Schema] = {
     key: {"type": "string", "maxLength": PROSE_LENGTH} for key in ("before", "after")
 }
 REPORT_DIGITS: Schema = {"type": "integer", "minimum": LEAST_DIGITS, "maximum": MOST_DIGITS}
+_LINE: Schema = {"type": "string", "minLength": 1, "maxLength": LINE_LENGTH}
+_PARAGRAPHS: Schema = {
+    "type": "string",
+    "minLength": 1,
+    "maxLength": PROSE_LENGTH,
+    "description": "paragraphs in Markdown",
+}
+TITLE_PAGE: dict[str, Schema] = {
+    **dict.fromkeys(("ministry", "institution", "faculty", "department", "work", "course", "title"), _LINE),
+    "variant": {"anyOf": [{"type": "integer"}, _LINE]},
+    **dict.fromkeys(("author", "group", "teacher", "city"), _LINE),
+    "year": {"type": "integer", "minimum": FIRST_YEAR, "maximum": LAST_YEAR},
+}
+NOTE: dict[str, Schema] = {
+    "standard": {"enum": list(STANDARDS)},
+    "title_page": reference_to(TitlePage),
+    **dict.fromkeys(("task", "abstract", "introduction", "conclusions"), _PARAGRAPHS),
+    "sources": list_of({"type": "string", "minLength": 1, "maxLength": SOURCE_LENGTH}, 0, MOST_SOURCES),
+}
 _NAMES = list_of(NAME, 2, 2)
 _COORDINATES = list_of(quantity_schema("length"), 2, 3)
 _PAIR = list_of(quantity_schema("ratio"), 2, 2)
@@ -319,11 +351,17 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "sense": {"enum": [*ALONG, *AGAINST]},
     },
     ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
     ReportWishes: {
+        **NOTE,
         "chapters": CHAPTERS,
         "instants": list_of(AMOUNT, 0, reading.INSTANTS),
         "points": list_of(NAME, 0, reading.POINTS),
         "digits": REPORT_DIGITS,
+        "rows": {"type": "integer", "minimum": LEAST_ROWS, "maximum": MOST_ROWS},
+        "positions": {"type": "integer", "minimum": 2, "maximum": MOST_POSITIONS},
+        "rk4_steps": {"type": "integer", "minimum": 1, "maximum": MOST_RK4_STEPS},
+        "angle_step": above_zero("angle"),
         "full": {"type": "boolean"},
         "motion": {"enum": ["real", "mean"]},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
@@ -413,7 +451,9 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "show_undercut": {"type": "boolean"},
     },
     ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
     CamReportWishes: {
+        **NOTE,
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,
@@ -502,7 +542,9 @@ CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
     },
     ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
     CamReportWishes: {
+        **NOTE,
         "chapters": CHAPTERS,
         "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
         "digits": REPORT_DIGITS,

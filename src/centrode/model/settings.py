@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any, Literal
@@ -12,6 +11,7 @@ from pydantic import AfterValidator, Field, PlainValidator
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
+from centrode.model.explanatory_note import ExplanatoryNote, read_prose
 from centrode.model.reading import (
     AS_DICT,
     KEY,
@@ -320,30 +320,26 @@ class Machine(DescriptionPart):
 LEAST_DIGITS, MOST_DIGITS, DIGITS = 2, 12, 5
 """Significant digits of a report's numbers: at least, at most, and where nothing is said."""
 MOST_CHAPTERS = 100
-PROSE_LENGTH = 20_000
-"""Characters of what may be written before or after a chapter."""
+LEAST_ROWS, MOST_ROWS = 2, 1000
+"""Rows of a table over a motion, at least and at most."""
+MOST_POSITIONS = 36
+"""Positions in one plan: more cannot be distinguished in a drawing."""
+MOST_RK4_STEPS = 100_000
 
 
-def read_digits(value: object) -> int:
-    """A number of significant digits."""
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=value_text(value)))
-    if not LEAST_DIGITS <= value <= MOST_DIGITS:
-        what = _("{key} must lie between {least} and {most}, got {value}")
-        raise Problem(what.format(key=KEY, least=LEAST_DIGITS, most=MOST_DIGITS, value=value_text(value)))
-    return value
+def whole_number(least: int, most: int) -> PlainValidator:
+    """A whole number between bounds."""
 
+    def read(value: object) -> int:
+        if isinstance(value, bool) or not isinstance(value, int):
+            what = _("{key} must be a whole number, got {value}")
+            raise Problem(what.format(key=KEY, value=value_text(value)))
+        if not least <= value <= most:
+            what = _("{key} must lie between {least} and {most}, got {value}")
+            raise Problem(what.format(key=KEY, least=least, most=most, value=value_text(value)))
+        return value
 
-def read_prose(value: object) -> str:
-    """A text of several lines."""
-    if not isinstance(value, str):
-        raise Problem(_("expected a text, got {value}").format(value=value_text(value)))
-    if len(value) > PROSE_LENGTH:
-        what = _("a text has at most {most} characters, got {count}")
-        raise Problem(what.format(most=PROSE_LENGTH, count=len(value)), _("shorten it"))
-    if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in "\n\r\t" for letter in value):
-        raise Problem(_("{key} has control characters").format(key=KEY), _("remove them"))
-    return value
+    return PlainValidator(read)
 
 
 class ChapterText(DescriptionPart):
@@ -366,7 +362,7 @@ ChapterTexts = Annotated[
 ]
 
 
-class CamReportWishes(DescriptionPart):
+class CamReportWishes(ExplanatoryNote):
     """What the report of a cam is to hold; what is left out is chosen by the report.
 
     Attributes
@@ -384,12 +380,12 @@ class CamReportWishes(DescriptionPart):
 
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
     instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
-    digits: Annotated[int, PlainValidator(read_digits)] | None = None
+    digits: Annotated[int, whole_number(LEAST_DIGITS, MOST_DIGITS)] | None = None
     full: Flag | None = None
     text: ChapterTexts = FrozenMap({})
 
 
-class ReportWishes(DescriptionPart):
+class ReportWishes(ExplanatoryNote):
     """What the report of a mechanism is to hold; what is left out is chosen by the report.
 
     Attributes
@@ -406,6 +402,14 @@ class ReportWishes(DescriptionPart):
     motion : "real" or "mean"
         Whose forces are told: at the real speed and acceleration of the machine, or at its mean speed; the real one
         where it can be computed if left out.
+    rows : int
+        Of a table over the motion, at most.
+    positions : int
+        In the plan of positions.
+    rk4_steps : int
+        Fixed Runge-Kutta steps, whose rows and errors the chapter on integration has as well.
+    angle_step : float [rad]
+        To which directions of drawings are read in the graph-analytic check; exactly if left out.
     text : names of chapters -> ChapterText
         Own text before and after chapters.
     """
@@ -413,7 +417,11 @@ class ReportWishes(DescriptionPart):
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
     instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
     points: Annotated[tuple[Name, ...], bounded_list(reading.POINTS)] = ()
-    digits: Annotated[int, PlainValidator(read_digits)] | None = None
+    digits: Annotated[int, whole_number(LEAST_DIGITS, MOST_DIGITS)] | None = None
+    rows: Annotated[int, whole_number(LEAST_ROWS, MOST_ROWS)] | None = None
+    positions: Annotated[int, whole_number(2, MOST_POSITIONS)] | None = None
+    rk4_steps: Annotated[int, whole_number(1, MOST_RK4_STEPS)] | None = None
+    angle_step: Annotated[float, quantity("angle", positive)] | None = None
     full: Flag | None = None
     motion: Annotated[Literal["real", "mean"], choice("real", "mean")] | None = None
     text: ChapterTexts = FrozenMap({})

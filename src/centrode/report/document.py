@@ -22,6 +22,7 @@ from centrode.render.document.numbering import caption_blocks, number_blocks, re
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
+from centrode.report.note import CONCLUSIONS, as_note, standard_of
 from centrode.report.opening import move_players, opening_of
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
@@ -82,17 +83,28 @@ def report(
     with nullcontext() if language is None else speaking(language):
         study = ReportStudy(description, settle_options(description, options, CHAPTERS))
         study.assemble()
-        wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
+        note = description.report
+        standard = study.wishes.standard
+        is_note = note.is_note or standard in ("gost", "dstu")
+        wanted = {key: kind for key, kind in CHAPTERS.items() if _is_wanted(key, study, is_note)}
         chapters = tuple(_chapters(wanted, study, said))
         opening = opening_of(study, chapters)
         if not study.wishes.full:
             opening, chapters = move_players(opening, gather_checks(chapters))
         title = _(description.title) or name or _("Mechanism")
         subtitle = _("Computed by centrode {version}").format(version=__version__)
-        made = Report(
-            title, subtitle, chosen_language(), caption_blocks(chapters), opening, _description_text(study)
-        )
-        return refer_to_figures(number_blocks(made))
+        language = chosen_language()
+        made = Report(title, subtitle, language, caption_blocks(chapters), opening, _description_text(study))
+        made = refer_to_figures(number_blocks(made))
+        if is_note:
+            made = as_note(made, note, functools.partial(_prose_sections, place="before"))
+        return replace(made, standard=standard_of(standard, is_note, language))
+
+
+def _is_wanted(key: str, study: ReportStudy, is_note: bool) -> bool:
+    """Whether a chapter belongs to the report: conclusions end a note, or are named."""
+    named = study.wishes.chapters is not None and key in study.wishes.chapters
+    return named or is_note if key == CONCLUSIONS else study.wants(key)
 
 
 def _description_text(study: ReportStudy) -> DescriptionText:

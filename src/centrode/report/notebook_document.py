@@ -50,7 +50,9 @@ def notebook_document(report: Report) -> bytes:
 
 
 def _cells(report: Report) -> Iterator[Cell]:
-    yield _words(f"# {_shown(report.title)}\n\n{_shown(report.subtitle)}")
+    yield _words(_head(report))
+    for chapter in (chapter for chapter in report.chapters if chapter.role == "front"):
+        yield from _chapter(chapter, report.language, None)
     description = report.description
     if description is not None:
         yield _code(BEGIN.format(language=report.language))
@@ -60,7 +62,20 @@ def _cells(report: Report) -> Iterator[Cell]:
         if description.subject == "mechanism":
             yield _code(f"instants = {list(description.instants)!r}")
     for chapter in report.chapters:
-        yield from _chapter(chapter, report.language, description)
+        if chapter.role != "front":
+            yield from _chapter(chapter, report.language, description)
+
+
+def _head(report: Report) -> str:
+    """The title with what was computed, or the lines of the title page."""
+    page = report.title_page
+    if page is None:
+        return f"# {_shown(report.title)}\n\n{_shown(report.subtitle)}"
+    people = (f"{label}: {name}" for label, name in page.people)
+    lines = [*page.head, page.work, page.course, "", page.variant, *people, page.foot]
+    shown = [_shown(line) for line in lines]
+    shown[len(page.head) + 2] = f"# {_shown(report.title)}"
+    return "\n\n".join(line for line in shown if line)
 
 
 def _chapter(chapter: ChapterBlocks, language: str, description: DescriptionText | None) -> Iterator[Cell]:

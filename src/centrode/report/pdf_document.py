@@ -15,7 +15,6 @@ import typst
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import (
     Block,
-    ChapterBlocks,
     CheckBlock,
     FormulaBlock,
     ItemsBlock,
@@ -29,11 +28,14 @@ from centrode.render.document.blocks import (
     Span,
     SystemBlock,
     TableBlock,
+    TitlePageBlocks,
 )
 from centrode.render.document.figures import picture_width
 from centrode.render.document.numbering import number_blocks
+from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
+from centrode.report.page_styles import page_style
 from centrode.report.spoken_formulas import spoken_formula, spoken_picture, spoken_relations, spoken_system
 from centrode.report.texts import parts_of
 
@@ -65,14 +67,28 @@ class Source:
     def _document(self, report: Report) -> Iterator[str]:
         contents = _("Contents")
         yield '#import "style.typ": *'
+        outline = list(outline_of(report))
+        front = [one for one in outline if one.chapter.role == "front"]
+        opening = "none" if report.is_note else self._opening(report.opening)
+        before = "\n".join(line for one in front for line in self._chapter(one, report))
+        note = (
+            f", note: true, cover: {_cover(report.title_page)}, front: [{before}]" if report.is_note else ""
+        )
+        if report.standard != "plain":
+            # typst's own words are shorter than the standards have them
+            words = (_("Figure {number}"), _("Table {number}"))
+            figure, table = (quote(word.format(number="").strip()) for word in words)
+            note += f", figure-word: {figure}, table-word: {table}"
         yield (
             f"#show: document.with(title: {quote(report.title)}, subtitle: {quote(report.subtitle)},"
             f" language: {quote(report.language)}, contents: {quote(contents)},"
-            f" opening: {self._opening(report.opening)},"
-            f" long: {'true' if _lines_of_contents(report) > FIRST_PAGE else 'false'})"
+            f" opening: {opening},"
+            f" long: {'true' if _lines_of_contents(report) > FIRST_PAGE else 'false'}"
+            f"{note})"
         )
-        for chapter in report.chapters:
-            yield from self._chapter(chapter)
+        for one in outline:
+            if one.chapter.role != "front":
+                yield from self._chapter(one, report)
 
     def _opening(self, blocks: Sequence[Block]) -> str:
         """What stands below the title: pictures stay there, all others float; paper plays no motion."""
@@ -83,17 +99,21 @@ class Source:
         )
         return f"[{''.join(parts)}]" if blocks else "none"
 
-    def _chapter(self, chapter: ChapterBlocks) -> Iterator[str]:
-        yield f"#heading(level: 1, {quote(chapter.title)})"
+    def _chapter(self, outlined: OutlinedChapter, report: Report) -> Iterator[str]:
+        chapter = outlined.chapter
+        for heading in outlined.headings:
+            yield _heading(heading, chapter.role)
         if chapter.missing:
             words = _("This chapter could not be made: {reason}").format(reason=chapter.missing)
             yield f"#missing({quote(words)})"
-        for section in chapter.sections:
-            yield from self._section(section)
+        if outlined.opens:
+            yield f"#{self._opening(report.opening)}" if report.opening else ""
+        for title, section in outlined.sections:
+            yield from self._section(title, section, chapter.role)
 
-    def _section(self, section: SectionBlocks) -> Iterator[str]:
-        if section.title:
-            yield f"#heading(level: 2, {quote(section.title)})"
+    def _section(self, title: Heading | None, section: SectionBlocks, role: str) -> Iterator[str]:
+        if title is not None:
+            yield _heading(title, role)
         for number, block in enumerate(section.blocks):
             shown = self._shown(block)
             yield f"#block(sticky: true, {shown[1:]})" if _announces(section.blocks[number:]) else shown
@@ -164,6 +184,24 @@ class Source:
     @_shown.register
     def _check(self, block: CheckBlock) -> str:
         return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
+
+
+def _heading(heading: Heading, role: str) -> str:
+    """A heading, which typst numbers; of elements and appendices without, and their sections in no contents."""
+    if role == "chapter":
+        return f"#heading(level: {heading.level}, {quote(heading.title)})"
+    listed = "true" if heading.level == 1 and role != "front" else "false"
+    kind = "element" if heading.level == 1 else "heading.with(numbering: none)"
+    return f"#{kind}(level: {heading.level}, outlined: {listed}, {quote(heading.title)})"
+
+
+def _cover(page: TitlePageBlocks | None) -> str:
+    """The title page; none without one."""
+    if page is None:
+        return "none"
+    people = _array([_strings(one) for one in page.people])
+    lines = (page.work, page.course, page.title, page.variant)
+    return f"title-page({_strings(page.head)}, {', '.join(map(quote, lines))}, {people}, {quote(page.foot)})"
 
 
 def _lines_of_contents(report: Report) -> int:
@@ -293,6 +331,7 @@ def pdf_document(report: Report) -> bytes:
     files: Any = {
         "main": source.text.encode(),
         "style.typ": STYLE.read_bytes(),
+        "page.typ": page_style(report.standard).typst().encode(),
         **source.files,
     }
     compiler = typst.Compiler(ignore_system_fonts=True)

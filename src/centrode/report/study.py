@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -19,10 +19,20 @@ from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
+from centrode.model.explanatory_note import STANDARDS, Standard
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
-from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
+from centrode.model.settings import (
+    DIGITS,
+    LEAST_DIGITS,
+    LEAST_ROWS,
+    MOST_DIGITS,
+    MOST_POSITIONS,
+    MOST_RK4_STEPS,
+    MOST_ROWS,
+    ReportWishes,
+)
 from centrode.model.units import read_quantity
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
@@ -48,6 +58,11 @@ class ReportOptions:
         Chapters that somebody has chosen are full unless this or the description says otherwise
     motion : of the forces: "real" at the real speed and acceleration of a machine in steady motion, "mean" at its mean
         speed; by default the real one where it can be computed
+    standard : page style and captions, "plain", "gost" or "dstu"
+    rows : of a table over the motion, at most
+    positions : in the plan of positions
+    rk4_steps : fixed Runge-Kutta steps, whose rows and errors the chapter on integration has as well
+    angle_step : to which directions of drawings are read [rad], or a text with a unit
 
     Examples
     --------
@@ -62,11 +77,19 @@ class ReportOptions:
     digits: int | None = None
     full: bool | None = None
     motion: MotionOfDrive | None = None
+    standard: Standard | None = None
+    rows: int | None = None
+    positions: int | None = None
+    rk4_steps: int | None = None
+    angle_step: float | str | None = None
 
 
 @dataclass(frozen=True)
 class Wishes:
-    """The same, settled; chapters and points are None where nobody chose, instants empty."""
+    """The same, settled; chapters and points are None where nobody chose, instants empty.
+
+    `arguments` are name of a topic -> arguments of its computation.
+    """
 
     chapters: tuple[str, ...] | None
     instants: tuple[float, ...]
@@ -74,6 +97,9 @@ class Wishes:
     digits: int
     full: bool
     motion: MotionOfDrive | None = None
+    standard: Standard | None = None
+    rows: int | None = None
+    arguments: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 def settle_options(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
@@ -93,9 +119,14 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
         options.digits if options.digits is not None else asked.digits or DIGITS,
         chapters is not None if full is None else full,
         _first(options.motion, asked.motion if isinstance(asked, ReportWishes) else None),
+        _first(options.standard, asked.standard),
+        *_rows_and_arguments(description, options),
     )
     if found.motion is not None:
         check_motion(found.motion)
+    if found.standard not in (None, *STANDARDS):
+        what = _("there is no standard {name}").format(name=value_text(found.standard))
+        raise InputError("standard", what, nearest(str(found.standard), list(STANDARDS)))
     where = "chapters" if options.chapters is not None else "[report] chapters"
     if found.chapters is not None and not found.chapters:
         raise InputError(where, _("no chapter is named"), nearest("", list(known)))
@@ -110,6 +141,40 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
         said = what.format(least=LEAST_DIGITS, most=MOST_DIGITS, digits=found.digits)
         raise InputError("digits", said)
     return found
+
+
+def _rows_and_arguments(
+    description: Mechanism | AnyCam, options: ReportOptions
+) -> tuple[int | None, dict[str, dict[str, Any]]]:
+    """Rows of tables over the motion, and what the topics of a linkage are computed with."""
+    asked = description.report
+    if not isinstance(asked, ReportWishes):
+        given = (options.rows, options.positions, options.rk4_steps, options.angle_step)
+        if any(one is not None for one in given):
+            raise InputError("report", _("rows, positions and steps are those of linkages"))
+        return None, {}
+    for name, value, least, most in (
+        ("rows", options.rows, LEAST_ROWS, MOST_ROWS),
+        ("positions", options.positions, 2, MOST_POSITIONS),
+        ("rk4_steps", options.rk4_steps, 1, MOST_RK4_STEPS),
+    ):
+        if value is not None and not least <= value <= most:
+            what = _("{value} is not a whole number between {least} and {most}")
+            raise InputError(name, what.format(value=value_text(value), least=least, most=most))
+    step = options.angle_step
+    if step is not None:
+        refuses = description.display.refuses_bare_angles
+        step = read_quantity(step, "angle", "angle_step", refuses_bare=refuses)
+    wished: dict[str, dict[str, Any]] = {
+        "plan": {"positions": _first(options.positions, asked.positions)},
+        "integrate": {"rk4_steps": _first(options.rk4_steps, asked.rk4_steps)},
+        "diagrams": {"angle_step": _first(step, asked.angle_step)},
+    }
+    chosen = {
+        topic: {name: value for name, value in arguments.items() if value is not None}
+        for topic, arguments in wished.items()
+    }
+    return _first(options.rows, asked.rows), chosen
 
 
 def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> float:

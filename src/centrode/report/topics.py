@@ -35,7 +35,9 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
         return left_out(chapter.name, _(chapter.title), reason)
     if chapter.name not in sheet.chapters:
         return None
-    made = document_chapter(chapter.name, sheet, study.numbers, full=study.wishes.full)
+    made = document_chapter(
+        chapter.name, sheet, study.numbers, full=study.wishes.full, rows=study.wishes.rows
+    )
     return replace(made, code=chapter.code)
 
 
@@ -47,6 +49,7 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
         arguments = dict(document.arguments)
         if any(chapter.name in (study.wishes.chapters or ()) for chapter in document.chapters):
             arguments |= document.chosen_arguments
+        arguments |= study.wishes.arguments.get(topic.name, {})
         if document.instants:
             wished = study.is_cam or document.wished
             arguments["instants"] = (

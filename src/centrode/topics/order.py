@@ -72,6 +72,7 @@ CHAPTERS = (
     "walking",
     "contact",
     "choice",
+    "conclusions",
 )
 """As a document has them."""
 

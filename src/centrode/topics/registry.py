@@ -663,6 +663,7 @@ RUN = Topic(
                 mark("Plots of the motion"),
                 code="for figure in ct.figures(ct.motion(mechanism)).values():\n    display(figure)",
             ),
+            ChapterOfTopic("conclusions", mark("Conclusions")),
         ),
         add_instants=Lazily("centrode.dynamics.motion_results", "with_instants"),
         wished=True,

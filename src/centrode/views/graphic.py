@@ -404,7 +404,8 @@ def _chapter(results: GraphicResults) -> Chapter:
         title = instant_title(results.mechanism, results.motion, sample)
         sections.append(Section(title, tuple(_instant(results, sample, check))))
         if isinstance(check, GraphicCheck):
-            sections.append(Section(NOTHING, (_table(check, COMPARISON),), detail=True))
+            read_exactly = check.diagrams.board.angle_step is None
+            sections.append(Section(NOTHING, (_table(check, COMPARISON),), detail=read_exactly))
     return Chapter(Sentence("Graph-analytic check"), tuple(sections))
 
 
@@ -432,7 +433,7 @@ def _instant(
     ):
         yield from _steps(diagram)
         yield Illustration(pages[name])
-    yield _agreement(check)
+    yield _agreement(check) if check.diagrams.board.angle_step is None else _reading_errors(check)
 
 
 def _steps(diagram: Diagram) -> Iterator[Block]:
@@ -458,10 +459,27 @@ def _formula(relations: list[VectorNotation]) -> Formula:
     )
 
 
-def _agreement(check: GraphicCheck) -> Check:
+def _worst_share(check: GraphicCheck) -> float:
     """The greatest difference of the drawing from the closed forms, over the greatest number of its kind."""
     sizes = _sizes(check)
-    worst = max((abs(row.difference) / sizes[row.quantity] for row in check.rows), default=0.0)
+    return max((abs(row.difference) / sizes[row.quantity] for row in check.rows), default=0.0)
+
+
+def _reading_errors(check: GraphicCheck) -> Paragraph:
+    """How far a drawing whose directions are read to a step is from the closed forms."""
+    return Paragraph(
+        Sentence(
+            "The drawing is read by hand ({reading}); it differs from the closed forms by at most {share} of the"
+            " greatest number of its kind in the motion.",
+            reading=_reading(check.diagrams.board),
+            share=Number(_worst_share(check), digits=".1%"),
+        )
+    )
+
+
+def _agreement(check: GraphicCheck) -> Check:
+    """The same of a drawing that is read exactly, which only rounding may make differ."""
+    worst = _worst_share(check)
     statement = Sentence(
         "The drawing, read exactly, agrees with the closed forms: the greatest difference is {share} of the"
         " greatest number of its kind in the motion, {allowed} is allowed.",

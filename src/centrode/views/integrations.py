@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from centrode.errors import Status
 from centrode.model.labels import GEAR, ROLLING
 from centrode.sheets.plots import AxisLabel, Curve, CurvePanel, EventKind, Overlay, Plot
 from centrode.sheets.sheet import (
+    Block,
     Chapter,
     Check,
     Column,
@@ -19,13 +21,26 @@ from centrode.sheets.sheet import (
     FactTable,
     Failure,
     Illustration,
+    Paragraph,
     Section,
     Sheet,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Symbol, Text, Title
+from centrode.sheets.texts import (
+    NOTHING,
+    Counted,
+    Expression,
+    Joined,
+    Name,
+    Number,
+    Sentence,
+    Symbol,
+    Text,
+    Title,
+    Unit,
+)
 from centrode.views.abscissa import events_of, over_time
-from centrode.views.columns import columns_of, counted_statuses, numeric_columns
+from centrode.views.columns import columns_of, counted_statuses, numeric_columns, rows_reached
 from centrode.views.equations import constraint_text
 from centrode.views.instants import place_number
 from centrode.views.motion_plots import (
@@ -295,7 +310,7 @@ def _errors(results: IntegrationResults) -> Plot:
 
 
 def _chapter(results: IntegrationResults, facts: tuple[Fact, ...]) -> Chapter:
-    """The second route: the equations in Cauchy form integrated, beside the closed forms."""
+    """The second route: the equations in Cauchy form integrated, beside the closed forms; fixed steps where wished."""
     integration = results.integration
     worst = float(np.nanmax(np.abs(integration["angle_difference"].values), initial=0.0))
     check = Check(
@@ -310,9 +325,51 @@ def _chapter(results: IntegrationResults, facts: tuple[Fact, ...]) -> Chapter:
         AGREE,
     )
     caption = Sentence("Difference of the integrated motion from the closed-form solution")
-    sections = (
+    sections: tuple[Section, ...] = (
         Section(NOTHING, (FactTable(facts),), detail=True),
         Section(NOTHING, (check,)),
         Section(NOTHING, (Illustration(ERRORS, caption),), detail=True),
     )
+    if results.fixed is not None:
+        fixed = replace(results, integration=results.fixed)
+        sections = (
+            *sections,
+            Section(Sentence("Fixed steps of the Runge-Kutta method"), tuple(_fixed_steps(fixed))),
+        )
     return Chapter(Sentence("Integration of the equations"), sections)
+
+
+def _fixed_steps(results: IntegrationResults) -> Iterator[Block]:
+    """Rows by fixed steps as a program of an assignment prints them, and their errors over the range."""
+    integration = results.integration
+    worst = np.abs(integration["angle_difference"].values)
+    yield Paragraph(
+        Sentence(
+            "{method}. The columns are those of a table of fixed steps: time, angles, and how far each angle is from"
+            " the closed-form solution; the greatest difference is {worst}.",
+            method=_method(results),
+            worst=_small(float(np.nanmax(worst, initial=0.0)), "rad"),
+        )
+    )
+    for stop in _stops(results):
+        yield Paragraph(stop, clause=True)
+    yield _fixed_rows(results)
+    yield Illustration(_errors(results), Sentence("Drift and error of the fixed steps over the range"))
+
+
+def _fixed_rows(results: IntegrationResults) -> Table:
+    """Time, angles and errors of the angles of the links that move, in rows at even steps."""
+    integration = results.integration
+    columns = [Column("", integration["time"].values, "s", Expression("t"))]
+    angles = {name: integration["angle"].sel(link=name).values for name in results.mechanism.link_names}
+    moving = {name: values for name, values in angles.items() if np.ptp(values[np.isfinite(values)]) > 0}
+    for name, values in moving.items():
+        columns.append(Column("", values, "rad", Expression("phi_({name})", name=Name(name))))
+    for name in moving:
+        errors = integration["angle_difference"].sel(link=name).values
+        if np.nanmax(np.abs(errors), initial=0.0) > ROUNDING:
+            head = Joined((Expression("Delta phi_({name})", name=Name(name)), Unit("rad")))
+            cells = tuple(NOTHING if np.isnan(one) else _small(float(one)) for one in errors)
+            columns.append(Column("", cells, head=head))
+    rows = rows_reached(integration["status"])
+    return Table(tuple(columns), Sentence("Rows of the integration by fixed steps"), rows)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+import lazy_loader
 import numpy as np
 
 from centrode.errors import STATUSES_OF_MOTION, CentrodeError, Status
@@ -53,6 +54,9 @@ if TYPE_CHECKING:
     from centrode.sheets.sheet import Block, Table
     from centrode.views.motion_plots import Rows
 
+# what conclusions rest on is too much for a command that only prints
+_conclusions_view = partial(lazy_loader.load, "centrode.views.conclusions", suppress_warning=True)
+
 EVENT_NAMES = {LIMIT: "limit", CHANGE_POINT: "change_point"}
 """Kind of an event -> what a scalar is called that has its place."""
 
@@ -71,6 +75,7 @@ def sheet(results: MotionResults) -> Sheet:
     chapters = {
         "motion": partial(_motion_chapter, results),
         "plots": partial(_plots_chapter, results, pictures),
+        "conclusions": partial(_conclusions, results),
     }
     if results.shown is not None:
         chapters["tables"] = partial(_tables_chapter, results, results.shown)
@@ -373,6 +378,12 @@ def _motion_chapter(results: MotionResults) -> Chapter:
     """The mechanism in motion, which a page plays and a PDF shows in its initial position."""
     player = MotionPlayer(results.mechanism, results.motion)
     return Chapter(Sentence("Motion"), (Section(NOTHING, (player,)),))
+
+
+def _conclusions(results: MotionResults) -> Chapter:
+    """What follows from the results."""
+    chapter: Chapter = _conclusions_view().conclusions_chapter(results)
+    return chapter
 
 
 TOGETHER: Mapping[tuple[str, ...], Sentence] = {

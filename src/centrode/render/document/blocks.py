@@ -16,6 +16,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from centrode.model.explanatory_note import Standard
 from centrode.render.document.typst import shown as shown
 
 
@@ -284,6 +285,8 @@ class ChapterBlocks:
     missing : why it could not be made, and what would help
     computed : False where it only says why nothing was computed
     code : what computes it in a notebook
+    role : a numbered chapter, what stands before the contents, what has no number, or an appendix
+    part : title of the chapter of a note that it is a section of; empty of one that stands for itself
     """
 
     name: str
@@ -292,6 +295,29 @@ class ChapterBlocks:
     missing: str = ""
     computed: bool = True
     code: str = ""
+    role: Literal["chapter", "front", "element", "appendix"] = "chapter"
+    part: str = ""
+
+
+@dataclass(frozen=True)
+class TitlePageBlocks:
+    """Lines of a title page, as plain text; what is empty is not there.
+
+    Attributes
+    ----------
+    head : where the work is done, line by line from the top
+    work, course, title, variant : in the middle
+    people : what somebody did, and who
+    foot : place and year
+    """
+
+    head: tuple[str, ...]
+    work: str
+    course: str
+    title: str
+    variant: str
+    people: tuple[tuple[str, str], ...]
+    foot: str
 
 
 @dataclass(frozen=True)
@@ -321,6 +347,9 @@ class Report:
     chapters : in the order of the document
     opening : blocks below the title, before the contents: the kinematic scheme
     description : what the report is about; None of a sheet about many
+    standard : of the page and the captions
+    title_page : None where there is none
+    is_note : contents stand behind what comes before them, and the opening in the first numbered chapter
     """
 
     title: str
@@ -329,6 +358,9 @@ class Report:
     chapters: tuple[ChapterBlocks, ...] = field(default=())
     opening: tuple[Block, ...] = ()
     description: DescriptionText | None = None
+    standard: Standard = "plain"
+    title_page: TitlePageBlocks | None = None
+    is_note: bool = False
 
     def __repr__(self) -> str:
         """Its title and chapters: all its blocks would fill many screens."""

@@ -54,11 +54,20 @@ COMPACT_ROWS = 13
 """Rows that a table over a motion has at most in a compact document: a turn in steps of 30 degrees."""
 
 
-def document_chapter(name: str, sheet: Sheet, numbers: Numbers, *, full: bool = True) -> blocks.ChapterBlocks:
-    """A chapter of a sheet, spelled and with its pictures drawn; unless `full`, without its details."""
+def document_chapter(
+    name: str, sheet: Sheet, numbers: Numbers, *, full: bool = True, rows: int | None = None
+) -> blocks.ChapterBlocks:
+    """A chapter of a sheet, spelled and with its pictures drawn; unless `full`, without its details.
+
+    Tables over a motion have at most `rows` rows, where that is given.
+    """
     chapter, spelling = sheet.chapters[name], DocumentSpelling(numbers)
     sections = tuple(
-        _section(section if full else _compact_section(section), sheet.pictures, spelling)
+        _section(
+            _with_rows(section if full else _compact_section(section, thin=rows is None), rows),
+            sheet.pictures,
+            spelling,
+        )
         for section in chapter.sections
         if full or not section.detail
     )
@@ -66,15 +75,46 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers, *, full: bool = 
     return blocks.ChapterBlocks(name, spelling.text(chapter.title), kept)
 
 
-def _compact_section(section: Section) -> Section:
+def _with_rows(section: Section, most: int | None) -> Section:
+    """A section whose tables over a motion have at most so many rows."""
+    if most is None:
+        return section
+    changed = (_choose_rows(one, most) if isinstance(one, Table) else one for one in section.blocks)
+    return replace(section, blocks=tuple(changed))
+
+
+def _choose_rows(table: Table, most: int) -> Table:
+    """A table over a motion with other rows at even steps, as many as there may be; a gap stays a gap."""
+    if table.rows is None or len(table.rows) < 2:
+        return table
+    gaps = np.diff(table.rows)
+    parts = (
+        range(row, row + gap) if gap <= 2 * gaps.min() else (row,)
+        for row, gap in zip(table.rows, gaps.tolist(), strict=False)
+    )
+    every = [*(row for part in parts for row in part), table.rows[-1]]
+    last = len(every) - 1
+    least = max(-(-last // (most - 1)), 1)
+    step = next((k for k in range(least, 2 * least + 1) if last % k == 0), None)
+    if step is None:  # the steps do not divide evenly
+        chosen = np.unique(np.linspace(0, last, most).round().astype(int)).tolist()
+    else:
+        chosen = list(range(0, last + 1, step))
+    return replace(table, rows=tuple(every[k] for k in chosen))
+
+
+def _compact_section(section: Section, *, thin: bool = True) -> Section:
     """A section without figures and columns that are details, its tables over a motion at fewer places."""
     kept = (block for block in section.blocks if not (isinstance(block, Illustration) and block.detail))
-    return replace(section, blocks=tuple(_compact(one) if isinstance(one, Table) else one for one in kept))
+    return replace(
+        section, blocks=tuple(_compact(one, thin) if isinstance(one, Table) else one for one in kept)
+    )
 
 
-def _compact(table: Table) -> Table:
+def _compact(table: Table, thin: bool) -> Table:
     columns = tuple(column for column in table.columns if not column.detail)
-    return _thin_table(replace(table, columns=columns))
+    compact = replace(table, columns=columns)
+    return _thin_table(compact) if thin else compact
 
 
 def _thin_table(table: Table) -> Table:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from centrode.locale import _, speaking
-from centrode.render.document.blocks import Report
+from centrode.render.document.blocks import Report, TitlePageBlocks
 from centrode.render.latex import escape
 from centrode.report.editable.pandoc import run_pandoc
 from centrode.report.editable.pictures import convert_pictures
 from centrode.report.editable.tree import Element, raw_block, raw_inline, tree_of
+from centrode.report.page_styles import page_style
 
 LANGUAGES = {"en": "english", "ru": "russian", "uk": "ukrainian"}
 """Names of languages in LaTeX."""
@@ -62,6 +63,26 @@ HEAD = r"""% Compiles with LuaLaTeX, XeLaTeX and pdfLaTeX (twice, for the conten
 \newcommand{\pandocbounded}[1]{#1}
 """
 
+TABLE_OF_CONTENTS = "\\tableofcontents"
+STANDARD_PAGE = r"""\usepackage{setspace,indentfirst,fancyhdr,titlesec,caption}
+\onehalfspacing
+\pagestyle{fancy}
+\fancyhf{}
+\renewcommand{\headrulewidth}{0pt}
+\titleformat{\section}[block]{\normalfont\bfseries}{\thesection}{1ex}{}
+\titleformat{name=\section,numberless}[block]{\normalfont\bfseries\centering}{}{0pt}{\MakeUppercase}
+\titleformat{\subsection}[block]{\normalfont\bfseries}{\thesubsection}{1ex}{}
+\titleformat{\subsubsection}[block]{\normalfont\bfseries}{\thesubsubsection}{1ex}{}
+\titlespacing*{\section}{\parindent}{*3}{*3}
+\titlespacing*{name=\section,numberless}{0pt}{*3}{*3}
+\titlespacing*{\subsection}{\parindent}{*3}{*2}
+\titlespacing*{\subsubsection}{\parindent}{*3}{*2}
+\pretocmd{\section}{\clearpage}{}{}
+\captionsetup{labelsep=endash}
+\captionsetup[table]{justification=raggedright,singlelinecheck=false}
+"""
+"""What notes by a standard have in their preamble besides: numbers of pages and headings, captions, spaces."""
+
 
 def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, bytes]]:
     """A report as LaTeX, and its figures as PDF by their names.
@@ -76,16 +97,24 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
     source, figures
     """
     with speaking(report.language):
-        tree, pictures = tree_of(report, _numbered_formula, _referred, "pdf")
         contents = _("Contents")
+        tree, pictures = tree_of(
+            report,
+            _numbered_formula,
+            _referred,
+            "pdf",
+            contents=lambda: [raw_block("latex", TABLE_OF_CONTENTS)],
+        )
+        words = (_("Figure {number}"), _("Table {number}"))
     body = run_pandoc(tree, "--from=json", "--to=latex-smart-auto_identifiers", "--wrap=preserve").decode()
     body = _in_folder(body, pictures, figures)
     letters = "".join(
         f"\\newunicodechar{{{letter}}}{{{code}}}\n" for letter, code in LETTERS.items() if letter in body
     )
     source = (
-        HEAD.replace("LANGUAGE", LANGUAGES[report.language]).replace("FIGURES", figures)
+        _head(report).replace("LANGUAGE", LANGUAGES[report.language]).replace("FIGURES", figures)
         + letters
+        + _page(report, [word.format(number="").strip() for word in words])
         + _beginning(report, contents)
         + body
         + "\\end{document}\n"
@@ -93,11 +122,55 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
     return source.encode(), convert_pictures(pictures, "pdf")
 
 
+def _head(report: Report) -> str:
+    """The preamble; a standard has a size of letters that `article` has not."""
+    if report.standard == "plain":
+        return HEAD
+    size = page_style(report.standard).size
+    return HEAD.replace("[11pt,a4paper]{article}", f"[{size:g}pt,a4paper]{{extarticle}}")
+
+
+def _page(report: Report, words: Sequence[str]) -> str:
+    """Margins, number of the page, headings and captions of a standard."""
+    if report.standard == "plain":
+        return ""
+    style = page_style(report.standard)
+    figure, table = words
+    place = "\\fancyhead[R]{\\thepage}" if style.number == "top-right" else "\\fancyfoot[C]{\\thepage}"
+    return (
+        f"\\geometry{{left={style.left:g}mm,right={style.right:g}mm,top={style.top:g}mm,bottom={style.bottom:g}mm}}\n"
+        f"\\setlength{{\\headheight}}{{17pt}}\n{STANDARD_PAGE}{place}\n"
+        f"\\setlength{{\\parindent}}{{{style.indent:g}mm}}\n"
+        f"\\AtBeginDocument{{\\renewcommand{{\\figurename}}{{{figure}}}\\renewcommand{{\\tablename}}{{{table}}}}}\n"
+    )
+
+
+def _cover(page: TitlePageBlocks) -> str:
+    """The title page."""
+    people = "".join(f"\\noindent {escape(f'{label}: {name}')}\\\\\n" for label, name in page.people)
+    middle = [f"{{\\bfseries {escape(page.work)}}}" if page.work else "", escape(page.course)]
+    middle += [f"{{\\Large\\bfseries {escape(page.title)}}}", escape(page.variant)]
+    lines = "\\\\[1ex]\n".join(one for one in middle if one)
+    head = "\\\\\n".join(map(escape, page.head))
+    box = f"\\begin{{minipage}}{{0.6\\textwidth}}\n{people}\\end{{minipage}}"
+    right = f"\\begin{{flushright}}{box}\\end{{flushright}}\n"
+    return (
+        f"\\begin{{titlepage}}\n\\centering\n{head}\n\n\\vfill\n{lines}\n\n\\vfill\n"
+        f"{right if page.people else ''}\\vfill\n{escape(page.foot)}\n\\end{{titlepage}}\n\\setcounter{{page}}{{2}}\n"
+    )
+
+
 def _beginning(report: Report, contents: str) -> str:
     title = escape(" ".join(report.title.split()))
     subtitle = escape(" ".join(report.subtitle.split()))
     # quotation marks are short for accents and dashes in these languages: here they are themselves
     plain = "" if report.language == "en" else '\\shorthandoff{"}\n'
+    if report.is_note:
+        cover = "\\maketitle\n" if report.title_page is None else _cover(report.title_page)
+        return (
+            f"\\setcounter{{secnumdepth}}{{3}}\n\\title{{{title}}}\n\\author{{}}\n\\date{{}}\n\n"
+            f"\\begin{{document}}\n{plain}\\renewcommand{{\\contentsname}}{{{contents}}}\n{cover}\n"
+        )
     return (
         f"\\title{{{title}}}\n\\author{{}}\n\\date{{{subtitle}}}\n\n\\begin{{document}}\n{plain}\\maketitle\n"
         f"\\renewcommand{{\\contentsname}}{{{contents}}}\n\\tableofcontents\n\n"

@@ -12,7 +12,6 @@ from typing import Any, TypeAlias
 from centrode.locale import _
 from centrode.render.document.blocks import (
     Block,
-    ChapterBlocks,
     CheckBlock,
     FormulaBlock,
     ItemsBlock,
@@ -26,9 +25,11 @@ from centrode.render.document.blocks import (
     Span,
     SystemBlock,
     TableBlock,
+    TitlePageBlocks,
 )
 from centrode.render.document.figures import picture_width
 from centrode.render.document.numbering import number_blocks
+from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.editable.mathematics import LatexFormulas, latex_formulas, spellings_of
 from centrode.report.spoken_formulas import spoken_picture
 from centrode.report.texts import blocks_of, parts_of, texts_of
@@ -54,6 +55,9 @@ class DocumentTree:
     number : (LaTeX of a displayed formula, its number) -> blocks
     refer : number of a formula -> what stands for it in a sentence
     file : ending of the pictures
+    cover : title page -> blocks, for what has no title page of its own
+    contents : what stands where the contents of a note are
+    unnumbered : (heading without a number, what it belongs to) -> the element; the writer's own if None
     pictures : name -> SVG of each picture, in their order
     """
 
@@ -61,36 +65,66 @@ class DocumentTree:
     number: Callable[[str, int], list[Element]]
     refer: Callable[[int], Element]
     file: str
+    cover: Callable[[TitlePageBlocks], list[Element]] = lambda _page: []
+    contents: Callable[[], list[Element]] = list
+    unnumbered: Callable[[Heading, str], Element] | None = None
     pictures: dict[str, bytes] = field(default_factory=dict)
 
     def document(self, report: Report) -> bytes:
         """The whole tree as pandoc reads it."""
-        scheme = [block for block in report.opening if not isinstance(block, Moving)]  # paper plays no motion
-        blocks = [one for block in scheme for one in self.shown(block)]
-        blocks += [one for chapter in report.chapters for one in self.chapter(chapter)]
+        blocks = [] if report.is_note else self._opening(report)
+        if report.title_page is not None:
+            blocks += self.cover(report.title_page)
+        outline = list(outline_of(report))
+        front = [one for one in outline if one.chapter.role == "front"]
+        blocks += [one for outlined in front for one in self.chapter(outlined, report)]
+        if report.is_note:
+            blocks += self.contents()
+        blocks += [
+            one
+            for outlined in outline
+            if outlined.chapter.role != "front"
+            for one in self.chapter(outlined, report)
+        ]
         details = {
             "title": [_text(report.title)],
             "subtitle": [_text(report.subtitle)],
             "lang": [_text(report.language)],
             "toc-title": [_text(_("Contents"))],
         }
+        if report.title_page is not None:  # the title stands on it
+            del details["title"], details["subtitle"]
         meta = {key: {"t": "MetaInlines", "c": value} for key, value in details.items()}
         return json.dumps({"pandoc-api-version": API, "meta": meta, "blocks": blocks}).encode()
 
-    def chapter(self, chapter: ChapterBlocks) -> Iterator[Element]:
-        """A chapter under its heading."""
-        yield _heading(1, chapter.title)
+    def _opening(self, report: Report) -> list[Element]:
+        """The scheme; paper plays no motion."""
+        return [one for block in report.opening if not isinstance(block, Moving) for one in self.shown(block)]
+
+    def chapter(self, outlined: OutlinedChapter, report: Report) -> Iterator[Element]:
+        """A chapter under its heading, and that of its part where it is the first of one."""
+        chapter = outlined.chapter
+        for heading in outlined.headings:
+            yield self.heading(heading, chapter.role)
         if chapter.missing:
             yield paragraph(
                 [_text(_("This chapter could not be made: {reason}").format(reason=chapter.missing))]
             )
-        for section in chapter.sections:
-            yield from self.section(section)
+        if outlined.opens:
+            yield from self._opening(report)
+        for title, section in outlined.sections:
+            yield from self.section(title, section, chapter.role)
 
-    def section(self, section: SectionBlocks) -> Iterator[Element]:
+    def heading(self, heading: Heading, role: str) -> Element:
+        """A heading, which the writer numbers unless it has no number."""
+        if role != "chapter" and self.unnumbered is not None:
+            return self.unnumbered(heading, role)
+        return _heading(heading, role)
+
+    def section(self, heading: Heading | None, section: SectionBlocks, role: str) -> Iterator[Element]:
         """A section, under its heading if it has one."""
-        if section.title:
-            yield _heading(2, section.title)
+        if heading is not None:
+            yield self.heading(heading, role)
         for block in section.blocks:
             yield from self.shown(block)
 
@@ -209,6 +243,9 @@ def tree_of(
     number: Callable[[str, int], list[Element]],
     refer: Callable[[int], Element],
     file: str,
+    cover: Callable[[TitlePageBlocks], list[Element]] = lambda _page: [],
+    contents: Callable[[], list[Element]] = list,
+    unnumbered: Callable[[Heading, str], Element] | None = None,
 ) -> tuple[bytes, Mapping[str, bytes]]:
     """The tree of a report and the pictures that it names."""
     report = number_blocks(report)
@@ -217,7 +254,7 @@ def tree_of(
         spelled += [part.text for text in texts_of(block) for part in parts_of(text) if part.mathematics]
         if isinstance(block, FormulaBlock | SystemBlock):
             spelled += spellings_of(block)
-    tree = DocumentTree(latex_formulas(spelled), number, refer, file)
+    tree = DocumentTree(latex_formulas(spelled), number, refer, file, cover, contents, unnumbered)
     return tree.document(report), tree.pictures
 
 
@@ -241,6 +278,11 @@ def paragraph(inlines: list[Element]) -> Element:
     return _node("Para", inlines)
 
 
+def plain_text(text: str) -> Element:
+    """Text as it is."""
+    return _text(text)
+
+
 def _node(kind: str, content: Any) -> Element:
     return {"t": kind, "c": content}
 
@@ -261,8 +303,11 @@ def _printable(letter: str) -> str:
     return letter if letter.isprintable() or letter in "\u00a0\u202f" else " "
 
 
-def _heading(level: int, title: str) -> Element:
-    return _node("Header", [level, NO_ATTRIBUTES, [_text(title)]])
+def _heading(heading: Heading, role: str) -> Element:
+    """A heading that the writer numbers; one without a number says what it belongs to."""
+    listed = heading.level == 1 and role != "front"
+    kinds = () if role == "chapter" else ("unnumbered", role, *(() if listed else ("unlisted",)))
+    return _node("Header", [heading.level, ["", kinds, []], [_text(heading.title)]])
 
 
 def _list(items: Sequence[list[Element]], numbered: bool) -> Element:

@@ -12,10 +12,23 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 from centrode.locale import _, speaking
-from centrode.render.document.blocks import Report
+from centrode.model.explanatory_note import Standard
+from centrode.render.document.blocks import Report, TitlePageBlocks
+from centrode.render.document.outline import Heading
 from centrode.report.editable.pandoc import run_pandoc
 from centrode.report.editable.pictures import convert_pictures
-from centrode.report.editable.tree import NO_ATTRIBUTES, Element, cell_of, displayed, raw_inline, tree_of
+from centrode.report.editable.tree import (
+    NO_ATTRIBUTES,
+    Element,
+    cell_of,
+    displayed,
+    paragraph,
+    plain_text,
+    raw_block,
+    raw_inline,
+    tree_of,
+)
+from centrode.report.page_styles import page_style
 
 FIRST = (1980, 1, 1, 0, 0, 0)
 """The first time that a ZIP knows: the same report gives the same bytes."""
@@ -38,19 +51,29 @@ CAPTION = re.compile(
 def word_document(report: Report) -> bytes:
     """A report as DOCX, whose formulas, headings, tables and captions are the word processor's own."""
     with speaking(report.language):
-        tree, pictures = tree_of(report, _numbered_formula, _referred, "png")
+        words = _("Contents")
+        tree, pictures = tree_of(
+            report,
+            _numbered_formula,
+            _referred,
+            "png",
+            cover=_cover,
+            contents=lambda: [raw_block("openxml", _contents(words))],
+            unnumbered=_unnumbered,
+        )
     with tempfile.TemporaryDirectory() as folder:
         for name, picture in convert_pictures(pictures, "png").items():
             (Path(folder) / name).write_bytes(picture)
-        (Path(folder) / REFERENCE).write_bytes(_reference())
+        (Path(folder) / REFERENCE).write_bytes(_reference(report.standard, report.is_note))
         made = run_pandoc(
             tree,
-            *("--from=json", "--to=docx+native_numbering", "--standalone", "--toc", "--toc-depth=2"),
+            *("--from=json", "--to=docx+native_numbering", "--standalone"),
+            *(() if report.is_note else ("--toc", "--toc-depth=2")),
             *(f"--reference-doc={REFERENCE}", "--output=-"),
             folder=folder,
         )
     with speaking(report.language):
-        return _change_parts(made, FINISHED, {"word/footer-page.xml": FOOTER})
+        return _change_parts(made, _finished(report), {"word/footer-page.xml": page_number(report.standard)})
 
 
 def _numbered_formula(latex: str, number: int) -> list[Element]:
@@ -86,13 +109,48 @@ def _referred(number: int) -> Element:
     return raw_inline("openxml", field)
 
 
+def _styled(style: str, text: str) -> Element:
+    """A paragraph with a style of its own."""
+    return {"t": "Div", "c": [["", [], [["custom-style", style]]], [paragraph([plain_text(text)])]]}
+
+
+def _unnumbered(heading: Heading, role: str) -> Element:
+    """A heading without a number: of an element, which contents list unless it stands before them, or in one."""
+    level = ELEMENT_SECTION if heading.level > 1 else ELEMENT_FRONT if role == "front" else ELEMENT
+    return _styled(level, heading.title)
+
+
+def _cover(page: TitlePageBlocks) -> list[Element]:
+    """The title page, and what ends it."""
+    middle = [_styled(COVER, one) for one in (page.course, page.variant) if one]
+    found = [_styled(COVER, line) for line in page.head]
+    found += [_styled(COVER_WORK, page.work)] if page.work else []
+    found += [*middle[: bool(page.course)], _styled("Title", page.title), *middle[bool(page.course) :]]
+    found += [_styled(COVER_PEOPLE, f"{label}: {name}") for label, name in page.people]
+    found += [_styled(COVER_FOOT, page.foot)] if page.foot else []
+    return [*found, raw_block("openxml", '<w:p><w:r><w:br w:type="page"/></w:r></w:p>')]
+
+
+def _contents(title: str) -> str:
+    """The contents as a field, which word processors fill."""
+    field = ' TOC \\o "1-2" \\h \\z \\u '
+    return (
+        f'<w:p><w:pPr><w:pStyle w:val="TOCHeading"/></w:pPr><w:r><w:t>{escape(title)}</w:t></w:r></w:p>'
+        '<w:p><w:r><w:fldChar w:fldCharType="begin" w:dirty="true"/></w:r>'
+        f'<w:r><w:instrText xml:space="preserve">{escape(field)}</w:instrText></w:r>'
+        '<w:r><w:fldChar w:fldCharType="separate"/></w:r><w:r><w:fldChar w:fldCharType="end"/></w:r></w:p>'
+    )
+
+
 @cache
-def _reference() -> bytes:
+def _reference(standard: Standard, is_note: bool) -> bytes:
     """The document whose styles and page pandoc takes: its own, restyled."""
     own = run_pandoc(b"", "--print-default-data-file=reference.docx")
-    return _change_parts(
-        own, {"word/styles.xml": _styles, "word/document.xml": lambda text: _page(text, PAGE)}, {}
-    )
+    changes: dict[str, Callable[[str], str]] = {
+        "word/styles.xml": lambda text: _styles(text, styles_of(standard, is_note)),
+        "word/document.xml": lambda text: _page(text, page_of(standard)),
+    }
+    return _change_parts(own, changes, {})
 
 
 def _change_parts(
@@ -109,12 +167,12 @@ def _change_parts(
     return made.getvalue()
 
 
-def _styles(text: str) -> str:
+def _styles(text: str, styles: Mapping[str, str]) -> str:
     """Pandoc's styles without those that reports have of their own, which stand behind them."""
-    for identity in STYLES:
+    for identity in styles:
         text = re.sub(rf'<w:style [^>]*w:styleId="{identity}"[^>]*>.*?</w:style>', "", text, flags=re.DOTALL)
     text = re.sub(r"<w:rFonts w:asciiTheme=[^>]*/>", FONTS, text, count=1)
-    return text.replace("</w:styles>", f"{''.join(STYLES.values())}</w:styles>")
+    return text.replace("</w:styles>", f"{''.join(styles.values())}</w:styles>")
 
 
 def _numbering(text: str) -> str:
@@ -124,10 +182,10 @@ def _numbering(text: str) -> str:
     return text.replace("</w:numbering>", f"{number}</w:numbering>")
 
 
-def _captions(text: str) -> str:
+def _captions(text: str, separator: str) -> str:
     """Captions that begin as they do in PDF and on pages: pandoc's word is short in some languages, with a colon."""
     words = {"Figure": _("Figure {number}"), "Table": _("Table {number}")}
-    return CAPTION.sub(lambda found: f"{words[found[2]].format(number='')}{found[1]}.", text)
+    return CAPTION.sub(lambda found: f"{words[found[2]].format(number='')}{found[1]}{separator}", text)
 
 
 def _page(text: str, content: str) -> str:
@@ -149,13 +207,31 @@ def _relations(text: str) -> str:
     return text.replace("</Relationships>", f"{one}</Relationships>")
 
 
-FINISHED: Mapping[str, Callable[[str], str]] = {
-    "word/numbering.xml": _numbering,
-    "word/document.xml": lambda text: _captions(_page(text, FOOT + PAGE)),
-    "[Content_Types].xml": _types,
-    "word/_rels/document.xml.rels": _relations,
-}
-"""What changes in each part of the document when it is made."""
+def _finished(report: Report) -> Mapping[str, Callable[[str], str]]:
+    """What changes in each part of the document when it is made."""
+    style = page_style(report.standard)
+    foot = FOOT.replace("footer", "header") if style.number == "top-right" else FOOT
+    first = "<w:titlePg/>" if report.title_page is not None else ""
+    page = foot + page_of(report.standard) + first
+
+    def document(text: str) -> str:
+        return _captions(_page(text, page), style.separator.rstrip())
+
+    def properties(text: str) -> str:
+        title = f"<dc:title>{escape(report.title)}</dc:title>"
+        return re.sub(r"<dc:title>.*?</dc:title>|<dc:title ?/>", lambda _found: title, text, count=1)
+
+    kind = "header" if style.number == "top-right" else "footer"
+    named: Mapping[str, Callable[[str], str]] = {"docProps/core.xml": properties} if first else {}
+    return {
+        **named,
+        "word/numbering.xml": _numbering,
+        "word/document.xml": document,
+        "[Content_Types].xml": lambda text: _types(text).replace("footer+xml", f"{kind}+xml"),
+        "word/_rels/document.xml.rels": lambda text: _relations(text).replace(
+            'relationships/footer" Id="rIdPage"', f'relationships/{kind}" Id="rIdPage"'
+        ),
+    }
 
 
 def _style(
@@ -201,6 +277,11 @@ RULE = '<w:{side} w:val="single" w:sz="{width}" w:space="0" w:color="auto"/>'
 RULES = "".join(
     RULE.format(side=side, width=width) for side, width in (("top", 6), ("bottom", 6), ("insideH", 2))
 )
+GRID = "".join(
+    RULE.format(side=side, width=4) for side in ("top", "left", "bottom", "right", "insideH", "insideV")
+)
+"""Lines of a table: of the program's own style, and of the standards, which bound cells on all sides."""
+SHADE = '<w:shd w:val="clear" w:color="auto" w:fill="F0F0F0"/>'
 CELLS = (
     '<w:tblInd w:w="0" w:type="dxa"/><w:tblBorders>{rules}</w:tblBorders><w:tblCellMar>'
     '<w:top w:w="20" w:type="dxa"/><w:left w:w="60" w:type="dxa"/>'
@@ -209,7 +290,7 @@ CELLS = (
 HEAD_ROW = (
     '<w:tblStylePr w:type="firstRow"><w:rPr><w:b/></w:rPr><w:tcPr>'
     f"<w:tcBorders>{RULE.format(side='bottom', width=6)}</w:tcBorders>"
-    '<w:shd w:val="clear" w:color="auto" w:fill="F0F0F0"/><w:vAlign w:val="center"/></w:tcPr></w:tblStylePr>'
+    f'{SHADE}<w:vAlign w:val="center"/></w:tcPr></w:tblStylePr>'
 )
 STYLES = {
     "Title": _style("Title", "Title", "Normal", f"{_spacing(120, 6)}{CENTRE}", f"<w:b/>{_size(22)}"),
@@ -252,17 +333,119 @@ OUTLINE = (
         f'<w:lvl w:ilvl="{level}"><w:start w:val="1"/><w:numFmt w:val="decimal"/>'
         f'<w:pStyle w:val="Heading{level + 1}"/><w:lvlText w:val="{text}"/><w:lvlJc w:val="left"/>'
         '<w:pPr><w:ind w:left="567" w:hanging="567"/></w:pPr></w:lvl>'
-        for level, text in enumerate(("%1", "%1.%2"))
+        for level, text in enumerate(("%1", "%1.%2", "%1.%2.%3"))
     )
     + "</w:abstractNum>"
 )
 FOOT = '<w:footerReference w:type="default" r:id="rIdPage"/>'
-PAGE = (
-    '<w:pgSz w:w="11906" w:h="16838"/><w:pgMar w:top="1134" w:right="1134" w:bottom="1134" w:left="1134"'
-    ' w:header="567" w:footer="567" w:gutter="0"/>'
-)
-FOOTER = (
-    '<?xml version="1.0" encoding="UTF-8"?>'
-    '<w:ftr xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main"><w:p><w:pPr>'
-    f'{CENTRE}</w:pPr><w:fldSimple w:instr=" PAGE "><w:r><w:t>1</w:t></w:r></w:fldSimple></w:p></w:ftr>'
-)
+ELEMENT, ELEMENT_FRONT, ELEMENT_SECTION = "Element", "Element Front", "Element Section"
+COVER, COVER_WORK, COVER_PEOPLE, COVER_FOOT = "Cover", "Cover Work", "Cover People", "Cover Foot"
+"""Names of the styles of notes: headings without numbers, lines of the title page."""
+TWIPS = 1440 / 25.4
+"""Twentieths of a point that a millimetre has."""
+
+
+def styles_of(standard: Standard, is_note: bool) -> Mapping[str, str]:
+    """Styles by their names inside of the document, in place of pandoc's: of a standard, and of notes."""
+    style = page_style(standard)
+    indent = f'<w:ind w:firstLine="{style.indent * TWIPS:.0f}"/>'
+    spaced = (
+        f'<w:spacing w:before="0" w:after="0" w:line="360" w:lineRule="auto"/>{indent}<w:jc w:val="both"/>'
+    )
+    size, bold = _size(style.size), f"<w:b/>{_size(style.size)}"
+    styles = dict(STYLES)
+    new_page = "<w:pageBreakBefore/>" if standard != "plain" else ""
+    if standard != "plain":
+        styles |= {
+            "BodyText": _style("BodyText", "Body Text", "Normal", spaced, size),
+            "Compact": _style("Compact", "Compact", "Normal", _spacing(1, 1), size, own=True),
+            "Title": _style("Title", "Title", "Normal", f"{_spacing(12, 12)}{CENTRE}", f"<w:b/>{_size(18)}"),
+            "TOCHeading": styles["TOCHeading"]
+            .replace("<w:keepNext/>", "<w:keepNext/><w:pageBreakBefore/>")
+            .replace("</w:pPr>", f"{CENTRE}</w:pPr>")
+            .replace(_size(16), f"<w:caps/>{_size(style.size)}"),
+            "Caption": _style(
+                "Caption", "caption", "Normal", f"<w:keepLines/>{_spacing(4, 8)}{CENTRE}", size
+            ),
+            "ImageCaption": _style("ImageCaption", "Image Caption", "Caption", "", "", own=True),
+            "TableCaption": _style(
+                "TableCaption", "Table Caption", "Caption", '<w:keepNext/><w:jc w:val="left"/>', "", own=True
+            ),
+            "Heading1": _heading(1, style.size, 12).replace(
+                "<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>"
+            ),
+            "Heading2": _heading(2, style.size, 12),
+            "Heading3": _heading(3, style.size, 12),
+            "Table": styles["Table"]
+            .replace(RULES, GRID)
+            .replace(SHADE, "")
+            .replace(_size(9), _size(style.tables[-1])),
+        }
+    if is_note:
+        centred = f"{new_page}{_spacing(0, 12)}{CENTRE}"
+        big = bold.replace("<w:b/>", "<w:b/><w:caps/>") if new_page else f"<w:b/>{_size(16)}"
+        before = {COVER_WORK: 130, COVER_PEOPLE: 12, COVER_FOOT: 110}
+        styles |= {
+            "Heading3": styles.get("Heading3", _heading(3, 11, 12)),
+            "Element": _style(
+                "Element",
+                ELEMENT,
+                "Normal",
+                f'<w:keepNext/>{centred}<w:outlineLvl w:val="0"/>',
+                big,
+                own=True,
+            ),
+            "ElementFront": _style(
+                "ElementFront", ELEMENT_FRONT, "Normal", f"<w:keepNext/>{centred}", big, own=True
+            ),
+            "ElementSection": _style(
+                "ElementSection", ELEMENT_SECTION, "Normal", f"<w:keepNext/>{_spacing(12, 6)}", bold, own=True
+            ),
+            "Cover": _style("Cover", COVER, "Normal", f"{_spacing(0, 6)}{CENTRE}", size, own=True),
+            "CoverWork": _style(
+                "CoverWork",
+                COVER_WORK,
+                "Normal",
+                f"{_spacing(before[COVER_WORK], 6)}{CENTRE}",
+                bold,
+                own=True,
+            ),
+            "CoverPeople": _style(
+                "CoverPeople",
+                COVER_PEOPLE,
+                "Normal",
+                f'{_spacing(before[COVER_PEOPLE], 6)}<w:ind w:left="4536"/>',
+                size,
+                own=True,
+            ),
+            "CoverFoot": _style(
+                "CoverFoot",
+                COVER_FOOT,
+                "Normal",
+                f"{_spacing(before[COVER_FOOT], 0)}{CENTRE}",
+                size,
+                own=True,
+            ),
+        }
+    return styles
+
+
+def page_of(standard: Standard) -> str:
+    """Size and margins of a page."""
+    style = page_style(standard)
+    sides = {"top": style.top, "right": style.right, "bottom": style.bottom, "left": style.left}
+    if standard == "plain":
+        sides["top"] = style.bottom
+    margins = " ".join(f'w:{side}="{value * TWIPS:.0f}"' for side, value in sides.items())
+    return f'<w:pgSz w:w="11906" w:h="16838"/><w:pgMar {margins} w:header="567" w:footer="567" w:gutter="0"/>'
+
+
+def page_number(standard: Standard) -> str:
+    """What stands on each page: its number, below in the middle or above at the right."""
+    above = page_style(standard).number == "top-right"
+    root, place = ("hdr", '<w:jc w:val="right"/>') if above else ("ftr", CENTRE)
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        f'<w:{root} xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main"><w:p><w:pPr>'
+        f'{place}</w:pPr><w:fldSimple w:instr=" PAGE "><w:r><w:t>1</w:t></w:r></w:fldSimple></w:p></w:{root}>'
+    )

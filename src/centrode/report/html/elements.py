@@ -51,10 +51,11 @@ def formulas_in(block: Block) -> Iterator[str]:
 
 @dataclass
 class Elements:
-    """Makes the elements of a page."""
+    """Makes the elements of a page; `separator` stands between the number of a caption and its words."""
 
     formulas: Formulas
     drawings: Drawings = field(default_factory=Drawings)
+    separator: str = ". "
 
     def text(self, marked: str) -> str:
         """A text with its mathematics."""
@@ -122,9 +123,7 @@ class Elements:
         if block.caption:
             number = html.escape(_("Table {number}").format(number=block.number))
             name = f' aria-labelledby="t{block.number}"'
-            caption = (
-                f'<p class="caption" id="t{block.number}"><b>{number}.</b> {self.text(block.caption)}</p>'
-            )
+            caption = f'<p class="caption" id="t{block.number}">{self._numbered(number)}{self.text(block.caption)}</p>'
         drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         return f'{caption}<div class="table">{drawn}</div>'
 
@@ -152,7 +151,11 @@ class Elements:
         if not block.caption:
             return ""
         number = html.escape(_("Figure {number}").format(number=block.number))
-        return f"<figcaption><b>{number}.</b> {self.text(block.caption)}</figcaption>"
+        return f"<figcaption>{self._numbered(number)}{self.text(block.caption)}</figcaption>"
+
+    def _numbered(self, word: str) -> str:
+        """What a caption begins with: "Figure 3. ", in bold letters unless a standard has a dash."""
+        return f"<b>{word}.</b> " if self.separator == ". " else f"{word}{self.separator}"
 
 
 def numbered(formula: str, number: int) -> str:

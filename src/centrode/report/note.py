@@ -1,0 +1,142 @@
+"""A report as an explanatory note: title page, task, contents, parts, conclusions, sources, appendices."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from centrode.locale import _, mark
+from centrode.model.explanatory_note import ExplanatoryNote, Standard, TitlePage
+from centrode.render.document.blocks import (
+    Block,
+    ChapterBlocks,
+    ParagraphBlock,
+    Picture,
+    ProseBlock,
+    Report,
+    SectionBlocks,
+    Span,
+    TitlePageBlocks,
+)
+
+CONCLUSIONS, CHECKS = "conclusions", "checks"
+"""Names of chapters that have places of their own."""
+STANDARD_OF_LANGUAGE: Mapping[str, Standard] = {"ru": "gost", "uk": "dstu"}
+"""Of a note that names none."""
+
+STRUCTURE = mark("Structural analysis of the mechanism")
+KINEMATICS = mark("Kinematic analysis of the mechanism")
+DYNAMICS = mark("Dynamic analysis of the machine")
+FORCES = mark("Force analysis of the mechanism")
+PARTS: Mapping[str, str] = {
+    **dict.fromkeys(("words", "structure"), STRUCTURE),
+    **dict.fromkeys(
+        ("equations", "derivation", "tables", "plots", "positions", "graphic", "centres", "integration"),
+        KINEMATICS,
+    ),
+    **dict.fromkeys(("rotatability", "axes"), KINEMATICS),
+    **dict.fromkeys(("masses-and-loads", "reduction", "flywheel", "real-motion", "simulation"), DYNAMICS),
+    **dict.fromkeys(("reactions", "force-polygons", "balance"), FORCES),
+}
+"""Name of a chapter -> the part of a note that it belongs to; chapters of cams are parts themselves."""
+
+Sections = Callable[[str], tuple[SectionBlocks, ...]]
+"""What makes sections of a text in Markdown."""
+
+
+def standard_of(wished: Standard | None, is_note: bool, language: str) -> Standard:
+    """The standard of a document: as wished, of a note that of its language, else none."""
+    if wished is not None:
+        return wished
+    return STANDARD_OF_LANGUAGE.get(language, "plain") if is_note else "plain"
+
+
+def as_note(report: Report, note: ExplanatoryNote, sections: Sections) -> Report:
+    """A report with what is given of a note around its chapters, these in parts."""
+    end = [chapter for chapter in report.chapters if chapter.name == CONCLUSIONS]
+    checks = [replace(chapter, role="appendix") for chapter in report.chapters if chapter.name == CHECKS]
+    body = [chapter for chapter in report.chapters if chapter.name not in (CONCLUSIONS, CHECKS)]
+    page = note.title_page
+    chapters = (
+        *_element("task", _("Task"), note.task, sections, front=True),
+        *_element("abstract", _("Abstract"), note.abstract, sections, front=True),
+        *_element("introduction", _("Introduction"), note.introduction, sections),
+        *_in_parts(body),
+        *_conclusions(end, note.conclusions, sections),
+        *_sources(note.sources),
+        *checks,
+    )
+    title = page.title if page is not None and page.title else report.title
+    return replace(
+        report,
+        title=title,
+        opening=_referred(report.opening),
+        chapters=chapters,
+        title_page=None if page is None else _title_page(page, title),
+        is_note=True,
+    )
+
+
+def _element(
+    name: str, title: str, text: str, sections: Sections, *, front: bool = False
+) -> tuple[ChapterBlocks, ...]:
+    """What the author writes under a heading of its own; nothing where nothing is written."""
+    if not text:
+        return ()
+    return (ChapterBlocks(name, title, sections(text), computed=False, role="front" if front else "element"),)
+
+
+def _in_parts(chapters: Sequence[ChapterBlocks]) -> list[ChapterBlocks]:
+    """Chapters with the part of the note that each belongs to; one alone in its part stands for itself."""
+    often = Counter(PARTS.get(chapter.name, "") for chapter in chapters)
+    parts = {name for name, times in often.items() if name and times > 1}
+    if len(often) == 1:  # all of one part: they are the parts
+        return list(chapters)
+    found = [(PARTS.get(chapter.name, ""), chapter) for chapter in chapters]
+    return [replace(chapter, part=_(part)) if part in parts else chapter for part, chapter in found]
+
+
+def _conclusions(
+    computed: Sequence[ChapterBlocks], text: str, sections: Sections
+) -> tuple[ChapterBlocks, ...]:
+    """Those from the results, then the author's own."""
+    own = sections(text) if text else ()
+    if computed:
+        return tuple(replace(one, sections=(*one.sections, *own), role="element") for one in computed)
+    return _element(CONCLUSIONS, _("Conclusions"), text, sections)
+
+
+def _sources(entries: Sequence[str]) -> tuple[ChapterBlocks, ...]:
+    if not entries:
+        return ()
+    listed = ProseBlock(tuple((Span(entry),) for entry in entries), "numbers")
+    made = ChapterBlocks(
+        "sources", _("List of sources"), (SectionBlocks("", (listed,), "before"),), computed=False
+    )
+    return (replace(made, role="element"),)
+
+
+def _referred(opening: tuple[Block, ...]) -> tuple[Block, ...]:
+    """The opening behind a sentence that names its figure."""
+    figures = [block for block in opening if isinstance(block, Picture) and block.number]
+    if not figures:
+        return opening
+    return (ParagraphBlock(_("See figure {number}.").format(number=figures[0].number)), *opening)
+
+
+def _title_page(page: TitlePage, title: str) -> TitlePageBlocks:
+    """The lines of the title page, with the words of the language before what needs them."""
+    group = _("group {group}").format(group=page.group) if page.group else ""
+    done, accepted = ", ".join(one for one in (page.author, group) if one), page.teacher
+    people = ((_("Done by"), done), (_("Accepted by"), accepted))
+    head = (page.ministry, page.institution, page.faculty, page.department)
+    return TitlePageBlocks(
+        tuple(line for line in head if line),
+        page.work,
+        _("course: {course}").format(course=page.course) if page.course else "",
+        title,
+        _("Variant {variant}").format(variant=page.variant) if page.variant else "",
+        tuple((label, name) for label, name in people if name),
+        " ".join(str(one) for one in (page.city, page.year) if one),
+    )

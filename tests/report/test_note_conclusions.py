@@ -1,0 +1,174 @@
+"""Conclusions, rows of fixed steps, other rows and positions, reading steps: against printed numbers and geometry."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.dynamics.motion_results import study
+from centrode.dynamics.steady_motion.closing_balance import closing_balance
+from centrode.errors import InputError
+from centrode.render.document.blocks import ItemsBlock, Picture, Report, TableBlock
+
+REFERENCE = Path(__file__).parents[1] / "reference"
+WORKED = "slider-between-cranks"
+
+
+def blocks_of(made: Report, kind: type) -> list[object]:
+    return [
+        block
+        for chapter in made.chapters
+        for section in chapter.sections
+        for block in section.blocks
+        if isinstance(block, kind)
+    ]
+
+
+def conclusions(name: str) -> Sequence[str]:
+    made = ct.report(name, ct.ReportOptions(chapters=("conclusions",)), language="en")
+    (items,) = blocks_of(made, ItemsBlock)
+    assert isinstance(items, ItemsBlock)
+    return items.texts
+
+
+def stroke_of_the_press() -> float:
+    """Stroke of H where O, A, B are in line, by circles alone."""
+    places = []
+    for reach in (1.445 + 0.347, 1.445 - 0.347):
+        # B: distance `reach` from O, 0.85 from C; D beyond B on the ray from C; H on y = 0.9, right of D
+        x = (reach**2 - 0.85**2 + 1.25**2) / (2 * 1.25)
+        b = np.array([x, math.sqrt(reach**2 - x**2)])
+        d = 2 * b - np.array([1.25, 0.0])
+        places.append(d[0] + math.sqrt(1.7**2 - (0.9 - d[1]) ** 2))
+    return abs(places[0] - places[1])
+
+
+def test_the_conclusions_of_the_press_are_its_results() -> None:
+    texts = conclusions("six-bar-press")
+    assert texts[0].startswith("The drive OA turns fully")
+    assert f"the stroke is {stroke_of_the_press():.4g} m" in texts[1]
+    assert any("the flywheel has 1456.7 kg·m²" in text for text in texts)
+    # the coursework's closing check: 6310.25 + 1459.23 x (-2.7735) = 2263.0 N m
+    assert texts[-1].endswith("6310.2 + 1459.2 · (−2.7735) = 2263 N·m.")
+
+
+def test_the_machine_closes_by_two_routes() -> None:
+    machine = study(ct.example("six-bar-press"), 37).machine
+    assert machine is not None
+    balance = closing_balance(machine)
+    assert balance.links == pytest.approx(6310.25, abs=5e-3)
+    assert balance.acceleration == pytest.approx(-2.7735, abs=5e-5)
+    assert balance.driving == pytest.approx(2263.0, abs=5e-2)
+    assert abs(balance.difference) < 1e-9 * balance.links
+
+
+def test_a_mechanism_that_locks_is_told_so() -> None:
+    texts = conclusions("slider-between-cranks-locked")
+    assert texts[0].startswith("The mechanism does not turn fully: its motion is bounded at 1.79")
+    assert not any("velocity" in text for text in texts)
+
+
+# Fixed steps
+
+
+def fixed_rows(steps: int, rows: int) -> TableBlock:
+    options = ct.ReportOptions(chapters=("integration",), rk4_steps=steps, rows=rows, digits=8)
+    found = blocks_of(ct.report(WORKED, options, language="en"), TableBlock)
+    tables = [one for one in found if isinstance(one, TableBlock) and "fixed steps" in one.caption]
+    (table,) = tables
+    return table
+
+
+def number(cell: str) -> float:
+    return float(cell.replace("\u2212", "-"))
+
+
+def test_rows_of_fixed_steps_are_those_that_the_assignment_prints() -> None:
+    with (REFERENCE / "planar-slider-rocker-table.csv").open() as file:
+        printed = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    table = fixed_rows(100, 101)
+    assert len(table.rows) == 101
+    compared = 0
+    for row in printed:
+        sample = round(float(row["t_s"]) / (2 * math.pi / 100))
+        for column, name in ((0, "t_s"), (2, "phi2_rad"), (3, "phi3_rad"), (4, "phi4_rad")):
+            places = len(row[name].partition(".")[2])
+            assert number(table.rows[sample][column]) == pytest.approx(
+                float(row[name]), abs=0.51 * 10**-places
+            )
+            compared += 1
+    assert compared > 100
+
+
+def test_half_the_step_has_a_sixteenth_of_the_error() -> None:
+    errors = []
+    for steps in (50, 100, 200):
+        found = ct.integrate(ct.example(WORKED), "rk4", steps)
+        errors.append(float(np.abs(found["angle_difference"].values).max()))
+    # of fourth order, up to terms of the next one
+    assert errors[0] / errors[1] == pytest.approx(16, rel=0.35)
+    assert errors[1] / errors[2] == pytest.approx(16, rel=0.35)
+
+
+def test_the_error_of_fixed_steps_is_drawn() -> None:
+    options = ct.ReportOptions(chapters=("integration",), rk4_steps=20, full=False)
+    made = ct.report(WORKED, options, language="en")
+    captions = [one.caption for one in blocks_of(made, Picture) if isinstance(one, Picture)]
+    assert captions == ["Drift and error of the fixed steps over the range"]
+
+
+# Rows, positions, reading
+
+
+@pytest.mark.parametrize("full", [True, False])
+def test_a_table_over_the_motion_has_as_many_rows_as_wished(full: bool) -> None:
+    for rows, there in ((11, 11), (21, 21), (1000, 101)):
+        options = ct.ReportOptions(chapters=("tables",), rows=rows, full=full)
+        tables = blocks_of(ct.report(WORKED, options, language="en"), TableBlock)
+        over = [one for one in tables if isinstance(one, TableBlock) and one.head[0] == "$t$, s"]
+        assert over
+        assert {len(one.rows) for one in over} == {there}
+
+
+def test_a_plan_has_as_many_positions_as_wished() -> None:
+    options = ct.ReportOptions(chapters=("positions",), positions=8)
+    tables = blocks_of(ct.report(WORKED, options, language="en"), TableBlock)
+    assert isinstance(tables[-1], TableBlock)
+    assert len(tables[-1].rows) == 8
+
+
+def test_a_drawing_read_to_whole_degrees_gives_the_printed_numbers() -> None:
+    options = ct.ReportOptions(chapters=("graphic",), instants="90 deg", angle_step="1 deg", full=False)
+    made = ct.report(WORKED, options, language="en")
+    table = blocks_of(made, TableBlock)[-1]
+    assert isinstance(table, TableBlock)
+    drawn = {row[0]: abs(number(row[2])) for row in table.rows}
+    # the assignment prints |omega3| = 0.41, |omega4| = 0.024, |v_B| = 0.0191
+    assert drawn['$ω_(upright("CB"))$'] == pytest.approx(0.41, abs=5e-3)
+    assert drawn['$ω_(upright("BD"))$'] == pytest.approx(0.024, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "what"),
+    [
+        ({"rows": 1}, "1 is not a whole number between 2 and 1000"),
+        ({"positions": 99}, "99 is not a whole number between 2 and 36"),
+        ({"rk4_steps": 0}, "0 is not a whole number between 1 and 100000"),
+        ({"standard": "gots"}, 'there is no standard "gots"'),
+        ({"angle_step": "1 kg"}, "expected an angle"),
+    ],
+)
+def test_what_cannot_be_wished_is_refused(options: dict[str, object], what: str) -> None:
+    with pytest.raises(InputError, match=what):
+        ct.report(WORKED, ct.ReportOptions(chapters=("tables",), **options))  # type: ignore[arg-type]
+
+
+def test_rows_are_those_of_linkages() -> None:
+    with pytest.raises(InputError, match="those of linkages"):
+        ct.report("valve-cam", ct.ReportOptions(chapters=("data",), rows=5))
