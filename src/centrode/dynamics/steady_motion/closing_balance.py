@@ -51,7 +51,7 @@ def closing_balance(results: MachineResults) -> ClosingBalance:
         greatest = int(np.nanargmax(np.abs(steady["drive_acceleration"].values)))
         at = float(steady["drive_value"].values[greatest, 0])
     here = steady_motion(results.mechanism, at=[at], mean=wheel.mean)
-    forces = reactions(results.mechanism, at=[at], speed="steady", friction=False)
+    forces = reactions(results.mechanism, at=[at], motion="real", friction=False)
     sense = np.sign(forces["drive_rate"].values[0])
     return ClosingBalance(
         at,
