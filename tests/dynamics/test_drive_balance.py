@@ -164,6 +164,13 @@ def test_the_closing_check_of_the_coursework() -> None:
     assert float(found.inertia_moment_of_group[0]) == pytest.approx(1459.23 * 2.7735, abs=0.1)
 
 
+def test_the_printed_slips_close_as_well() -> None:
+    """With the inertias of the source's slips the same driving moment: work of the loads over a turn."""
+    found = ct.reactions("six-bar-press-printed", at=["120 deg"], motion="real")
+    closing = found.moment_of_links + found.attrs["inertia"] * found.drive_acceleration
+    assert float(closing[0]) == pytest.approx(2263.0, abs=0.05)
+
+
 def test_polygons_and_lever_give_the_same_in_the_real_motion() -> None:
     found = ct.force_polygons(PRESS, "120 deg", motion="real")
     reactions = ct.reactions(PRESS, at=["120 deg"], motion="real")
