@@ -69,6 +69,7 @@ INTEGRATE = Topic(
         ),
         arguments={"method": "adaptive"},
         instants=False,
+        options=("rk4_steps",),
     ),
 )
 
@@ -566,6 +567,7 @@ PLAN = Topic(
             ChapterOfTopic("positions", mark("Plan of positions"), code="ct.plan_of_positions(mechanism)"),
         ),
         instants=False,
+        options=("positions",),
         points=True,
     ),
 )
@@ -623,6 +625,7 @@ DIAGRAMS = Topic(
             ),
         ),
         arguments={"incomplete": True},
+        options=("angle_step",),
     ),
 )
 
