@@ -17,10 +17,10 @@ from centrode.cli.instants import echo_values
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
-from centrode.model.explanatory_note import STANDARDS
+from centrode.model.page_standards import STANDARDS
 
 if TYPE_CHECKING:
-    from centrode.model.explanatory_note import Standard
+    from centrode.model.page_standards import Standard
     from centrode.render.document.blocks import Report
 
 # What they import is too much for a list of commands.

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import unicodedata
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated
 
 from pydantic import PlainValidator
 
 from centrode.locale import _
+from centrode.model.page_standards import STANDARDS, Standard
 from centrode.model.reading import KEY, DescriptionPart, Problem, bounded_list, choice, value_text
 
-STANDARDS = ("plain", "gost", "dstu")
-"""Page styles: the program's own, GOST 2.105 with the page of GOST 7.32, DSTU 3008:2015."""
-Standard: TypeAlias = Literal["plain", "gost", "dstu"]
 PROSE_LENGTH = 20_000
 """Characters of a text of several paragraphs."""
 LINE_LENGTH = 300

@@ -40,7 +40,6 @@ from centrode.model.explanatory_note import (
     MOST_SOURCES,
     PROSE_LENGTH,
     SOURCE_LENGTH,
-    STANDARDS,
     TitlePage,
 )
 from centrode.model.follower_cam import (
@@ -60,6 +59,7 @@ from centrode.model.follower_cam import (
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
 from centrode.model.links import RING_AND_POINT, SHAPES, Frame, Gear, Guide, Link, Rolling, Track
 from centrode.model.loads import FITS, FORMS, KINDS, Load
+from centrode.model.page_standards import STANDARDS
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
 from centrode.model.settings import (

@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from centrode.locale import _, mark
-from centrode.model.explanatory_note import ExplanatoryNote, Standard, TitlePage
+from centrode.locale import _
+from centrode.model.explanatory_note import ExplanatoryNote, TitlePage
+from centrode.model.page_standards import Standard
 from centrode.render.document.blocks import (
     Block,
     ChapterBlocks,
@@ -19,27 +20,12 @@ from centrode.render.document.blocks import (
     Span,
     TitlePageBlocks,
 )
+from centrode.topics.order import PARTS
 
 CONCLUSIONS, CHECKS = "conclusions", "checks"
 """Names of chapters that have places of their own."""
 STANDARD_OF_LANGUAGE: Mapping[str, Standard] = {"ru": "gost", "uk": "dstu"}
 """Of a note that names none."""
-
-STRUCTURE = mark("Structural analysis of the mechanism")
-KINEMATICS = mark("Kinematic analysis of the mechanism")
-DYNAMICS = mark("Dynamic analysis of the machine")
-FORCES = mark("Force analysis of the mechanism")
-PARTS: Mapping[str, str] = {
-    **dict.fromkeys(("words", "structure"), STRUCTURE),
-    **dict.fromkeys(
-        ("equations", "derivation", "tables", "plots", "positions", "graphic", "centres", "integration"),
-        KINEMATICS,
-    ),
-    **dict.fromkeys(("rotatability", "axes"), KINEMATICS),
-    **dict.fromkeys(("masses-and-loads", "reduction", "flywheel", "real-motion", "simulation"), DYNAMICS),
-    **dict.fromkeys(("reactions", "force-polygons", "balance"), FORCES),
-}
-"""Name of a chapter -> the part of a note that it belongs to; chapters of cams are parts themselves."""
 
 Sections = Callable[[str], tuple[SectionBlocks, ...]]
 """What makes sections of a text in Markdown."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from centrode.model.explanatory_note import Standard
+from centrode.model.page_standards import Standard
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
-from centrode.model.explanatory_note import STANDARDS, Standard
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.page_standards import STANDARDS, Standard
 from centrode.model.reading import nearest, value_text
 from centrode.model.settings import (
     DIGITS,
@@ -88,7 +88,7 @@ class ReportOptions:
 class Wishes:
     """The same, settled; chapters and points are None where nobody chose, instants empty.
 
-    `arguments` are name of a topic -> arguments of its computation.
+    `options` are name -> value of what is wished of the computation of single topics.
     """
 
     chapters: tuple[str, ...] | None
@@ -99,7 +99,7 @@ class Wishes:
     motion: MotionOfDrive | None = None
     standard: Standard | None = None
     rows: int | None = None
-    arguments: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
 
 
 def settle_options(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
@@ -120,7 +120,7 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
         chapters is not None if full is None else full,
         _first(options.motion, asked.motion if isinstance(asked, ReportWishes) else None),
         _first(options.standard, asked.standard),
-        *_rows_and_arguments(description, options),
+        *_rows_and_options(description, options),
     )
     if found.motion is not None:
         check_motion(found.motion)
@@ -143,10 +143,10 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     return found
 
 
-def _rows_and_arguments(
+def _rows_and_options(
     description: Mechanism | AnyCam, options: ReportOptions
-) -> tuple[int | None, dict[str, dict[str, Any]]]:
-    """Rows of tables over the motion, and what the topics of a linkage are computed with."""
+) -> tuple[int | None, dict[str, Any]]:
+    """Rows of tables over the motion, and what is wished of the computation of single topics."""
     asked = description.report
     if not isinstance(asked, ReportWishes):
         given = (options.rows, options.positions, options.rk4_steps, options.angle_step)
@@ -165,15 +165,12 @@ def _rows_and_arguments(
     if step is not None:
         refuses = description.display.refuses_bare_angles
         step = read_quantity(step, "angle", "angle_step", refuses_bare=refuses)
-    wished: dict[str, dict[str, Any]] = {
-        "plan": {"positions": _first(options.positions, asked.positions)},
-        "integrate": {"rk4_steps": _first(options.rk4_steps, asked.rk4_steps)},
-        "diagrams": {"angle_step": _first(step, asked.angle_step)},
+    wished = {
+        "positions": _first(options.positions, asked.positions),
+        "rk4_steps": _first(options.rk4_steps, asked.rk4_steps),
+        "angle_step": _first(step, asked.angle_step),
     }
-    chosen = {
-        topic: {name: value for name, value in arguments.items() if value is not None}
-        for topic, arguments in wished.items()
-    }
+    chosen = {name: value for name, value in wished.items() if value is not None}
     return _first(options.rows, asked.rows), chosen
 
 

@@ -49,7 +49,8 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
         arguments = dict(document.arguments)
         if any(chapter.name in (study.wishes.chapters or ()) for chapter in document.chapters):
             arguments |= document.chosen_arguments
-        arguments |= study.wishes.arguments.get(topic.name, {})
+        wished_options = study.wishes.options
+        arguments |= {name: wished_options[name] for name in document.options if name in wished_options}
         if document.instants:
             wished = study.is_cam or document.wished
             arguments["instants"] = (

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
+from centrode.locale import mark
+
 Entry = TypeVar("Entry")
 
 COMMANDS = (
@@ -75,6 +77,19 @@ CHAPTERS = (
     "conclusions",
 )
 """As a document has them."""
+
+STRUCTURE = mark("Structural analysis of the mechanism")
+KINEMATICS = mark("Kinematic analysis of the mechanism")
+DYNAMICS = mark("Dynamic analysis of the machine")
+FORCES = mark("Force analysis of the mechanism")
+PARTS: Mapping[str, str] = {
+    **dict.fromkeys(("words", "structure"), STRUCTURE),
+    **dict.fromkeys(("equations", "derivation", "tables", "plots", "positions", "graphic"), KINEMATICS),
+    **dict.fromkeys(("centres", "integration", "rotatability", "axes"), KINEMATICS),
+    **dict.fromkeys(("masses-and-loads", "reduction", "flywheel", "real-motion", "simulation"), DYNAMICS),
+    **dict.fromkeys(("reactions", "force-polygons", "balance"), FORCES),
+}
+"""Name of a chapter -> the part of an explanatory note that it belongs to; chapters of cams are parts themselves."""
 
 
 def in_order(entries: Mapping[str, Entry], order: Sequence[str]) -> dict[str, Entry]:

@@ -74,6 +74,7 @@ INTEGRATE = Topic(
         ),
         arguments={"method": "adaptive"},
         instants=False,
+        options=("rk4_steps",),
     ),
 )
 
@@ -572,6 +573,7 @@ PLAN = Topic(
             ChapterOfTopic("positions", mark("Plan of positions"), code="ct.plan_of_positions(mechanism)"),
         ),
         instants=False,
+        options=("positions",),
         points=True,
     ),
 )
@@ -629,6 +631,7 @@ DIAGRAMS = Topic(
             ),
         ),
         arguments={"incomplete": True},
+        options=("angle_step",),
     ),
 )
 

@@ -196,6 +196,7 @@ class InDocuments:
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     may_be_incomplete : so is one whose description lacks what the computation needs
     points : whether the computation takes the points that the document is about
+    options : parameters of the computation that somebody may wish for a document, by the names they have there
     """
 
     chapters: tuple[ChapterOfTopic, ...] = ()
@@ -208,6 +209,7 @@ class InDocuments:
     may_be_incomplete: bool = False
     points: bool = False
     chosen_arguments: Mapping[str, Any] = field(default_factory=dict)
+    options: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from centrode.model.explanatory_note import Standard
+from centrode.model.page_standards import Standard
 from centrode.render.document.typst import shown as shown
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 from centrode.locale import _, speaking
-from centrode.model.explanatory_note import Standard
+from centrode.model.page_standards import Standard
 from centrode.render.document.blocks import Report, TitlePageBlocks
 from centrode.render.document.outline import Heading
 from centrode.report.editable.pandoc import run_pandoc
