@@ -68,15 +68,9 @@ class ExpansionStep:
         """A product without its sign, and whether a minus of an entry stands in front of it."""
         minus, factors = False, []
         for entry in term.entries:
-            formula = formula_of(entry)
-            if formula.single:
-                minus ^= formula.number < 0
-                whole = formula_of(entry.scale(-1)) if formula.number < 0 else formula
-                if whole.number == 1 and not whole.product.letters and not whole.product.waves:
-                    continue
-                factors.append(spell_formula(whole, spelling))
-            else:
-                factors.append(spelling.bracket(spell_formula(formula, spelling)))
+            negative, text = _factor_text(entry, spelling)
+            minus ^= negative
+            factors += [text] if text else []
         if term.minor:
             rows = [[_entry_text(entry, spelling) for entry in row] for row in term.minor]
             if not self.multiplied:
@@ -97,20 +91,28 @@ def multiplied_text(minor: Entries, spelling: FormulaSpelling) -> str:
             continue
         negative, factors = sign < 0, []
         for entry in (one, other):
-            formula = formula_of(entry)
-            if formula.single and formula.number < 0:
-                negative, formula = not negative, formula_of(entry.scale(-1))
-            spelled = spell_formula(formula, spelling)
-            several = not formula.single and not (formula.product.letters or formula.product.waves)
-            bare = formula.single and not formula.product.letters and not formula.product.waves
-            if bare and size_of(formula.number) == 1:
-                continue
-            factors.append(spelling.bracket(spelled) if several else spelled)
+            minus, spelled = _factor_text(entry, spelling)
+            negative ^= minus
+            factors += [spelled] if spelled else []
         mark = spelling.minus if negative else ""
         text += (f" {spelling.minus if negative else '+'} " if text else mark) + (
             spelling.product(factors) or spelling.number(1)
         )
     return text or spelling.number(0)
+
+
+def _factor_text(entry: Sum, spelling: FormulaSpelling) -> tuple[bool, str]:
+    """A factor of a product without its sign, nothing for one; and whether its sign is a minus."""
+    formula = formula_of(entry)
+    bare = not formula.product.letters and not formula.product.waves and size_of(formula.number) == 1
+    if bare:  # one, or a sum as it stands
+        return (formula.number < 0, "") if formula.single else (
+            False, spelling.bracket(spell_formula(formula, spelling))
+        )  # fmt: skip
+    if formula.number < 0:
+        formula = formula_of(entry.scale(-1))
+        return True, spell_formula(formula, spelling)
+    return False, spell_formula(formula, spelling)
 
 
 def _entry_text(entry: Sum, spelling: FormulaSpelling) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 
 from centrode.equations.inverse_functions import (
     CONSTANTS,
+    HALF_PI,
     AngleSum,
     ArcFunction,
     Distance,
@@ -85,15 +86,19 @@ class SpherePositions:
         size = Letter(SIGN - 100 + 4 * number + 3, f"d{index}")
         base, corner = (Letter(DELTA + self.deltas + k, f"delta{self.deltas + k}") for k in (-1, 0))
         sign = Letter(SIGN + number, f"k{number}")
-        lines.append(self._line(size, Distance(tuple(total for total in (p, q) if total)), "1"))
-        lines.append(self._line(base, VectorDirection(q, p), "rad"))
-        lines.append(self._line(corner, ArcFunction("arccos", formula_of(r), size), "rad"))
+        direction = self._line(base, VectorDirection(q, p), "rad")
+        if r:
+            lines.append(self._line(size, Distance(tuple(total for total in (p, q) if total)), "1"))
+            lines += [direction, self._line(corner, ArcFunction("arccos", formula_of(r), size), "rad")]
+        else:  # the arc is a right angle
+            size = corner
+            lines += [direction, self._line(corner, AngleSum(Sum.letter(HALF_PI)), "rad")]
         places = tuple(map(self._at, closure.places))
         initial = 1 if float(np.linalg.det(np.array(places))) >= 0.0 else -1
         self.values[sign] = float(initial)
         total = Sum.letter(base) + Sum.letter(sign) * Sum.letter(corner)
         lines.append(self._line(closure.turn, AngleSum(total), "rad"))
-        if whole:
+        if whole and r:
             self.tangents[closure.turn] = TangentOfAngle(p, q, r, sign, initial)
         centre, far, point = closure.places
         return GroupPositions(
@@ -104,7 +109,7 @@ class SpherePositions:
             Branch(sign, None, initial, closure.places),
             (size, base, corner),
             (),
-            dict(self.tangents) if whole else {},
+            {x: one for x, one in self.tangents.items() if x == closure.turn},
         )
 
     def _leaning(self, closure: SphereClosure) -> GroupPositions:

@@ -270,4 +270,7 @@ def _spherical(points: tuple[SphericalCoordinates, ...]) -> Iterator[Block]:
             (term, number), *_others = one.x.terms.items()
             ratio = formula_of(one.y.divide(term).scale(1 / Fraction(number)))
             lines.append((tangent_of, FactoredFormula(ratio)))
+        else:
+            direction = InverseFormula(VectorDirection(one.y, one.x))
+            lines.append((SumFormula(Sum.letter(one.longitude)), direction))
     yield Formula(tuple(lines))
