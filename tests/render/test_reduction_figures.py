@@ -21,7 +21,8 @@ def test_the_press() -> None:
     press = ct.example("six-bar-press")
     results = reduction_results(press, 37)
     data, figures = results.reduction, ct.figures(results)
-    assert list(figures) == ["reduced-inertia", "reduced-moment"]
+    loads = ["loads", "load-diagram", "moment-sum"]
+    assert list(figures) == ["reduced-inertia", "reduced-moment", *loads]
     assert names(figures["reduced-inertia"], 0) == ["AB", "CD", "DH", "slider", "sum"]
     assert names(figures["reduced-moment"], 1) == ["weight AB", "weight CD", "weight DH"]
     drawn = {line.get_label(): line.get_ydata() for line in figures["reduced-inertia"].axes[0].lines}
@@ -52,4 +53,4 @@ def test_no_masses_no_picture_of_them() -> None:
         drives=[{"link": "OA", "speed": 1}],
         loads=[{"kind": "torque", "link": "OA", "value": "sin(x)"}],
     )
-    assert list(ct.figures(reduction_results(loaded, 5))) == ["reduced-moment"]
+    assert list(ct.figures(reduction_results(loaded, 5))) == ["reduced-moment", "loads", "load-diagram"]
