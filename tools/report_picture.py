@@ -18,7 +18,7 @@ from PIL import Image, ImageChops, ImageOps
 from playwright.sync_api import sync_playwright
 
 import centrode as ct
-from centrode.report.pdf_document import STYLE, Source
+from centrode.report.pdf_document import Source, style_files
 
 FILE = Path(__file__).parents[1] / "docs" / "images" / "report.png"
 EXAMPLE = "six-bar-press"
@@ -54,8 +54,9 @@ def page_in_browser() -> Image.Image:
 
 def page_of_paper(chapters: tuple[str, ...] | None, index: int) -> Image.Image:
     """A page of the PDF with these chapters, or of the compact report."""
-    source = Source(ct.report(ct.example(EXAMPLE), ct.ReportOptions(chapters=chapters)))
-    files: Any = {"main": source.text.encode(), "style.typ": STYLE.read_bytes(), **source.files}
+    report = ct.report(ct.example(EXAMPLE), ct.ReportOptions(chapters=chapters))
+    source = Source(report)
+    files: Any = {"main": source.text.encode(), **style_files(report), **source.files}
     pages: Any = typst.Compiler(ignore_system_fonts=True).compile(input=files, format="png", ppi=150)
     page = Image.open(io.BytesIO(pages[index])).convert("RGB")
     return page.resize((round(page.width * HEIGHT / page.height), HEIGHT), Image.Resampling.LANCZOS)

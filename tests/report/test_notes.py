@@ -13,6 +13,7 @@ import docx
 import pytest
 
 import centrode as ct
+from centrode.model.cam_files import cam_text
 from centrode.render.document.blocks import (
     ChapterBlocks,
     ParagraphBlock,
@@ -268,3 +269,18 @@ def test_the_notebook_begins_with_the_title_page_and_the_task(note: Report) -> N
     assert page.head[0] in cells[0]
     assert cells[1].startswith("## ")
     assert any("chapters=('conclusions',)" in cell for cell in cells)
+
+
+def test_a_cam_has_a_note_with_the_conclusions_of_its_author() -> None:
+    text = (
+        cam_text(ct.example("valve-cam"))
+        + '[report]\nconclusions = "It lifts."\n[report.title_page]\nyear = 2026\n'
+    )
+    made = ct.report(ct.parse_cam(text), ct.ReportOptions(chapters=("data",)), language="en")
+    assert [(chapter.name, chapter.missing) for chapter in made.chapters] == [
+        ("data", ""),
+        ("conclusions", ""),
+    ]
+    assert made.title_page is not None
+    assert made.title_page.foot == "2026"
+    assert "It lifts." in PdfFile(pdf_document(made)).text

@@ -152,6 +152,6 @@ def _chapter(key: str, kind: Kind, study: ReportStudy) -> ChapterBlocks | None:
         chapter = kind.make(study)
     except CentrodeError as failure:
         return ChapterBlocks(key, _(kind.title), missing=str(failure))
-    if chapter is None and study.wishes.chapters is not None:
+    if chapter is None and key in (study.wishes.chapters or ()):
         return ChapterBlocks(key, _(kind.title), missing=_("the description has nothing for this chapter"))
     return chapter

@@ -313,6 +313,13 @@ def _words(text: str) -> list[str]:
 
 
 STYLE = Path(__file__).with_name("style.typ")
+
+
+def style_files(report: Report) -> dict[str, bytes]:
+    """What the source of a report imports: the style, and the page of its standard."""
+    return {"style.typ": STYLE.read_bytes(), "page.typ": page_style(report.standard).typst().encode()}
+
+
 STANDARDS: tuple[list[Any], ...] = (["ua-1", "a-2a"], [])
 """PDF/UA-1 (tagged, described) with PDF/A-2a (kept for decades); neither where a user's letters are in no font."""
 
@@ -330,8 +337,7 @@ def pdf_document(report: Report) -> bytes:
         source = Source(report)
     files: Any = {
         "main": source.text.encode(),
-        "style.typ": STYLE.read_bytes(),
-        "page.typ": page_style(report.standard).typst().encode(),
+        **style_files(report),
         **source.files,
     }
     compiler = typst.Compiler(ignore_system_fonts=True)
