@@ -318,6 +318,18 @@ class CamReportWishes(DescriptionPart):
     text: ChapterTexts = FrozenMap({})
 
 
+def _read_year(value: object) -> int | str:
+    """A year as a whole number or a text."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return value
+    return read_text(value)
+
+
+def _read_variant(value: object) -> str:
+    """A variant by its number or its name."""
+    return str(_read_year(value))
+
+
 class ReportWishes(DescriptionPart):
     """What the report of a mechanism is to hold; what is left out is chosen by the report.
 
@@ -334,6 +346,8 @@ class ReportWishes(DescriptionPart):
         Everything there is to show, or the compact form; compact if left out, chapters that are chosen excepted.
     text : names of chapters -> ChapterText
         Own text before and after chapters.
+    institution, department, course, title, author, group, teacher, year, variant : what a work is signed with
+    designation : of the drawings, in their main inscriptions
     """
 
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
@@ -342,3 +356,13 @@ class ReportWishes(DescriptionPart):
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
     full: Flag | None = None
     text: ChapterTexts = FrozenMap({})
+    institution: Text = ""
+    department: Text = ""
+    course: Text = ""
+    title: Text = ""
+    author: Text = ""
+    group: Text = ""
+    teacher: Text = ""
+    year: Annotated[int | str, PlainValidator(_read_year)] = ""
+    variant: Annotated[str, PlainValidator(_read_variant)] = ""
+    designation: Text = ""

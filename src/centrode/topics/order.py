@@ -33,6 +33,7 @@ COMMANDS = (
     "angles",
     "sweep",
     "draw",
+    "sheets",
     "export",
     "examples",
     "schema",
