@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
+from centrode.render.document.figures import TEXT_HEIGHT, TEXT_WIDTH
 from centrode.render.drawing.style import house_style
-from centrode.report.pdf_document import TEXT_HEIGHT, TEXT_WIDTH
 
 Array = NDArray[np.float64]
 SMALLEST = 7.0
