@@ -235,3 +235,29 @@ def test_places_are_resolved_in_python_too() -> None:
     )
     assert isinstance(m.frame.points["D"], Placed)
     assert m.frame.coordinates["D"] == pytest.approx((1, 2), abs=4e-16)
+
+
+SIGNED = "[frame.points]\nO = [0, 0]\n[links.OA]\nlength = 0.5\n[report]\n"
+
+
+def test_a_work_is_signed_in_its_report() -> None:
+    text = 'institution = "KPI"\nauthor = "T. Shevchenko"\nyear = 2026\nvariant = 7\ndesignation = "TMM.07"\n'
+    signed = parse_mechanism(SIGNED + text).report
+    assert (signed.institution, signed.author, signed.year) == ("KPI", "T. Shevchenko", 2026)
+    assert (signed.variant, signed.designation, signed.teacher) == ("7", "TMM.07", "")
+    assert parse_mechanism(SIGNED + 'year = "2025/26"\n').report.year == "2025/26"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("author = 5", "[report] author: expected a text, got 5"),
+        ("year = [2026]", "[report] year: expected a text, got a list of 1 value"),
+        ("variant = true", "[report] variant: expected a text, got true"),
+        ('autor = "T. Shevchenko"', 'unknown key "autor"; did you mean "author"?'),
+    ],
+)
+def test_what_does_not_sign_a_work_is_named(text: str, message: str) -> None:
+    with pytest.raises(InputError) as told:
+        parse_mechanism(SIGNED + text)
+    assert message in str(told.value)
