@@ -36,6 +36,14 @@ ALLOWED = {
         "run",
         "equations",
     },
+    # sheets of drawings put parts of several results side by side
+    "report/drawing_sheets.py": {
+        "centrode.analysis.graphic.results",
+        "centrode.analysis.position_plan",
+        "centrode.dynamics.force_polygons.results",
+        "centrode.dynamics.steady_motion.machine",
+        "centrode.views.drawing_sheets",
+    },
     # every document opens with the scheme of its mechanism
     "report/opening.py": {"centrode.views.schemes"},
     # a layer of a drawing at full size, not the topic

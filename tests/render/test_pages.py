@@ -193,3 +193,39 @@ def test_transmission_angles_are_drawn_in_degrees() -> None:
     (curve,) = [line for line in upper.lines if line.get_label() == "coupler-rocker"]
     assert np.allclose(at_samples(curve.get_ydata(), 37), np.degrees(angles.transmission_angle.values[:, 0]))
     assert "°" in lower.get_ylabel()
+
+
+def test_instants_in_one_drawing_have_true_vectors_and_centres() -> None:
+    """The printed check: t = 0 and t = pi/2. Tips of the arrows are the motion's velocities in one scale."""
+    press = ct.example("slider-between-cranks")
+    figure = ct.figures(ct.graphic_analysis(press, instants=[0.0, math.pi / 2]))["instants"]
+    overlay, axes = figure.axes[0], figure.axes[1]
+    low, place = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]), axes.get_position()
+    corner = np.array([place.x0, place.y0]) * np.array(figure.get_size_inches()) * INCH
+    scale = (axes.get_xlim()[1] - low[0]) / (place.width * figure.get_figwidth() * INCH)
+    found = []
+    for arrow in overlay.patches:
+        if isinstance(arrow, FancyArrowPatch) and arrow._posA_posB is not None:
+            start, end = np.array(arrow._posA_posB)
+            found.append(np.array([low + scale * (start - corner), end - start]))
+    motion = ct.motion(press, at=[0.0, math.pi / 2])
+    vectors = []
+    for quantity, per in (("velocity", 0.025), ("acceleration", 0.05)):  # as the figure says
+        for sample in range(2):
+            for point in press.moving_points:
+                at = motion.position.sel(point=point).values[sample]
+                size = motion[quantity].sel(point=point).values[sample] / per
+                if np.hypot(*size) >= 1.0:  # millimetres
+                    vectors.append(np.array([at, size]))
+    assert len(found) == len(vectors)
+    for vector in vectors:
+        assert min(np.abs(one - vector).max() for one in found) <= 1e-9 * 100.0
+    texts = {text.get_text() for text in overlay.texts}
+    # at pi/2 the coupler translates: it has one centre, the cranks share theirs
+    assert {r"$P_{AC}$", r"$P_{CB}$", r"$P_{CB{}^{\prime}}$", r"$P_{OA}$", r"$P_{BD}$"} <= texts
+    assert not {r"$P_{AC{}^{\prime}}$", r"$P_{OA{}^{\prime}}$"} & texts
+    assert {"A", "A′", "O", "D"} <= texts and "O′" not in texts
+
+
+def test_one_instant_has_no_drawing_of_several() -> None:
+    assert "instants" not in ct.figures(ct.graphic_analysis(ct.example("crank-rocker"), instants=[0.7]))

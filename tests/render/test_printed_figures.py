@@ -10,14 +10,14 @@ import pytest
 import centrode as ct
 from centrode.render.figures.pictures import figures_of
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import VectorPage
 from centrode.topics.registry import TOPICS
 from centrode.topics.sheets import sheet_with_parts
 from printed import faults
 from samples import ALL
 
-TO_SCALE = GroupPage, InstantPage, LeverPage, PositionsPage, VectorDiagramPage, VectorPage
+TO_SCALE = GroupPage, InstantPage, InstantsPage, LeverPage, PositionsPage, VectorDiagramPage, VectorPage
 TOPIC = {topic.name: topic for topic in TOPICS}
 KINDS: Mapping[tuple[str, str], tuple[dict[str, Any], tuple[str, ...]]] = {
     ("six-bar-press", "run"): (
@@ -36,6 +36,7 @@ KINDS: Mapping[tuple[str, str], tuple[dict[str, Any], tuple[str, ...]]] = {
     ("six-bar-press", "plan"): ({}, ("plan",)),
     ("six-bar-press", "polygons"): ({"at": (0.7,)}, ("group-1", "lever")),
     ("crank-rocker", "diagrams"): ({"instants": (0.7,)}, ("mechanism", "velocity", "acceleration")),
+    ("slider-between-cranks", "diagrams"): ({}, ("instants",)),
     ("crank-rocker", "integrate"): ({}, ("integration-errors",)),
     ("jansen-leg", "run"): ({"samples": 73}, ("mechanism",)),
     ("jansen-leg", "centres"): ({}, ("centres",)),

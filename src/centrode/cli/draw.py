@@ -1,4 +1,4 @@
-"""`centrode draw`: a mechanism at full size in conventional signs, for the shop."""
+"""`centrode draw`: a mechanism to scale in conventional signs, for the shop."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ REQUIRE_CENTRES = Lazily("centrode.analysis.instant_centres.results", "require_c
 KINDS = {".dxf": library.write_drawing_dxf, ".svg": library.write_drawing_svg}
 
 
-@click.command(help=mark("Draw a mechanism at full size in conventional signs."))
+@click.command(help=mark("Draw a mechanism to scale in conventional signs."))
 @mechanism_argument
 @click.option(
     "--at",
@@ -49,6 +49,12 @@ KINDS = {".dxf": library.write_drawing_dxf, ".svg": library.write_drawing_svg}
     metavar=mark("LINK"),
     help=mark("A link whose centrodes are drawn; may be repeated."),
 )
+@click.option(
+    "--scale",
+    default="1:1",
+    metavar=mark("RATIO"),
+    help=mark("Scale of the drawing, such as 1:5 or 2:1; 1:1 by default."),
+)
 @click.option("--no-names", is_flag=True, help=mark("Omit the names of the points."))
 @samples_option
 @start_option
@@ -63,7 +69,7 @@ KINDS = {".dxf": library.write_drawing_dxf, ".svg": library.write_drawing_svg}
 )
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 def draw(
-    mechanism: str, instant: str | None, paths: tuple[str, ...], links: tuple[str, ...], no_names: bool,
+    mechanism: str, instant: str | None, paths: tuple[str, ...], links: tuple[str, ...], scale: str, no_names: bool,
     samples: int | None, start: str | None, stop: str | None, ranged: str | None, out: Path, force: bool,
 ) -> None:  # fmt: skip
     """Write one drawing, whole or not at all."""
@@ -71,6 +77,7 @@ def draw(
     if kind not in KINDS:
         what = _("a drawing cannot be written as {ending}").format(ending=f'"{out.suffix}"')
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
+    ratio = library.read_scale(scale, "--scale")
     description = library.load(mechanism)
     announce_size(description, samples)
     description = description.with_range(ranged)
@@ -95,6 +102,7 @@ def draw(
             not no_names,
             course,
             str if kind == ".dxf" else spelled_unit,
+            ratio,
         )
     with output.output_file(out, force=force) as draft:
         KINDS[kind](drawing, draft)

@@ -27,6 +27,7 @@ from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.report import report
 from centrode.cli.schema import schema
+from centrode.cli.sheets import sheets
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
 from centrode.cli.translation import language_option, translate_command, wished_language, with_language
@@ -45,6 +46,7 @@ OWN: tuple[click.Command, ...] = (
     cam,
     sweep,
     draw,
+    sheets,
     export,
     examples,
     schema,

@@ -95,6 +95,7 @@ class TitlePage(DescriptionPart):
     teacher : who accepts it
     city : str
     year : int
+    designation : of the drawings, in their main inscriptions; the number of the sheet is appended
     """
 
     ministry: Line = ""
@@ -110,6 +111,7 @@ class TitlePage(DescriptionPart):
     teacher: Line = ""
     city: Line = ""
     year: Annotated[int, PlainValidator(_read_year)] | None = None
+    designation: Line = ""
 
 
 class ExplanatoryNote(DescriptionPart):

@@ -170,7 +170,7 @@ _PARAGRAPHS: Schema = {
 TITLE_PAGE: dict[str, Schema] = {
     **dict.fromkeys(("ministry", "institution", "faculty", "department", "work", "course", "title"), _LINE),
     "variant": {"anyOf": [{"type": "integer"}, _LINE]},
-    **dict.fromkeys(("author", "group", "teacher", "city"), _LINE),
+    **dict.fromkeys(("author", "group", "teacher", "city", "designation"), _LINE),
     "year": {"type": "integer", "minimum": FIRST_YEAR, "maximum": LAST_YEAR},
 }
 NOTE: dict[str, Schema] = {

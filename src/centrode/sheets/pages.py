@@ -40,7 +40,7 @@ class PositionsPage:
 
 @dataclass(frozen=True)
 class MovingPoint:
-    """Where a point is [m] and how fast it moves [m/s], as complex numbers."""
+    """Where a point is [m] and how fast it moves [m/s], or its acceleration [m/s^2], as complex numbers."""
 
     point: str
     place: complex
@@ -82,6 +82,26 @@ class InstantPage:
     velocities: tuple[MovingPoint, ...]
     centres: tuple[CentreOfLink, ...]
     senses: Mapping[str, bool]
+    lines: tuple[Text, ...]
+
+
+@dataclass(frozen=True)
+class InstantsPage:
+    """A mechanism at several instants in one drawing, with instant centres, velocities and accelerations.
+
+    Attributes
+    ----------
+    title : what it shows
+    mechanism : kinds of its links, joints and drives
+    instants : what each shows, in their order
+    accelerations : of the points that move [m/s^2], at each instant
+    lines : below each other in the column at the right
+    """
+
+    title: Sentence
+    mechanism: Mechanism
+    instants: tuple[InstantPage, ...]
+    accelerations: tuple[tuple[MovingPoint, ...], ...]
     lines: tuple[Text, ...]
 
 

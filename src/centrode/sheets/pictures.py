@@ -8,7 +8,7 @@ from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWit
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
-from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AreaDiagram, CurveDiagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
 
@@ -27,6 +27,7 @@ Picture: TypeAlias = (
     | LeverPage
     | PositionsPage
     | InstantPage
+    | InstantsPage
     | VectorDiagramPage
     | MechanismPicture
     | PathsPicture

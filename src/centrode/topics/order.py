@@ -35,6 +35,7 @@ COMMANDS = (
     "angles",
     "sweep",
     "draw",
+    "sheets",
     "export",
     "examples",
     "schema",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -16,6 +16,7 @@ from centrode.sheets.pages import (
     CentreOfLink,
     DiagramStroke,
     InstantPage,
+    InstantsPage,
     MovingPoint,
     VectorDiagramPage,
 )
@@ -56,7 +57,7 @@ if TYPE_CHECKING:
     from centrode.analysis.graphic.stage import ConstructionStep, DrawingBoard
 
 Array: TypeAlias = NDArray[np.float64]
-Page: TypeAlias = InstantPage | VectorDiagramPage
+Page: TypeAlias = InstantPage | InstantsPage | VectorDiagramPage
 
 NONE = 1e-14
 """What is smaller than this part of the greatest number of its kind is nothing: rounding of the drawing."""
@@ -66,12 +67,15 @@ ALIKE = 1e-15
 """Differences below this part of the greatest number are none."""
 TOLERANCE = 1e-9
 """Part of the greatest number of its kind up to which a drawing that is read exactly agrees with the closed form."""
+MOST_TOGETHER = 3
+"""Instants in one drawing."""
 MOST_DISTANCES = 3
 """Distances from an instant centre that are listed behind its place."""
 HEADS = {1: Sentence("velocities"), 2: Sentence("accelerations")}
 GROUPWISE = {1: Sentence("Velocities, group by group:"), 2: Sentence("Accelerations, group by group:")}
 OF_IMAGES = ("relative", "sliding", "image")
 """Kinds of vectors that begin at the pole and end in an image: the image has an arrow of its own."""
+TOGETHER = Sentence("Positions with instant centres, velocities and accelerations")
 TITLES = {1: Sentence("Velocity diagram"), 2: Sentence("Acceleration diagram")}
 
 
@@ -82,6 +86,9 @@ def sheet(results: GraphicResults) -> Sheet:
     pictures: dict[str, Page] = {}
     for k, check in checks:
         pictures |= {_numbered_name(name, k, several): page for name, page in _pages(check.diagrams).items()}
+    drawn = tuple(check.diagrams for _k, check in checks)[:MOST_TOGETHER]
+    if len(drawn) > 1:
+        pictures["instants"] = _instants_page(drawn)
     return Sheet(
         tables={_numbered_name("check", k, several): _file(check) for k, check in checks},
         pictures=pictures,
@@ -237,9 +244,8 @@ def _trial_lines(step: ConstructionStep, order: int) -> list[Text]:
 def _pages(found: Diagrams) -> dict[str, Page]:
     """The mechanism at the instant, and both diagrams."""
     diagrams = {"velocity": found.velocity, "acceleration": found.acceleration}
-    return {"mechanism": _instant_page(found)} | {
-        name: _diagram_page(found, diagram) for name, diagram in diagrams.items()
-    }
+    pages: dict[str, Page] = {"mechanism": _instant_page(found)}
+    return pages | {name: _diagram_page(found, diagram) for name, diagram in diagrams.items()}
 
 
 def _instant_page(found: Diagrams) -> InstantPage:
@@ -263,6 +269,26 @@ def _instant_page(found: Diagrams) -> InstantPage:
         ),
         {link: turn > 0 for link, turn in found.velocity.turns.items() if link in centres},
         tuple(_turning(found)),
+    )
+
+
+def _instants_page(several: Sequence[Diagrams]) -> InstantsPage:
+    """The mechanism at several instants with centres, velocities and accelerations; ranges of links in the column."""
+    lines: list[Text] = []
+    for found in several:
+        lines += [instant_title(found.mechanism, found.exact, 0), *_turning(found), NOTHING]
+    return InstantsPage(
+        TOGETHER,
+        several[0].mechanism,
+        tuple(_instant_page(found) for found in several),
+        tuple(
+            tuple(
+                MovingPoint(point, found.places[point], found.acceleration.images[point])
+                for point in found.mechanism.moving_points
+            )
+            for found in several
+        ),
+        tuple(lines[:-1]),
     )
 
 
@@ -406,6 +432,8 @@ def _chapter(results: GraphicResults) -> Chapter:
         if isinstance(check, GraphicCheck):
             read_exactly = check.diagrams.board.angle_step is None
             sections.append(Section(NOTHING, (_table(check, COMPARISON),), detail=read_exactly))
+    if sum(isinstance(check, GraphicCheck) for check in results.checks) > 1:
+        sections.append(Section(Sentence("The instants in one drawing"), (Illustration("instants"),)))
     return Chapter(Sentence("Graph-analytic check"), tuple(sections))
 
 

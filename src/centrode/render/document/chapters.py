@@ -22,8 +22,9 @@ from centrode.render.figures import pictures as figures_pictures
 from centrode.render.pages.force_polygons import drawing_end, group_scales
 from centrode.render.pages.instants import DRAWING as INSTANT
 from centrode.render.pages.positions import DRAWING as POSITIONS
+from centrode.render.pages.several_instants import DRAWING as INSTANTS
 from centrode.sheets.force_pages import GroupPage, LeverPage
-from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
@@ -169,7 +170,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
                 name = spelling.text(shown.title if caption is None else caption)
                 name = _with_scales(shown, name) if isinstance(shown, GroupPage) else name
                 return drawn_to_scale(figure, name, *drawing_end(shown))
-            if isinstance(shown, PositionsPage | InstantPage | VectorDiagramPage):
+            if isinstance(shown, PositionsPage | InstantPage | InstantsPage | VectorDiagramPage):
                 words = spelling.text(shown.title if caption is None else caption)
                 return _drawn(shown, figure, words, spelling)
             if isinstance(shown, VectorPage):
@@ -224,7 +225,7 @@ def _with_scales(page: GroupPage, name: str) -> str:
 
 
 def _drawn(
-    page: PositionsPage | InstantPage | VectorDiagramPage,
+    page: PositionsPage | InstantPage | InstantsPage | VectorDiagramPage,
     figure: Figure,
     title: str,
     spelling: DocumentSpelling,
@@ -238,8 +239,14 @@ def _drawn(
     caption = _("{title}; 1 mm of the drawing is {scale} {unit}").format(
         title=title, scale=spelling.numbers.plain(scale), unit=unit
     )
-    right, top = POSITIONS if isinstance(page, PositionsPage) else INSTANT
-    return drawn_to_scale(figure, caption, right, top)
+    return drawn_to_scale(figure, caption, *_drawing_end(page))
+
+
+def _drawing_end(page: PositionsPage | InstantPage | InstantsPage | VectorDiagramPage) -> tuple[float, float]:
+    """Where the drawing of a page ends at its column of text, and at its head [mm]."""
+    if isinstance(page, InstantsPage):
+        return INSTANTS
+    return POSITIONS if isinstance(page, PositionsPage) else INSTANT
 
 
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.TableBlock:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import unicodedata
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 
-CONTINUOUS, CHAIN = "continuous", "chain"
+CONTINUOUS, CHAIN, DASHED = "continuous", "chain", "dashed"
 PAPER = 250.0
 """Longer side of a drawing [mm] up to which lines have the widths of their layers; beyond, they grow with it."""
 LEAST = 25.0
@@ -55,11 +56,12 @@ LAYERS = {
 
 @dataclass(frozen=True)
 class Stroke:
-    """A line through places (n, 2) [mm]; `level` says what covers what."""
+    """A line through places (n, 2) [mm]; `level` says what covers what; a `filled` one is a black body."""
 
     layer: str
     places: Array
     level: float = 0.0
+    filled: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,13 +77,17 @@ class Ring:
 
 @dataclass(frozen=True)
 class BoardWords:
-    """A line of text, its middle at a place or, where `left`, its left end; height of capital letters [mm]."""
+    """A line of text, its middle at a place or, where `left`, its left end; height of capital letters [mm].
+
+    `angle` is its direction [deg].
+    """
 
     layer: str
     text: str
     place: tuple[float, float]
     height: float
     left: bool = False
+    angle: float = 0.0
 
     def box(self) -> Array:
         """Two corners of the room that it takes [mm]."""
@@ -97,6 +103,16 @@ class Cover:
 
     corners: Array
     level: float
+
+    @functools.cached_property
+    def low(self) -> Array:
+        """The least coordinates of its corners."""
+        return np.asarray(self.corners.min(axis=0))
+
+    @functools.cached_property
+    def high(self) -> Array:
+        """The greatest coordinates of its corners."""
+        return np.asarray(self.corners.max(axis=0))
 
 
 @dataclass
@@ -274,6 +290,9 @@ def visible(drawing: Drawing) -> tuple[list[Stroke], list[Ring]]:
             strokes += [Stroke(ring.layer, part, ring.level) for part in parts]
     for stroke in drawing.strokes:
         covers = [cover for cover in drawing.covers if cover.level > stroke.level]
+        if stroke.filled:
+            strokes.append(stroke)
+            continue
         strokes += [
             Stroke(stroke.layer, part, stroke.level) for part in _visible_parts(stroke.places, covers)
         ]
@@ -288,7 +307,7 @@ def _visible_parts(places: Array, covers: list[Cover]) -> list[Array]:
         if not (np.isfinite(start).all() and np.isfinite(end).all()):
             open_end = False
             continue
-        free = _free(start, end, covers)
+        free = _free(start, end, _near(np.array([start, end]), covers))
         for first, last in free:
             begin, finish = start + first * (end - start), start + last * (end - start)
             if open_end and first == 0.0:
@@ -298,6 +317,14 @@ def _visible_parts(places: Array, covers: list[Cover]) -> list[Array]:
             open_end = last == 1.0
         open_end = open_end and bool(free)
     return [np.array(part) for part in parts]
+
+
+def _near(places: Array, covers: list[Cover]) -> list[Cover]:
+    """The covers whose box meets that of places."""
+    if not covers:
+        return covers
+    low, high = places.min(axis=0), places.max(axis=0)
+    return [cover for cover in covers if (cover.low <= high).all() and (cover.high >= low).all()]
 
 
 def _free(start: Array, end: Array, covers: list[Cover]) -> list[tuple[float, float]]:

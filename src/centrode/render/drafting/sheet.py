@@ -1,4 +1,4 @@
-"""A mechanism at one instant as a drawing at full size: links, frame, wheels, cams, paths, centrodes, a title."""
+"""A mechanism at one instant as a drawing to scale: links, frame, wheels, cams, paths, centrodes, a title."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from centrode.errors import NotComputedYet
-from centrode.locale import _
+from centrode.locale import _, decimal_mark
 from centrode.model.labels import place_words
 from centrode.quantities import spelled_unit
 from centrode.render.drafting.board import CAPITAL, Board, BoardWords, Drawing, Stroke, on_paper
+from centrode.render.drafting.scales import DrawingScale
 from centrode.render.drawing.cams import draw_axes_of_cams, draw_turned_cams
 from centrode.render.drawing.linkage import draw_drive, draw_frame, draw_hinges, draw_links, draw_names
 from centrode.render.drawing.style import pens
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 METRE = 1000.0
 """Millimetres."""
+FULL_SIZE = DrawingScale(1.0, 1.0)
 TITLE = 12.0
 """Size of the title's letters, in points of the names' paper."""
 FARTHEST = 1.0
@@ -45,8 +47,9 @@ def mechanism_drawing(
     names: bool = True,
     course: xarray.Dataset | None = None,
     unit_name: Callable[[str], str] = spelled_unit,
+    scale: DrawingScale = FULL_SIZE,
 ) -> Drawing:
-    """A mechanism at a sample of its motion, at full size in millimetres.
+    """A mechanism at a sample of its motion in millimetres, at full size unless a scale is given.
 
     Parameters
     ----------
@@ -59,6 +62,7 @@ def mechanism_drawing(
     names : write the points' names
     course : the motion that the paths belong to, where it is not `motion`
     unit_name : how units are spelled: as readers print them, `str` for the names that files of data keep
+    scale : size on paper to size in reality
 
     Raises
     ------
@@ -69,7 +73,8 @@ def mechanism_drawing(
         what = _("drawings at full size are made of planar mechanisms")
         raise NotComputedYet("space", what, _("use the pictures of centrode run"))
     scene = scene_of(mechanism, motion)
-    board: Any = Board(METRE / scene.factor)
+    metre = METRE * scale.ratio
+    board: Any = Board(metre / scene.factor)
     board.letters = on_paper(scene.extent, scene.inches, board.scale)
     links = pens(mechanism.link_names)
     with board.on("frame"):
@@ -90,10 +95,16 @@ def mechanism_drawing(
     drawing.strokes = [one for one in drawing.strokes if one.layer != "cams" or not _has_double(one, drawing)]
     whole = motion if course is None else course
     for name in paths:
-        drawing.strokes.append(Stroke("paths", METRE * whole["position"].sel(point=name).values))
+        drawing.strokes.append(Stroke("paths", metre * whole["position"].sel(point=name).values))
     for pair in centrodes:
         drawing.strokes += _centrode(scene, pair, sample, board.scale)
-    _title(drawing, scene, place_words(mechanism, motion, sample, unit_name), CAPITAL * TITLE * board.letters)
+    _title(
+        drawing,
+        scene,
+        place_words(mechanism, motion, sample, unit_name),
+        CAPITAL * TITLE * board.letters,
+        scale,
+    )
     return drawing
 
 
@@ -124,13 +135,13 @@ def _centrode(scene: LinkageScene, pair: xarray.Dataset, sample: int, scale: flo
     return found
 
 
-def _title(drawing: Drawing, scene: LinkageScene, place: str, height: float) -> None:
+def _title(drawing: Drawing, scene: LinkageScene, place: str, height: float, scale: DrawingScale) -> None:
     """The title below the drawing: what it is, where the drive is, scale and unit."""
     low, _high = drawing.box()
     lines = [
         _(scene.mechanism.title),
         place,
-        _("scale 1:1, millimetres"),
+        _("scale {ratio}, millimetres").format(ratio=scale.text.replace(".", decimal_mark())),
     ]
     for number, text in enumerate(line for line in lines if line):
         corner = float(low[0]), float(low[1]) - LINE * height * (number + 1.5)

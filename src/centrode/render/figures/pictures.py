@@ -25,13 +25,14 @@ from centrode.render.pages.force_polygons import group_page
 from centrode.render.pages.instants import instant_figure
 from centrode.render.pages.levers import lever_page
 from centrode.render.pages.positions import positions_figure
+from centrode.render.pages.several_instants import instants_figure
 from centrode.render.pages.vector_diagrams import vector_diagram_figure
 from centrode.render.pages.vectors import vector_page
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
-from centrode.sheets.pages import InstantPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import (
     AreaDiagram,
     CurveDiagram,
@@ -106,6 +107,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return positions_figure(picture, display)
             case InstantPage():
                 return instant_figure(picture, display)
+            case InstantsPage():
+                return instants_figure(picture, display)
             case VectorDiagramPage():
                 return vector_diagram_figure(picture, display)
             case MechanismPicture():

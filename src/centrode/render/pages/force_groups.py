@@ -28,7 +28,7 @@ TINY = 1e-12
 def draw_group(page: Page, view: PageView, sheet: GroupPage, scene: LinkageScene) -> None:
     """Links, sliders and hinges of a group, its outer forces and the reactions of its outer joints."""
     axes = view.axes(page)
-    sign = 1.1 * view.scale
+    sign = 1.1 * page.signs * view.scale
     places = scene.at(0)
     shown = draw_bodies(axes, page, view, scene, sheet, sign)
     for guide in sheet.guides:
@@ -49,7 +49,7 @@ def draw_marks(page: Page, view: PageView, sheet: GroupPage, factor: float) -> N
         at = view.mm(flat([factor * mark.place])[0])
         if (at < view.corner + 4.0).any() or (at > view.corner + view.size - 4.0).any():
             continue
-        signs.cross(page.overlay, at, 1.2, INK)
+        signs.cross(page.overlay, at, 1.2 * page.signs, INK)
         page.name(at, mark.name, clear=1.4, size=9.0)
         for hinge in mark.hinges:
             end = view.mm(flat([factor * hinge])[0])
@@ -93,7 +93,8 @@ def draw_guide(
     guide = scene.mechanism.guide(drawn.guide)
     place = scene.at(0)[guide.point]
     along = flat([drawn.along])[0]
-    ends = [place - RAIL * view.scale * along, place + RAIL * view.scale * along]
+    rail = RAIL * page.signs * view.scale
+    ends = [place - rail * along, place + rail * along]
     if drawn.has_line:
         start = scene.carried(guide.on, next(iter(scene.mechanism.points_of(guide.on).values())), 0)
         reach = [*ends, *([] if start is None else [start])]

@@ -105,25 +105,32 @@ def placed(sheet: InstantPage, factor: float, per_mm: float) -> tuple[LinkageSce
     return scene, PageView.about(CORNER, SIZE, chosen, scale)
 
 
-def draw_velocities(page: Page, view: PageView, sheet: InstantPage, factor: float, per_mm: float) -> None:
-    """Velocities of the moving points as arrows, a millimetre standing for `per_mm` [m/s]."""
+def draw_velocities(
+    page: Page, view: PageView, sheet: InstantPage, factor: float, per_mm: float, mark: str = ""
+) -> None:
+    """Velocities of the moving points as arrows, a millimetre standing for `per_mm` [m/s]; `mark` ends their names."""
     for one in sheet.velocities:
         start = view.mm(flat([factor * one.place])[0])
         end = start + flat([one.rate / per_mm])[0]
         if np.hypot(*(end - start)) < 1.0:
             continue
         arrow(page, start, end, INK, width=1.1)
-        page.name(end, symbol("v", one.point), clear=0.8, size=7.5)
+        page.name(end, symbol("v", one.point + mark), clear=0.8, size=7.5)
 
 
 def draw_centres(
-    page: Page, view: PageView, sheet: InstantPage, factor: float, colours: Mapping[str, Pen]
+    page: Page,
+    view: PageView,
+    sheet: InstantPage,
+    factor: float,
+    colours: Mapping[str, Pen],
+    mark: str = "",
 ) -> None:
     """Instant centres with the perpendiculars that meet there, of those that lie on the page."""
     names: list[tuple[Array, list[str]]] = []
     for centre in sheet.centres:
         at = view.mm(flat([factor * centre.place])[0])
-        if (at < CORNER).any() or (at > CORNER + SIZE).any():
+        if (at < view.corner).any() or (at > view.corner + view.size).any():
             continue
         for point in centre.points:
             place = view.mm(flat([factor * point])[0])
@@ -136,7 +143,7 @@ def draw_centres(
         names.append((at, [centre.link]))
         signs.cross(page.overlay, at, 1.0, colours[centre.link].colour)
     for at, links in names:
-        text = ", ".join(symbol("P", link) for link in links[:4]) + (", …" if len(links) > 4 else "")
+        text = ", ".join(symbol("P", link + mark) for link in links[:4]) + (", …" if len(links) > 4 else "")
         page.name(at, text, clear=1.4, size=7.5)
 
 

@@ -95,7 +95,7 @@ def name_images(page: Page, view: PageView, sheet: LeverPage, factor: float) -> 
         else:
             named.append((at, [name.lower()]))
     for at, names in named:
-        signs.hinge(page.overlay, at, 0.9)
+        signs.hinge(page.overlay, at, 0.9 * page.signs)
         text = ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
         page.name(at, typeset(text), clear=1.6, size=9.0)
 

@@ -66,6 +66,26 @@ class Page:
     wishes: list[Wish] = field(default_factory=list)
     boxes: list[Array] = field(default_factory=list)
     size: tuple[float, float] = (WIDE, HIGH)
+    signs: float = 1.0
+    """How much larger signs are than on a page of a document."""
+
+    def arrow(self, start: Array, end: Array, colour: str, dashes: Any, width: float) -> None:
+        """Draw an arrow between two places [mm]; a short one has a small head."""
+        head = min(7.0, 2.5 * float(np.hypot(*(end - start))) + 1.0)
+        self.overlay.add_patch(
+            FancyArrowPatch(
+                (float(start[0]), float(start[1])),
+                (float(end[0]), float(end[1])),
+                arrowstyle="-|>",
+                mutation_scale=head,
+                shrinkA=0.0,
+                shrinkB=0.0,
+                color=colour,
+                linewidth=width,
+                linestyle=dashes,
+                zorder=5,
+            )
+        )
 
     def name(
         self, place: Array, text: str, clear: float = 1.5, size: float = NAME, colour: str = INK
@@ -255,21 +275,7 @@ def flat(places: Sequence[complex]) -> Array:
 
 def arrow(page: Page, start: Array, end: Array, colour: str, dashes: Any = "-", width: float = 1.0) -> None:
     """An arrow on the page [mm], with names kept off it; a short one has a small head."""
-    head = min(7.0, 2.5 * float(np.hypot(*(end - start))) + 1.0)
-    page.overlay.add_patch(
-        FancyArrowPatch(
-            (float(start[0]), float(start[1])),
-            (float(end[0]), float(end[1])),
-            arrowstyle="-|>",
-            mutation_scale=head,
-            shrinkA=0.0,
-            shrinkB=0.0,
-            color=colour,
-            linewidth=width,
-            linestyle=dashes,
-            zorder=5,
-        )
-    )
+    page.arrow(start, end, colour, dashes, width)
     page.avoid([(start, end)])
 
 
