@@ -43,6 +43,9 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
     "centres": lambda: ct.instant_centres(ct.motion(PRESS, at=[2.0, 3.0])),
     "centrodes": lambda: ct.centrodes(ct.motion(PRESS, 37), "AB"),
     "follower-motion": lambda: follower_motion_results(ct.example("valve-cam"), 37).dataset,
+    "parameter-study": lambda: ct.sweep(
+        "six-bar-press", {"links.OA.length": [0.34, 0.347]}, compute="flywheel"
+    ),
     "sweep": lambda: ct.sweep(
         CRANK_ROCKER, {"links.AB.length": [3.4, 3.5]}, ["position.B", "angle.DB"], 9, reduce="max"
     ),

@@ -692,6 +692,15 @@ SWEEP = Topic(
     restore=Lazily("centrode.sweeps.sweep", "SweepResults"),
 )
 
+PARAMETER_STUDY = Topic(
+    name="parameter-study",
+    compute=Lazily("centrode.sweeps.parameter_studies", "parameter_study"),
+    result=Lazily("centrode.sweeps.parameter_studies", "ParameterStudy"),
+    view=Lazily("centrode.views.parameter_studies", "sheet"),
+    subject="mechanisms",
+    restore=Lazily("centrode.sweeps.parameter_studies", "ParameterStudy"),
+)
+
 VARIANTS = Topic(
     name="variants",
     compute=Lazily("centrode.assignments.results", "variants"),
@@ -981,6 +990,7 @@ TOPICS: tuple[Topic, ...] = (
     RUN,
     CHECK,
     SWEEP,
+    PARAMETER_STUDY,
     VARIANTS,
     GIVEN_MASSES,
     DESCRIBE,
