@@ -512,6 +512,12 @@ CAMS = (
     Quantity(
         "pressure_sine_second", "η″", "1/rad^2", mark("second derivative of the sine of the pressure angle")
     ),
+    Quantity(
+        "sine_coefficient", "a", "1", mark("coefficient of the series of the sine of the pressure angle")
+    ),
+    Quantity(
+        "cosine_coefficient", "b", "1", mark("coefficient of the series of the cosine of the pressure angle")
+    ),
     Quantity("pressure_cosine", "λ", "1", mark("cosine of the pressure angle")),
     Quantity("law_curvature", "K", "1/m", mark("curvature given by the law")),
     Quantity("law_curvature_slope", "K′", "1/m/rad", mark("slope of the curvature given by the law")),

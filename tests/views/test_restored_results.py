@@ -51,6 +51,7 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
     ),
     "motion-laws": lambda: motion_law_results(ct.example("valve-cam")).dataset,
     "roller-path": lambda: ct.cam(ct.example("cam-from-curvature"), 37),
+    "cam-series": lambda: ct.cam_series(ct.example("cam-from-curvature"), 9),
     "path-routes": lambda: cam_routes(ct.example("cam-from-curvature"), 9),
     "cam-profile": lambda: ct.cam_profile(WALKING_WHEEL, 37),
     "walking-wheel": lambda: shoe_profile(WALKING_WHEEL, 37),

@@ -66,6 +66,7 @@ CHAPTERS = (
     "laws",
     "base-radius",
     "path",
+    "series",
     "routes",
     "profile",
     "cam-forces",

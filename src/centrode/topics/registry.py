@@ -872,6 +872,26 @@ PATH_ROUTES = Topic(
     subject="cam",
 )
 
+CAM_SERIES = Topic(
+    name="cam-series",
+    compute=Lazily("centrode.cams.series", "cam_series_results"),
+    result=Lazily("centrode.cams.series", "CamSeriesResults"),
+    restore=Lazily("centrode.cams.series", "CamSeriesResults"),
+    view=Lazily("centrode.views.cam_series", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    command=Command(
+        help="",
+        options=(FlagOption("series", mark("Also the coefficients of the power series of the path.")),),
+        needs=NEEDS_CURVATURE_LAW,
+    ),
+    flag="series",
+    document=InDocuments(
+        chapters=(ChapterOfTopic("series", mark("Power series of the path"), code="ct.cam_series(cam)"),),
+        instants=False,
+    ),
+    subject="cam",
+)
+
 FOLLOWER_FORCES = Topic(
     name="follower-forces",
     compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
@@ -998,6 +1018,7 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_PROFILE,
     ROLLER_PATH,
     PATH_ROUTES,
+    CAM_SERIES,
     CAM_PROFILE,
     WALKING_WHEEL,
     CAM_CONTACT,
