@@ -28,7 +28,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 COEFFICIENTS = ("velocity_coefficient", "acceleration_coefficient")
 DERIVED = ("hinge_angle", "hinge_velocity", "hinge_acceleration", "polar_angle", "azimuth")
-"""Quantities that a motion derives from its points and links: sweeps have these."""
+"""Quantities that a motion derives from its places and spins: sweeps have those instead."""
 RESIDUAL, CONTACT = "residual", "contact"
 _LENGTH = 200
 

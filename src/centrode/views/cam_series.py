@@ -5,7 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from centrode.sheets.sheet import Chapter, Column, Deferred, Fact, Formula, Paragraph, Section, Sheet, Table
+from centrode.sheets.sheet import (
+    Block,
+    Chapter,
+    Column,
+    Deferred,
+    Fact,
+    Formula,
+    Paragraph,
+    Section,
+    Sheet,
+    Table,
+)
 from centrode.sheets.texts import NOTHING, Expression, Number, Sentence, Symbol, Text
 from centrode.views.columns import rows_shown
 from centrode.views.curvature_cams import carrier_table
@@ -120,7 +131,7 @@ def _chapter(results: CamSeriesResults) -> Chapter:
             ),
         )
     )
-    blocks = [
+    blocks: list[Block] = [
         Paragraph(
             Sentence(
                 "With $eta = sin gamma$ and $lambda = cos gamma$ the path of the roller's centre follows from"
