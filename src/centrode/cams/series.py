@@ -32,7 +32,7 @@ def cam_series(
     samples, at
         As of `cam`.
     terms : int
-        The series is cut after a_terms; the description's own number (20) if left out.
+        The series is cut after a_terms; by default the description's own number, else 20.
 
     Returns
     -------
