@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,11 @@ def path_of(parameters: Array, end: float = END) -> ExpandedPath:
     return expanded_path(ExponentialCurvature(k0, k1), radius, 0.0, 0.0, end)
 
 
+def _integral(function: Callable[[Array], Array], end: float) -> float:
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    return float(0.5 * end * weights @ function(0.5 * end * (nodes + 1.0)))
+
+
 def measured(parameters: Array, end: float = END, angles: int = 301) -> dict[str, float]:
     """Measures of a design along the path itself; infinite where it stalls or is undercut."""
     path = path_of(parameters, end)
@@ -43,6 +49,7 @@ def measured(parameters: Array, end: float = END, angles: int = 301) -> dict[str
         return dict.fromkeys(("stress", "pressure_angle", "size"), math.inf) | {
             "lift": -math.inf,
             "gap": -math.inf,
+            "step": -math.inf,
         }
     phi = np.linspace(0.0, end, angles)
     rho, slope = path.radius(phi, 1)
@@ -54,4 +61,6 @@ def measured(parameters: Array, end: float = END, angles: int = 301) -> dict[str
         "size": float(np.max(rho)),
         "lift": float(rho[-1] - rho[0]),
         "gap": float(2 * slope[-1] * math.cos(end)),
+        # 2 (rho_0 end + integral of rho' sin), by Gauss's rule
+        "step": float(2 * (rho[0] * end + _integral(lambda at: path.radius(at, 1)[1] * np.sin(at), end))),
     }

@@ -58,6 +58,7 @@ from .dynamics.balancing.balance import balance as balance
 
 # Cams
 from .cams.cam import cam as cam
+from .cams.series import cam_series as cam_series
 from .cams.results import cam_profile as cam_profile
 from .cams.followers.base_radius_results import choose_base_radius as choose_base_radius
 from .cams.followers.base_circle import follower_cam as follower_cam

@@ -269,6 +269,11 @@ MOTIONS = (
     Quantity("joint_angle", "θ", "rad", mark("angle from the reference arc")),
     Quantity("joint_velocity", "ω_θ", "rad/s", mark("angular velocity from the reference arc")),
     Quantity("joint_acceleration", "ε_θ", "rad/s^2", mark("angular acceleration from the reference arc")),
+    Quantity("hinge_angle", "δ", "rad", mark("angle between the links at a hinge")),
+    Quantity("hinge_velocity", "ω_δ", "rad/s", mark("relative angular velocity at a hinge")),
+    Quantity("hinge_acceleration", "ε_δ", "rad/s^2", mark("relative angular acceleration at a hinge")),
+    Quantity("polar_angle", "θ", "rad", mark("polar angle of the point")),
+    Quantity("azimuth", "φ", "rad", mark("azimuth of the point")),
     Quantity("slide", "s", "m", mark("displacement along the guide")),
     Quantity("slide_velocity", "v_s", "m/s", mark("velocity along the guide")),
     Quantity("slide_acceleration", "a_s", "m/s^2", mark("acceleration along the guide")),
@@ -522,6 +527,12 @@ CAMS = (
     Quantity("pressure_sine_slope", "η′", "1/rad", mark("slope of the sine of the pressure angle")),
     Quantity(
         "pressure_sine_second", "η″", "1/rad^2", mark("second derivative of the sine of the pressure angle")
+    ),
+    Quantity(
+        "sine_coefficient", "a", "1", mark("coefficient of the series of the sine of the pressure angle")
+    ),
+    Quantity(
+        "cosine_coefficient", "b", "1", mark("coefficient of the series of the cosine of the pressure angle")
     ),
     Quantity("pressure_cosine", "λ", "1", mark("cosine of the pressure angle")),
     Quantity("law_curvature", "K", "1/m", mark("curvature given by the law")),

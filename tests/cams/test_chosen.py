@@ -66,6 +66,32 @@ def test_the_gap_is_that_of_the_walking_wheel(name: str) -> None:
     assert measures_of(cam, 721)["gap"] == pytest.approx(wheel.print_gap, rel=1e-12)
 
 
+@pytest.mark.parametrize("name", WHEELS)
+def test_the_step_is_that_of_the_walking_wheel(name: str) -> None:
+    """The hub's travel over one leg, which the wheel integrates by series."""
+    cam = ct.example(name)
+    wheel = ct.walking_wheel(cam)
+    # trapezoids with slopes at 721 angles leave some h^4 of the area
+    assert measures_of(cam, 721)["step"] == pytest.approx(wheel.step, rel=1e-11)
+
+
+def test_a_step_may_be_required() -> None:
+    """The cam of the least size whose step is longer than that of the chosen one has just that step."""
+    cam = ct.example("walking-wheel-four-legs")
+    assert cam.choose is not None
+    longer = 1.02 * chosen_of("walking-wheel-four-legs").choice.chosen.measures["step"].value
+    found = choose_cam(
+        cam.model_copy(update={"choose": cam.choose.model_copy(update={"step": longer})}), front=False
+    )
+    assert found.choice.admissible
+    assert found.choice.chosen.measures["step"].value == pytest.approx(longer, rel=1e-6)
+    wheel = ct.walking_wheel(found.cam)
+    assert wheel.step >= longer * (1 - 1e-8)
+    alone = cam.model_copy(update={"mover": None, "choose": cam.choose.model_copy(update={"step": longer})})
+    with pytest.raises(ct.InputError, match="a step is that of a walking wheel"):
+        choose_cam(alone, front=False)
+
+
 def test_steps_of_the_examples_are_alike() -> None:
     """To the rounding of the post to a tenth of a millimetre, times the angle of a step."""
     steps = []

@@ -25,6 +25,7 @@ ALLOWED = {
     "report/variants/folders.py": {
         "centrode.assignments.results",
         "centrode.equations.integration",
+        "centrode.sweeps.parameter_studies",
         "centrode.views",
     },
     # a document goes on with the run of its mechanism, and asks for points on guides, which equations name

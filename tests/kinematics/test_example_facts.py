@@ -103,6 +103,18 @@ def test_double_and_triple_rockers_lock_by_the_cosine_law() -> None:
     assert np.cos(np.pi - link(at_zero, "DB")[0]) == pytest.approx(9 / 16, abs=16 * EPS)
 
 
+def test_the_excerpt_head_to_tail_closes_and_locks() -> None:
+    """OD by the sum of its links; the crank stops where the coupler and the rocker are in line: AD = 0.6."""
+    chain = ct.motion(ct.example("four-bar-excerpt-head-to-tail"), at=[0.0])
+    assert np.allclose(chain.position.sel(point="D")[0], [0.1, 0.3 * np.sqrt(3)], rtol=0, atol=4 * EPS)
+    # equations (6) of the source: 2 (0.1/0.3) over sin(-pi/3), times sin(2 pi/3) and sin(-pi/3)
+    assert chain.angular_velocity[0, 1:].to_numpy() == pytest.approx([-2 / 3, 2 / 3], rel=16 * EPS)
+    wide = ct.motion(ct.example("four-bar-excerpt-head-to-tail"), 9, start=-1.2, stop=4.0)
+    opening = np.arccos((0.29 - 0.36) / (0.2 * np.sqrt(0.28)))
+    line = np.arctan2(0.3 * np.sqrt(3), 0.1)
+    assert events(wide, "limit") == pytest.approx([line - opening, line + opening], abs=16 * EPS)
+
+
 def test_worked_mechanism_locks_where_fifty_digits_say() -> None:
     limits = events(run("slider-between-cranks-locked"), "limit")
     assert limits[0] == pytest.approx(1.79991241652444028, abs=4 * np.spacing(1.8))

@@ -51,3 +51,26 @@ def test_a_swing_is_one_curve() -> None:
     data = results.simulation
     line = ct.figures(results)["simulation-phase"].axes[0].get_lines()[0]
     np.testing.assert_array_equal(at_samples(line.get_xdata(), 61), data.drive_value[:, 0])
+
+
+def test_the_figure_of_the_thesis() -> None:
+    """Speed, gamma and psi over beta below each other, each on its own axis."""
+    thesis = ct.example("spherical-crank-rocker")
+    results = simulation_results(thesis, settings=ct.Simulation(driving="1", duration=3, samples=61))
+    data = results.simulation
+    axes = ct.figures(results)["simulation-angles"].axes
+    beta = data.drive_value.to_numpy()[:, 0]
+    gamma = np.degrees(np.arcsin(np.sin(np.pi / 12) * np.cos(beta) / np.sin(np.pi / 4)))
+    psi = np.degrees(data.joint_angle.sel(joint="DC"))
+    shown = (np.degrees(data.drive_speed), gamma, psi)
+    assert len(axes) == len(shown)
+    for one, values in zip(axes, shown, strict=True):
+        heights = np.asarray(one.get_lines()[0].get_ydata(), dtype=float)
+        places = np.asarray(one.get_lines()[0].get_xdata(), dtype=float)
+        turned = np.degrees(beta % (2 * np.pi))
+        for k in (0, 7, 60):
+            near = np.nanargmin(np.abs(places - turned[k]) + np.abs(heights - float(values[k])))
+            assert abs(heights[near] - float(values[k])) <= 1e-9 * float(np.abs(values).max())
+    assert "simulation-angles" not in ct.figures(
+        simulation_results(rotor(), settings=ct.Simulation(duration=1))
+    )

@@ -18,7 +18,7 @@ from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.topics.presentation import sheet_of
 
 PRINTED = Path(__file__).parents[1] / "reference" / "cam-curvature-table.csv"
-CAM = ("data", "motion", "path", "routes", "profile", "walking", "contact")
+CAM = ("data", "motion", "path", "series", "routes", "profile", "walking", "contact")
 
 
 def study_of(name: str, **wishes: object) -> ReportStudy:

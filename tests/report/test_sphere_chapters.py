@@ -53,7 +53,7 @@ def test_the_table_is_that_of_the_closed_form() -> None:
     table = tables_of(CHAPTERS["tables"].make(study_of("spherical-crank-rocker")))[-1]
     assert len(table.rows) == 37
     rate = math.degrees(2.94)
-    for beta_, _beta, _rate, psi_, speed_ in table.rows:
+    for beta_, _beta, _rate, psi_, speed_, *_hinges in table.rows:
         beta = math.radians(number(beta_))
         # a sin psi + b cos psi = cos BC
         a, b = math.cos(AB), math.sin(AB) * math.sin(beta)

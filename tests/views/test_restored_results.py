@@ -43,11 +43,15 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
     "centres": lambda: ct.instant_centres(ct.motion(PRESS, at=[2.0, 3.0])),
     "centrodes": lambda: ct.centrodes(ct.motion(PRESS, 37), "AB"),
     "follower-motion": lambda: follower_motion_results(ct.example("valve-cam"), 37).dataset,
+    "parameter-study": lambda: ct.sweep(
+        "six-bar-press", {"links.OA.length": [0.34, 0.347]}, compute="flywheel"
+    ),
     "sweep": lambda: ct.sweep(
         CRANK_ROCKER, {"links.AB.length": [3.4, 3.5]}, ["position.B", "angle.DB"], 9, reduce="max"
     ),
     "motion-laws": lambda: motion_law_results(ct.example("valve-cam")).dataset,
     "roller-path": lambda: ct.cam(ct.example("cam-from-curvature"), 37),
+    "cam-series": lambda: ct.cam_series(ct.example("cam-from-curvature"), 9),
     "path-routes": lambda: cam_routes(ct.example("cam-from-curvature"), 9),
     "cam-profile": lambda: ct.cam_profile(WALKING_WHEEL, 37),
     "walking-wheel": lambda: shoe_profile(WALKING_WHEEL, 37),

@@ -185,6 +185,8 @@ def _passes(number: Array, other: Array) -> bool:
     return bool(((number[:-1] * number[1:] <= 0.0) & (other[:-1] * other[1:] > 0.0)).any())
 
 
+HINGE_ANGLES = ("hinge_angle", "hinge_velocity", "hinge_acceleration")
+"""Of all moving hinges of a linkage on the sphere, dyads or not."""
 Lines: TypeAlias = npt.NDArray[np.complex128]
 
 
@@ -203,7 +205,9 @@ def transmission_angles(
     gears have none. `least_transmission_angle` and `greatest_transmission_angle` [rad] (group) are the exact extremes
     of the acute angle over all that the mechanism reaches between the first and the last sample.
 
-    On the sphere they are angles between arcs: of links, and from a point to the pole of its guide.
+    On the sphere they are angles between arcs: of links, and from a point to the pole of its guide. There
+    `hinge_angle` with two derivatives by time (sample, hinge) is the angle between the links at every moving hinge,
+    with its sense and its turns.
 
     Raises InputError where no group has such an angle; else as `motion` does.
 
@@ -244,6 +248,8 @@ def transmission_angles(
         "greatest_transmission_angle": vocabulary_variable(
             "greatest_transmission_angle", ("group",), greatest
         ),
+        # on the sphere with the sense that the transmission angle has not
+        **{name: data[name] for name in HINGE_ANGLES if name in data},
         **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
     coords = {"group": list(by_group), **{name: data[name] for name in ("time", "drive_value")}}

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import functools
+import importlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from centrode.analysis.operation import first_limits
 from centrode.analysis.rotatability.rotatability import rotatability
@@ -12,7 +14,7 @@ from centrode.assignments.answers import VariantAnswers
 from centrode.assignments.tables import Table, Variant, read_variants
 from centrode.dynamics.motion_results import MotionResults, study
 from centrode.equations.integration import integrate
-from centrode.errors import InputError
+from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -98,6 +100,9 @@ def _cause_words(text: Text, display: Display) -> str:
 
 Progress: TypeAlias = Callable[[int, int], None]
 
+# what analyses of machines need is not loaded for motions
+_studies = functools.partial(importlib.import_module, "centrode.sweeps.parameter_studies")
+
 STEPS = 100
 """Fixed steps of the integration beside the motion, as the assignment has them."""
 COMPUTED, LOCKS, REFUSED, FAULT = "ok", "locks", "refused", "fault"
@@ -115,6 +120,7 @@ class VariantRow:
     unit : of the limit
     group, cause : which group locks, and the sentence that tells it; why a variant was not computed
     status : "ok", "locks" (within the range of the study), "refused" (it is no mechanism that moves), "fault"
+    numbers : name -> value and SI unit, of an analysis of each variant; empty without one, or where it is refused
     """
 
     variant: str
@@ -124,13 +130,14 @@ class VariantRow:
     group: str
     cause: str
     status: str
+    numbers: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
     @property
     def is_computed(self) -> bool:
         """Whether the variant is a mechanism whose motion is known, as far as it gets."""
         return self.status in (COMPUTED, LOCKS)
 
-    def as_dict(self) -> dict[str, str | float | bool | None]:
+    def as_dict(self) -> dict[str, Any]:
         """As a marker holds it."""
         return asdict(self)
 
@@ -169,7 +176,9 @@ class Variants(PrintsSummary):
     answers: Mapping[str, VariantAnswers] = field(default_factory=dict)
 
 
-def variants(topology: MechanismSource, table: Table, progress: Progress | None = None) -> Variants:
+def variants(
+    topology: MechanismSource, table: Table, progress: Progress | None = None, compute: str | None = None
+) -> Variants:
     """The study, the rotatability and the integrated motion of every variant of a topology.
 
     Parameters
@@ -179,11 +188,14 @@ def variants(topology: MechanismSource, table: Table, progress: Progress | None 
     table : path of a CSV file, or sequence of mappings from header to value
         A row a variant, a column a number (docs: assignment).
     progress : called with (variants done, variants in all)
+    compute : None, "simulate", "steady_motion", "flywheel" or "reactions"
+        The analysis whose extremes, their places and unevenness each row has besides (docs: parameter studies).
 
     Raises
     ------
     InputError
-        The table is wrong. A variant that is not a mechanism has the status "refused" instead.
+        The table is wrong, there is no such analysis. A variant that is not a mechanism has the status "refused"
+        instead.
 
     Examples
     --------
@@ -193,17 +205,19 @@ def variants(topology: MechanismSource, table: Table, progress: Progress | None 
     [True, True]
     """
     topology = mechanism_of(topology)
+    if compute is not None:
+        _studies().check_analysis(compute)
     given = read_variants(topology, table)
     results = []
     for number, variant in enumerate(given, start=1):
-        results.append(compute_variant(topology, variant))
+        results.append(compute_variant(topology, variant, compute))
         if progress is not None:
             progress(number, len(given))
     return Variants(topology, given, tuple(result.row for result in results), tuple(results))
 
 
-def compute_variant(topology: Mechanism, variant: Variant) -> VariantResults:
-    """One variant; what it says in words is English, as files are."""
+def compute_variant(topology: Mechanism, variant: Variant, compute: str | None = None) -> VariantResults:
+    """One variant, with the numbers of an analysis; what it says in words is English, as files are."""
     with speaking("en"):
         try:
             mechanism, results, rotation = study_variant(topology, variant)
@@ -213,7 +227,18 @@ def compute_variant(topology: Mechanism, variant: Variant) -> VariantResults:
             integration, note = integrate(mechanism, steps=STEPS), ""
         except InputError as refusal:
             integration, note = None, str(refusal)
-        return VariantResults(_row(variant.name, rotation, results), mechanism, results, integration, note)
+        row = _row(variant.name, rotation, results)
+        if compute is not None:
+            row = _with_numbers(row, mechanism, compute)
+        return VariantResults(row, mechanism, results, integration, note)
+
+
+def _with_numbers(row: VariantRow, mechanism: Mechanism, compute: str) -> VariantRow:
+    """A row with the numbers of an analysis; where it is refused, with the reason."""
+    try:
+        return replace(row, numbers=_studies().study_numbers(mechanism, compute))
+    except CentrodeError as refusal:
+        return replace(row, cause="; ".join(filter(None, (row.cause, f"{compute}: {refusal}"))))
 
 
 def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, MotionResults, Rotation]:

@@ -14,6 +14,7 @@ import centrode as ct
 from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
+from centrode.cli.arguments import no_figures_option
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import DamageWarning, InputError, MotionError
@@ -33,13 +34,20 @@ TABLE, STORE = ".csv", ".zarr"
     "--out",
     type=click.Path(path_type=Path),
     metavar=mark("OUT"),
-    help=mark("A folder .zarr (an interrupted run is resumed), or a table .csv of a reduced sweep."),
+    help=mark(
+        "A folder .zarr (an interrupted run is resumed), or a table .csv of a reduced sweep; of a parameter study "
+        "a table .csv or a folder with table and figure."
+    ),
 )
+@no_figures_option
 @tables_options
 @click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
-def sweep(study: str, out: Path | None, force: bool) -> None:
+def sweep(study: str, out: Path | None, no_figures: bool, force: bool) -> None:
     """Compute and write; exit code 3 if no mechanism moves anywhere (the results are written)."""
     asked = library.read_sweep(study)
+    if asked.compute is not None:
+        _parameter_study(asked, study, out, figures=not no_figures, force=force)
+        return
     target = out if out is not None else Path(Path(study).stem + STORE)
     need_table(target)
     if target.suffix == TABLE:
@@ -50,14 +58,39 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
         raise InputError(
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
+    _show(asked, study, data, output.wrote([target] if target.suffix == STORE else table_files(target)))
+
+
+def _show(asked: SweepStudy, study: str, data: xr.Dataset, written: str) -> None:
+    """Print what a result says and what was written; MotionError where nothing moves."""
     sheet, display = library.sheet_of(data), asked.mechanism.display
     click.echo(render.sheet_text(sheet, display))
-    click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
+    click.echo("\n" + written)
     if sheet.failure is not None:
         what, repair = (
             render.plain_text(text, display) for text in (sheet.failure.what, sheet.failure.repair)
         )
         raise MotionError(study, what, repair)
+
+
+def _parameter_study(asked: SweepStudy, study: str, out: Path | None, *, figures: bool, force: bool) -> None:
+    """Analyse every mechanism; a table, or a folder with the table, the dataset and the figure."""
+    if out is not None and out.suffix == TABLE:
+        with output.output_table(out, force=force) as (draft, workbook):
+            data = _compute(asked, study, None)
+            (table,) = ct.tables(data).values()
+            render.write_table(table, draft, asked.mechanism.display, asked_spelling(), workbook)
+        _show(asked, study, data, output.wrote(table_files(out)))
+        return
+    folder = output.folder_of(out, study, "study")
+    with output.output_folder(folder) as draft:
+        data = _compute(asked, study, None)
+        sheet = library.sheet_of(data)
+        render.write_tables(sheet, draft, asked.mechanism.display, asked_spelling())
+        if figures:
+            render.write_pictures(sheet.pictures, draft, asked.mechanism.display)
+        names = output.file_names(draft)
+    _show(asked, study, data, output.files_in(folder, names))
 
 
 def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
@@ -138,4 +171,6 @@ def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
             executor=asked.executor,
             store=store,
             progress=tell,
+            compute=asked.compute,
+            dependent=asked.dependent or None,
         )

@@ -30,6 +30,14 @@ from centrode.locale import _, mark
     help=mark("Folder for the results (an interrupted run is resumed); named after the table by default."),
 )
 @click.option("--jobs", type=int, default=1, metavar=mark("N"), help=mark("Number of parallel processes."))
+@click.option(
+    "--compute",
+    metavar=mark("NAME"),
+    help=mark(
+        "Also simulate, steady_motion, flywheel or reactions of every variant: extremes in the summary, tables and "
+        "pictures in its folder."
+    ),
+)
 @click.option("--figures", is_flag=True, help=mark("Draw pictures of every variant."))
 @click.option(
     "--report",
@@ -49,6 +57,7 @@ def variants(
     topology: str,
     out: Path | None,
     jobs: int,
+    compute: str | None,
     figures: bool,
     reports: bool,
     formats: str | None,
@@ -56,6 +65,9 @@ def variants(
     """Compute and write; exit code 3 if a variant was refused (the others are written)."""
     if formats is not None and not reports:
         raise InputError("--format", _("this option is used with --report only"), _("give that option too"))
+    if compute is not None and reports:
+        what = _("an analysis is not computed beside reports")
+        raise InputError("--compute", what, _("omit one of the two options"))
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
     spelling = asked_spelling()
     description = library.load(topology)
@@ -72,7 +84,14 @@ def variants(
                 )
             else:
                 found = ct.write_variants(
-                    description, table, folder, jobs=jobs, figures=figures, progress=tell, spelling=spelling
+                    description,
+                    table,
+                    folder,
+                    jobs=jobs,
+                    figures=figures,
+                    progress=tell,
+                    spelling=spelling,
+                    compute=compute,
                 )
     except KeyboardInterrupt:
         note = _("finished results stay in {folder}; the same command resumes from there")

@@ -14,6 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from centrode.errors import STATUSES_OF_MOTION, InputError
+from centrode.kinematics.hinge_angles import hinge_orders, moving_hinges, spherical_coordinates
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
@@ -47,7 +48,7 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     """
     batch = bool(vary)
     front = (BATCH,) if batch else ()
-    variables = _in_time(solved, front)
+    variables = _in_time(solved, front) | spherical_variables(solved, front)
     if not solved.ready.kinematics.path.by_time:
         variables |= _coefficients(solved, front)
     variables |= judgements_of(solved, front) | _contacts(solved, front)
@@ -136,6 +137,26 @@ def kinds_of(solved: Solved) -> list[VariableKind]:
     return [*kinds, VariableKind(slides, "slide_", ("guide",), orders(solved.slides))]
 
 
+def spherical_variables(
+    solved: Solved, front: tuple[str, ...] = (), *, coordinates: bool = True
+) -> dict[str, Variable]:
+    """On the sphere: angles at the moving hinges with their rates by time, and polar angles and azimuths of points."""
+    if solved.spins is None:
+        return {}
+    variables: dict[str, Variable] = {}
+    hinges = moving_hinges(solved.ready.mechanism)
+    if hinges:
+        orders = hinge_orders(solved, hinges)
+        for order, name in enumerate(("hinge_angle", "hinge_velocity", "hinge_acceleration")):
+            values = _lanes(by_time(orders, order, solved.span), front)
+            variables[name] = vocabulary_variable(name, (*front, "sample", "hinge"), values)
+    if coordinates:
+        polar, azimuth = spherical_coordinates(_lanes(solved.all_points[0], front))
+        for name, values in (("polar_angle", polar), ("azimuth", azimuth)):
+            variables[name] = vocabulary_variable(name, (*front, "sample", "point"), values)
+    return variables
+
+
 def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Kinematic coefficients: derivatives by the drive's value."""
     unit = solved.ready.parameter.units[0]
@@ -195,7 +216,7 @@ def coordinates_of(solved: Solved) -> dict[str, Any]:
     """Times, values of the drives, and names."""
     along = coordinates_along(solved)
     frame = tuple(solved.ready.structure.dimensions.frame)
-    joints = {} if solved.spins is None else {"joint": labels_of(solved.layout.angles)}
+    joints = {} if solved.spins is None else joints_of(solved)
     wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
     return {
         "time": along.pop("time"),
@@ -209,6 +230,13 @@ def coordinates_of(solved: Solved) -> dict[str, Any]:
         "axis": labels_of(solved.layout.space.axes),
         **along,
     }
+
+
+def joints_of(solved: Solved) -> dict[str, Any]:
+    """On the sphere: links whose angle is counted from an arc, and pairs of links at moving hinges."""
+    hinges = tuple(hinge.label for hinge in moving_hinges(solved.ready.mechanism))
+    joints = {"joint": labels_of(solved.layout.angles)}
+    return joints | ({"hinge": labels_of(hinges)} if hinges else {})
 
 
 def coordinates_along(solved: Solved) -> dict[str, Any]:

@@ -201,7 +201,9 @@ MOST_TERMS = 2000
 
 LEAST_LEGS, MOST_LEGS = 3, 24
 MINIMISED = ("size", "stress", "pressure_angle")
-MEASURED = (*MINIMISED, "lift", "gap")
+OF_WHEELS = ("gap", "step")
+"""Measures that a walking wheel has."""
+MEASURED = (*MINIMISED, "lift", *OF_WHEELS)
 
 
 class Curvature(DescriptionPart):
@@ -371,8 +373,9 @@ class Choose(DescriptionPart):
     minimise : one of `MINIMISED`
     stress : float [Pa], pressure_angle : float [rad], size : float [m]
         Greatest admissible ones; the stress is that of the contact if left out, the size the greatest rho.
-    lift, gap : float [m]
-        Least ones: of rho at the end over that at phi = 0, and of the ground between the prints of two shoes.
+    lift, gap, step : float [m]
+        Least ones: of rho at the end over that at phi = 0, of the ground between the prints of two shoes, and of the
+        hub's travel over one leg of a walking wheel.
     trade_off : one of `MEASURED`
         Its bound is moved, to show what it costs in what is made least.
     """
@@ -384,8 +387,9 @@ class Choose(DescriptionPart):
     size: Size | None = None
     lift: Size | None = None
     gap: Size | None = None
+    step: Size | None = None
     trade_off: Annotated[
-        Literal["size", "stress", "pressure_angle", "lift", "gap"] | None, choice(*MEASURED)
+        Literal["size", "stress", "pressure_angle", "lift", "gap", "step"] | None, choice(*MEASURED)
     ] = None
 
 

@@ -18,6 +18,7 @@ from centrode.model.cam import Cam, vary_cam
 from centrode.model.description import Description
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
+from centrode.model.loads import read_load
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
 from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
@@ -209,6 +210,8 @@ def value_at(mechanism: Mechanism, path: str) -> float:
         return _direction_of_track(mechanism, words[1], path)
     container, key = _spot(document(mechanism), words, path)
     value = container.get(key) if isinstance(container, dict) else container[key]
+    if key in _FORMULAS and isinstance(value, str):
+        value = _plain_number(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         what = _("{path} is not a number here").format(path=path)
         raise InputError("", what, _("give it a value first"))
@@ -239,7 +242,9 @@ def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mech
     tables = document(mechanism)
     for path, value in values.items():
         container, key = _spot(tables, _words(mechanism, path), path)
-        container[key] = value
+        # a formula stays one
+        formula = key in _FORMULAS and not isinstance(value, str)
+        container[key] = repr(float(value)) if formula else value
     return mechanism_from(tables)
 
 
@@ -251,12 +256,27 @@ def kind_at(mechanism: Mechanism, path: str) -> str:
     if words[0] == "drives":
         coordinate = mechanism.motion_parameter.drive(words[1])
         return {"start": coordinate.kind, "speed": coordinate.speed_kind}.get(key, key)
+    if words[0] == "simulation":
+        coordinate = mechanism.motion_parameter.drives[0]
+        effort = "torque" if coordinate.kind == "angle" else "force"
+        kinds = {"start": coordinate.kind, "speed": coordinate.speed_kind, "driving": effort}
+        return {**kinds, "duration": "time", "turns": "ratio"}[key]
+    if words[0] == "loads":
+        return "ratio"
     if words[0] == "links" and key in ("radius", "centre_radius"):
         return "length"
     if key in ("length", "radius"):
         return "arc" if on_sphere else "length"
     coordinates = {"x": "length", "y": "length", "longitude": "angle", "latitude": "angle"}
     return {**coordinates, "direction": "angle"}.get(key, key)
+
+
+def _plain_number(text: str) -> float | None:
+    """The number that a formula is; None where it is not one number."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def _direction_of_track(mechanism: Mechanism, identity: str, path: str) -> float:
@@ -277,6 +297,8 @@ def _words(mechanism: Mechanism, path: str) -> list[str]:
         "gears": [gear.id for gear in mechanism.gears],
         "rolling": [wheel.id for wheel in mechanism.rolling],
         "drives": [drive.id for drive in mechanism.drives],
+        "loads": [load.label for load in mechanism.loads],
+        "simulation": list(_NUMBERS["simulation"]),
     }
     if room not in names:
         raise _unknown(path, room, list(names))
@@ -308,7 +330,11 @@ _NUMBERS = {
     "rolling": ("radius",),
     "along": ("direction", "radius"),
     "drives": ("start", "speed"),
+    "loads": ("value", "viscous", "quadratic", "coefficient", "stiffness", "damping"),
+    "simulation": ("start", "speed", "driving", "duration", "turns"),
 }
+_FORMULAS = ("driving",)
+"""Keys whose number is written as a formula."""
 
 
 def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
@@ -316,6 +342,8 @@ def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
     axes = _AXES[tables.get("space", "plane")]
     if room == "frame":
         return _coordinate(tables["frame"]["points"], rest, path, axes)
+    if room == "simulation":
+        return _number(tables.get(room) or {}, room, [name, *rest], path)
     if room == "links":
         return _in_link(tables["links"][name], words, path, axes)
     entry = next(entry for entry in tables[room] if _identity(room, entry) == name)
@@ -347,6 +375,8 @@ def _identity(room: str, entry: dict[str, Any]) -> str:
         return str(entry.get("name") or "-".join(entry["links"]))
     if room == "rolling":
         return str(entry.get("name") or entry["link"])
+    if room == "loads":
+        return read_load(entry).label
     return str(entry.get("link") or entry.get("guide") or "-".join(entry.get("distance", ())))
 
 

@@ -534,6 +534,7 @@ CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "size": above_zero("length"),
         "lift": above_zero("length"),
         "gap": above_zero("length"),
+        "step": above_zero("length"),
         "trade_off": {"enum": list(MEASURED)},
     },
     CamStudy: {

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.files import value_at
+from centrode.model.files import kind_at, value_at
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
@@ -82,6 +82,8 @@ _METRES = frozenset({"radius", "centre_radius"})
 """Of links: lengths on the sphere too."""
 _MASSES = frozenset({"mass", "inertia"})
 _ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
+_OF_MACHINES = frozenset({"drives", "loads", "machine", "simulation"})
+"""Rooms of numbers that are no dimensions of the mechanism."""
 
 
 def kind_of(mechanism: Mechanism, path: str) -> str:
@@ -91,6 +93,8 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
     except InputError as error:
         raise InputError("vary", error.what, error.repair) from None
     room, word = path.partition(".")[0], path.rpartition(".")[2]
+    if room in _OF_MACHINES:
+        return kind_at(mechanism, path)
     if word in _METRES and room == "links":
         return "length"
     if word in _ALONG:
@@ -347,8 +351,10 @@ def grid(ranges: Mapping[str, Any]) -> Grid:
     return Grid(dict(ranges))
 
 
-def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> Design:
-    """The mechanisms that `vary` asks for.
+def design_of(
+    mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample, *, dimensions_only: bool = True
+) -> Design:
+    """The mechanisms that `vary` asks for; without `dimensions_only` loads, machine and simulation may vary too.
 
     Raises InputError: nothing varies, unequal numbers of values, a path that is no dimension, values that no
     mechanism can have, more mechanisms than `limits.MECHANISMS`.
@@ -364,6 +370,8 @@ def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> 
     if math.prod(design.shape) > MECHANISMS:
         what = _("{count} mechanisms are given").format(count=math.prod(design.shape))
         raise InputError("vary", what, _("give at most {most}").format(most=MECHANISMS))
+    if not dimensions_only:
+        return design
     extremes = {
         # only the ends: what lies between them is possible where both are
         path: np.array([values.min(), values.max()])

@@ -27,6 +27,8 @@ from centrode.sweeps.designs import MECHANISM, Design, Rows
 Array: TypeAlias = npt.NDArray[np.float64]
 
 COEFFICIENTS = ("velocity_coefficient", "acceleration_coefficient")
+DERIVED = ("hinge_angle", "hinge_velocity", "hinge_acceleration", "polar_angle", "azimuth")
+"""Quantities that a motion derives from its places and spins: sweeps have those instead."""
 RESIDUAL, CONTACT = "residual", "contact"
 _LENGTH = 200
 
@@ -105,7 +107,7 @@ def quantities_of(motion: xr.Dataset) -> list[str]:
     """Names of the quantities that a motion has at every sample, in reading order."""
     # statuses have a column of their own
     told = [name for name in QUANTITIES if name in motion.data_vars and "sample" in motion[name].dims]
-    return [name for name in told if name != "status"]
+    return [name for name in told if name != "status" and name not in DERIVED]
 
 
 def every_number(motion: xr.Dataset) -> Iterator[tuple[str, ...]]:

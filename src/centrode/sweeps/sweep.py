@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -42,6 +44,9 @@ from centrode.sweeps.store import (
 
 Progress: TypeAlias = Callable[[int, int], None]
 
+# what analyses of machines need is not loaded for motions
+_studies = functools.partial(importlib.import_module, "centrode.sweeps.parameter_studies")
+
 
 def sweep(
     mechanism: MechanismSource,
@@ -56,8 +61,12 @@ def sweep(
     store: str | Path | None = None,
     progress: Progress | None = None,
     threads: int = 1,
+    compute: str | None = None,
+    dependent: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
     """Motions of many mechanisms of one structure, or one number of each motion, in bounded memory.
+
+    With `compute` it is a parameter study: the single numbers of an analysis of each mechanism.
 
     Parameters
     ----------
@@ -79,6 +88,12 @@ def sweep(
         It goes on where an earlier run of the same sweep ended.
     progress : called with (mechanisms done, mechanisms in all)
     threads : that machine code shares the mechanisms among
+    compute : None, "simulate", "steady_motion", "flywheel" or "reactions"
+        The analysis of which each mechanism keeps its extremes, their places and its unevenness; `outputs` are
+        names of these numbers, all if there are none (docs: parameter studies). Loads, machine and simulation may
+        vary too.
+    dependent : path -> formula
+        Of a parameter study: numbers that follow from those that vary, as "pi/3 - links_AB_length".
 
     Returns
     -------
@@ -101,6 +116,14 @@ def sweep(
     2
     """
     mechanism = mechanism_of(mechanism)
+    if compute is not None:
+        _refuse_of_motions(start=start, stop=stop, reduce=reduce, gradient=gradient or None, store=store)
+        study: xr.Dataset = _studies().parameter_study(
+            mechanism, vary, compute, outputs, samples, dependent, progress
+        )
+        return study
+    if dependent:
+        raise InputError("dependent", _("it belongs to a parameter study"), _("give compute too"))
     name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
@@ -123,6 +146,13 @@ def sweep(
     data = with_tally(read_store(Path(store), frame), frame, kept.tally)
     # a store says what was computed, and not how that is shown: the topic is only in what is returned
     return data.assign_attrs(mechanisms_found=finished, topic="sweep")
+
+
+def _refuse_of_motions(**options: object) -> None:
+    """InputError at the first option of motions that is given beside an analysis."""
+    for name, value in options.items():
+        if value is not None:
+            raise InputError(name, _("it belongs to sweeps of motions"), _("omit it, or omit compute"))
 
 
 TABLE_ROWS = 100_000
@@ -232,7 +262,9 @@ def _compute(
 # Sweeps in files: which mechanism, what varies, what is requested.
 
 WAYS = ("vary", "grid", "sample")
-KEYS = ("mechanism", *WAYS, "outputs", "samples", "from", "to", "reduce", "gradient", "executor")
+KEYS = (
+    "mechanism", "compute", *WAYS, "dependent", "outputs", "samples", "from", "to", "reduce", "gradient", "executor",
+)  # fmt: skip
 RANGE = ("from", "to", "count")
 SAMPLE = ("count", "method", "seed", "ranges")
 
@@ -257,6 +289,8 @@ class SweepStudy:
     reduce: Reduce
     gradient: bool
     executor: str
+    compute: str | None = None
+    dependent: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_sweep(path: str | Path) -> SweepStudy:
@@ -301,6 +335,8 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
         _reduce(tables.get("reduce")),
         _switch("gradient", tables.get("gradient", False)),
         _text("executor", tables.get("executor", "auto")),
+        _text("compute", tables["compute"]) if "compute" in tables else None,
+        _dependent(tables.get("dependent", {})),
     )
 
 
@@ -387,6 +423,12 @@ def _range(path: str, value: object) -> Any:
                 path, _("{key} is missing").format(key=key), _("write {example}").format(example=example)
             )
     return (value["from"], value["to"], value["count"])
+
+
+def _dependent(given: object) -> Mapping[str, str]:
+    if not isinstance(given, dict):
+        raise InputError("dependent", _("expected a table, got {value}").format(value=value_text(given)))
+    return dict(_paths(given, ()))
 
 
 def _sample(table: Mapping[str, Any]) -> Sample:

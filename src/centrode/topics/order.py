@@ -69,6 +69,7 @@ CHAPTERS = (
     "laws",
     "base-radius",
     "path",
+    "series",
     "routes",
     "profile",
     "cam-forces",

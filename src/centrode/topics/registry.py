@@ -702,6 +702,15 @@ SWEEP = Topic(
     restore=Lazily("centrode.sweeps.sweep", "SweepResults"),
 )
 
+PARAMETER_STUDY = Topic(
+    name="parameter-study",
+    compute=Lazily("centrode.sweeps.parameter_studies", "parameter_study"),
+    result=Lazily("centrode.sweeps.parameter_studies", "ParameterStudy"),
+    view=Lazily("centrode.views.parameter_studies", "sheet"),
+    subject="mechanisms",
+    restore=Lazily("centrode.sweeps.parameter_studies", "ParameterStudy"),
+)
+
 VARIANTS = Topic(
     name="variants",
     compute=Lazily("centrode.assignments.results", "variants"),
@@ -873,6 +882,26 @@ PATH_ROUTES = Topic(
     subject="cam",
 )
 
+CAM_SERIES = Topic(
+    name="cam-series",
+    compute=Lazily("centrode.cams.series", "cam_series_results"),
+    result=Lazily("centrode.cams.series", "CamSeriesResults"),
+    restore=Lazily("centrode.cams.series", "CamSeriesResults"),
+    view=Lazily("centrode.views.cam_series", "sheet"),
+    concerns=HAS_CURVATURE_LAW,
+    command=Command(
+        help="",
+        options=(FlagOption("series", mark("Also the coefficients of the power series of the path.")),),
+        needs=NEEDS_CURVATURE_LAW,
+    ),
+    flag="series",
+    document=InDocuments(
+        chapters=(ChapterOfTopic("series", mark("Power series of the path"), code="ct.cam_series(cam)"),),
+        instants=False,
+    ),
+    subject="cam",
+)
+
 FOLLOWER_FORCES = Topic(
     name="follower-forces",
     compute=Lazily("centrode.cams.followers.force_results", "follower_force_results"),
@@ -991,6 +1020,7 @@ TOPICS: tuple[Topic, ...] = (
     RUN,
     CHECK,
     SWEEP,
+    PARAMETER_STUDY,
     VARIANTS,
     GIVEN_MASSES,
     DESCRIBE,
@@ -998,6 +1028,7 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_PROFILE,
     ROLLER_PATH,
     PATH_ROUTES,
+    CAM_SERIES,
     CAM_PROFILE,
     WALKING_WHEEL,
     CAM_CONTACT,

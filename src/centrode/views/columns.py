@@ -63,6 +63,11 @@ VARIABLES = (
     "acceleration_coefficient",
     "slide_velocity_coefficient",
     "slide_acceleration_coefficient",
+    "hinge_angle",
+    "hinge_velocity",
+    "hinge_acceleration",
+    "polar_angle",
+    "azimuth",
 )
 
 

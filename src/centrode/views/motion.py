@@ -35,6 +35,7 @@ from centrode.views.motion_plots import (
     PlottedMotion,
     panels_of_coefficients,
     panels_of_guides,
+    panels_of_hinges,
     panels_of_joints,
     panels_of_links,
     panels_of_points,
@@ -308,6 +309,11 @@ def _curves(motion: PlottedMotion) -> Mapping[str, tuple[Sentence, Callable[[], 
                 partial(panels_of_joints, motion, "joint_acceleration"),
             ),
         }
+    if motion.hinges:
+        found["hinge-angles"] = (
+            Sentence("Angles between links at their hinges"),
+            partial(panels_of_hinges, motion),
+        )
     if turning_links(motion.mechanism):
         if len(motion.components) == 2:
             found["angles"] = (Sentence("Angles of the links"), partial(panels_of_links, motion, "angle"))
@@ -357,6 +363,9 @@ CAPTIONS = {
     "joint-angles": Sentence("Angles of the links in their hinges"),
     "joint-velocities": Sentence("Angular velocities in the hinges"),
     "joint-accelerations": Sentence("Angular accelerations in the hinges"),
+    "hinge-angles": Sentence(
+        "Angles between links at their hinges, with relative angular velocities and accelerations"
+    ),
     "angular-velocities": Sentence("Angular velocities of the links"),
     "angular-accelerations": Sentence("Angular accelerations of the links"),
     "velocities": Sentence("Velocities of the points"),

@@ -28,6 +28,8 @@ DERIVATIVES = {
     "angular_velocity": "angular_acceleration",
     "joint_angle": "joint_velocity",
     "joint_velocity": "joint_acceleration",
+    "hinge_angle": "hinge_velocity",
+    "hinge_velocity": "hinge_acceleration",
     "velocity": "acceleration",
     "slide": "slide_velocity",
     "slide_velocity": "slide_acceleration",
@@ -64,6 +66,7 @@ class PlottedMotion:
             "joint": self.mechanism.link_names,
             "point": self.mechanism.moving_points,
             "guide": [guide.id for guide in self.mechanism.guides],
+            "hinge": self.hinges,
         }
         return {kind: {name: place for place, name in enumerate(names)} for kind, names in kinds.items()}
 
@@ -76,6 +79,11 @@ class PlottedMotion:
     def joints(self) -> list[str]:
         """Links whose angle is measured from a reference arc."""
         return self.dataset["joint"].values.tolist() if "joint" in self.dataset.dims else []
+
+    @property
+    def hinges(self) -> list[str]:
+        """Pairs of links at moving hinges whose angle is known."""
+        return self.dataset["hinge"].values.tolist() if "hinge_angle" in self.dataset else []
 
 
 def panels_of_links(motion: PlottedMotion, variable: str) -> Rows:
@@ -107,6 +115,15 @@ def panels_of_joints(motion: PlottedMotion, variable: str) -> Rows:
     """Links whose angle is measured from a reference arc, in panels below each other."""
     groups = deal_to_panels(motion.joints)
     return tuple((_panel(motion, variable, "joint", names),) for names in groups)
+
+
+def panels_of_hinges(motion: PlottedMotion) -> Rows:
+    """Angles at the hinges, their rates and second rates below each other; further hinges in further columns."""
+    groups = deal_to_panels(motion.hinges)
+    return tuple(
+        tuple(_panel(motion, name, "hinge", names, legend=name == "hinge_angle") for names in groups)
+        for name in ("hinge_angle", "hinge_velocity", "hinge_acceleration")
+    )
 
 
 def panels_of_coefficients(motion: PlottedMotion) -> Rows:

@@ -93,6 +93,8 @@ def _instant(results: MotionResults, shown: xarray.Dataset, sample: int) -> Iter
         yield from _hinges(here)
         yield _rotations(here)
         yield _points_on_sphere(here.sel(point=list(points)))
+        if "polar_angle" in here:
+            yield _spherical_coordinates(here.sel(point=list(points)))
         return
     yield _links(here)
     yield _points(here.sel(point=list(points)))
@@ -156,8 +158,8 @@ def _with_rates(
         _column(Expression(head), here[name], _unit(here[name]), _greatest(here[name]))
         for head, name in zip(letters, variables, strict=True)
     ]
-    label = Sentence("guide") if kind == "guide" else Sentence("link")
-    return Table((_names(here[kind], label), *columns), caption)
+    labels = {"guide": Sentence("guide"), "hinge": Sentence("links")}
+    return Table((_names(here[kind], labels.get(kind, Sentence("link"))), *columns), caption)
 
 
 def _coefficients_of_links(here: xarray.Dataset) -> Table:
@@ -193,6 +195,9 @@ def _hinges(here: xarray.Dataset) -> Iterator[Table]:
         variables = ("joint_angle", "joint_velocity", "joint_acceleration")
         caption = Sentence("Angles of the links, from their reference arcs")
         yield _with_rates(here, "joint", variables, "psi", caption)
+    if "hinge_angle" in here:
+        variables = ("hinge_angle", "hinge_velocity", "hinge_acceleration")
+        yield _with_rates(here, "hinge", variables, "delta", Sentence("Angles between links at their hinges"))
     if here.sizes["guide"]:
         slides = ("slide", "slide_velocity", "slide_acceleration")
         yield _with_rates(here, "guide", slides, "s", Sentence("Displacements along the circles"))
@@ -208,6 +213,17 @@ def _rotations(here: xarray.Dataset) -> Table:
             columns.append(_column(Expression(f"{letter}_{axis}"), values[:, k], unit, size))
         columns.append(_column(Expression(letter), np.linalg.norm(values, axis=1), unit, size))
     return Table(tuple(columns), Sentence("Angular velocities and accelerations in the axes of the frame"))
+
+
+def _spherical_coordinates(here: xarray.Dataset) -> Table:
+    """Polar angles and azimuths of the points."""
+    angles = (("polar_angle", "theta"), ("azimuth", "phi"))
+    columns = [
+        _column(Expression(letter), here[name].values, _unit(here[name]), _greatest(here[name]))
+        for name, letter in angles
+    ]
+    caption = Sentence("Spherical coordinates of the points: polar angle from z, azimuth from x towards y")
+    return Table((_names(here["point"], Sentence("point")), *columns), caption)
 
 
 def _points_on_sphere(here: xarray.Dataset) -> Table:
@@ -340,9 +356,10 @@ def _hinges_over_motion(results: MotionResults, rows: tuple[int, ...]) -> Table:
         columns = [Column("", np.asarray(parameter.instants(data)), parameter.instant.unit, head)]
     for kind, value, rate, letter in (
         ("joint", "joint_angle", "joint_velocity", "psi"),
+        ("hinge", "hinge_angle", "hinge_velocity", "delta"),
         ("guide", "slide", "slide_velocity", "s"),
     ):
-        for name in data[kind].values.tolist()[:MOST]:
+        for name in data[kind].values.tolist()[:MOST] if value in data else ():
             one = data.sel({kind: name})
             for variable, notation in ((value, letter), (rate, f"dot({letter})")):
                 below = Expression(f"{notation}_({{name}})", name=Name(name))

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import islice
-from math import tau
+from math import pi, tau
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.kinematics.hinge_angles import moving_hinges
 from centrode.quantities import QUANTITIES
-from centrode.sheets.plots import Abscissa, AxisLabel, CurvePanel, Plot
+from centrode.sheets.plots import Abscissa, AxisLabel, Curve, CurvePanel, Plot
 from centrode.sheets.sheet import (
     Chapter,
     Check,
@@ -43,6 +44,7 @@ from centrode.views.motion_plots import over_samples, quantities_panel, quantity
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
 
     from centrode.dynamics.simulation.results import SimulationResults
     from centrode.dynamics.simulation.steady_state import Regime
@@ -92,11 +94,16 @@ TITLES = {
     "simulation-speed": Sentence("Speed of the drive and the moments on it"),
     "simulation-phase": Sentence("Speed over the value of the drive"),
     "simulation-energies": Sentence("Energies and works"),
+    "simulation-angles": Sentence("Speed of the drive and angles over its value"),
 }
 CAPTIONS: dict[str, Text] = {
     "simulation-speed": Sentence("Speed and acceleration of the drive, and the moments on it, over time"),
     "simulation-phase": Sentence("Speed over the value of the drive"),
     "simulation-energies": Sentence("Energies and works over time"),
+    "simulation-angles": Sentence(
+        "Speed of the drive, angle $gamma$ of the coupler to the path of its hinge and angle $psi$ of the driven link "
+        "over the value of the drive"
+    ),
 }
 
 
@@ -279,6 +286,47 @@ def _pictures(results: SimulationResults) -> Iterator[tuple[str, Plot]]:
         rows = tuple((_panel(run, variables),) for variables in panels)
         abscissa = _phase(results) if name == "simulation-phase" else time
         yield name, Plot(TITLES[name], title, abscissa, rows)
+    of_angles = _angle_panels(results)
+    if of_angles:
+        rows = tuple((panel,) for panel in of_angles)
+        yield "simulation-angles", Plot(TITLES["simulation-angles"], title, _phase(results), rows)
+
+
+def _angle_panels(results: SimulationResults) -> list[CurvePanel]:
+    """On the sphere: the speed of the drive, and below it the angles of the coupler and of what is driven.
+
+    The angle of a coupler against a link that turns about a fixed point is counted from the direction in which their
+    hinge moves: there it is the pressure angle with a sign.
+    """
+    run, mechanism = results.simulation, results.mechanism
+    if "joint_angle" not in run or not mechanism.motion_parameter.turns:
+        return []
+    panels = [replace(_panel(run, ("drive_speed",)), legend=False)]
+    rockers = [name for name in run["joint"].values.tolist() if name not in run["drive"].values.tolist()]
+    coupler = [
+        Curve(
+            Sentence("{link} to the path of {point}", link=Name(hinge.links[0]), point=Name(hinge.point)),
+            _from_path(run["hinge_angle"].sel(hinge=hinge.label).values),
+            place,
+        )
+        for place, hinge in enumerate(moving_hinges(mechanism))
+        if hinge.links[1] in rockers
+    ]
+    driven = [
+        Curve(Name(name), run["joint_angle"].sel(joint=name).values, k) for k, name in enumerate(rockers)
+    ]
+    for letter, curves in (("γ", coupler), ("ψ", driven)):
+        if curves:
+            scale = max(float(np.nanmax(np.abs(curve.values), initial=0.0)) for curve in curves)
+            panels.append(CurvePanel(AxisLabel(symbol=Symbol(letter), unit="rad"), tuple(curves), scale))
+    return panels
+
+
+def _from_path(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What an angle between links leaves to a right angle: positive where it is acute."""
+    known = angle[np.isfinite(angle)]
+    sense = -1.0 if known.size and known[0] < 0.0 else 1.0
+    return np.asarray(0.5 * pi - sense * angle)
 
 
 def _phase(results: SimulationResults) -> Abscissa:

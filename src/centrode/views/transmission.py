@@ -16,11 +16,14 @@ from centrode.sheets.texts import NOTHING, Name, Number, Sentence, Symbol, Text,
 from centrode.views.abscissa import motion_abscissa
 
 if TYPE_CHECKING:
+    import xarray
+
     from centrode.analysis.transmission import TransmissionResults
 
 Array: TypeAlias = NDArray[np.float64]
 
 VARIABLES = ("transmission_angle", "pressure_angle")
+HINGES = (("hinge_angle", "rad"), ("hinge_velocity", "rad/s"), ("hinge_acceleration", "rad/s^2"))
 PICTURE = "transmission"
 
 
@@ -88,8 +91,23 @@ def _over_motion(results: TransmissionResults) -> Table:
         for variable in VARIABLES
         for name in angles["group"].values.tolist()
     ]
+    columns += [
+        Column("_".join((variable, name)), angles[variable].sel(hinge=name).values, unit, unit_fixed=True)
+        for variable, unit in HINGES
+        if variable in angles
+        for name in angles["hinge"].values.tolist()
+    ]
     words = tuple(Name(Status(code).word) for code in angles["status"].values.tolist())
     return Table((*columns, Column("status", words)))
+
+
+def _hinges(angles: xarray.Dataset) -> CurvePanel:
+    """Angles at the moving hinges of a linkage on the sphere, with their sense."""
+    curves = tuple(
+        Curve(Name(name), np.degrees(angles["hinge_angle"].sel(hinge=name).values), place)
+        for place, name in enumerate(angles["hinge"].values.tolist())
+    )
+    return CurvePanel(AxisLabel(symbol=Symbol("δ"), unit="deg"), curves, scale=90.0)
 
 
 def _plot(results: TransmissionResults) -> Plot:
@@ -110,5 +128,7 @@ def _plot(results: TransmissionResults) -> Plot:
         )
         for variable in VARIABLES
     )
+    if "hinge_angle" in angles:
+        rows = (*rows, (_hinges(angles),))
     title = Sentence("Transmission and pressure angles")
     return Plot(title, Title(mechanism.title), motion_abscissa(mechanism, angles), rows)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
 from typing import TYPE_CHECKING
@@ -26,6 +26,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Text
 from centrode.views.instants import place_title
+from centrode.views.parameter_studies import number_title
 from centrode.views.rotatability import cause_text
 
 if TYPE_CHECKING:
@@ -55,7 +56,11 @@ def sheet(variants: Variants) -> Sheet:
     """Whether each variant turns and why not; where there are answers, the numbers at the instants of all of them."""
     counted = Counted("{n} variant", "{n} variants", len(variants.rows))
     return Sheet(
-        printed=(_printed_table(variants), Paragraph(Joined((counted, _statuses(variants)), ": "))),
+        printed=(
+            _printed_table(variants),
+            *_tables_of_numbers(variants),
+            Paragraph(Joined((counted, _statuses(variants)), ": ")),
+        ),
         tables={"summary": _summary(variants)},
         chapters=Deferred(
             {
@@ -115,6 +120,27 @@ def _printed_table(variants: Variants) -> Table:
     )
 
 
+def _numbers(variants: Variants) -> list[Column]:
+    """The numbers of an analysis of each variant, NaN where it was refused."""
+    units = {name: unit for row in variants.rows for name, (_value, unit) in row.numbers.items()}
+    return [
+        Column(
+            name,
+            np.array([row.numbers[name][0] if name in row.numbers else nan for row in variants.rows]),
+            unit,
+            number_title(name),
+        )
+        for name, unit in units.items()
+    ]
+
+
+def _tables_of_numbers(variants: Variants) -> Iterator[Table]:
+    """The first numbers of an analysis, as a terminal shows them; the summary has all."""
+    numbers = _numbers(variants)[:WIDE]
+    for start in range(0, len(numbers), WIDE // 2):
+        yield Table((_names(variants.rows), *numbers[start : start + WIDE // 2]))
+
+
 def _summary(variants: Variants) -> Table:
     """The table of a file, in SI and in English."""
     rows = variants.rows
@@ -129,6 +155,7 @@ def _summary(variants: Variants) -> Table:
             Column("group", tuple(Name(row.group) for row in rows)),
             Column("cause", tuple(Name(row.cause) for row in rows)),
             Column("status", tuple(Name(row.status) for row in rows)),
+            *(replace(column, unit_fixed=True) for column in _numbers(variants)),
         )
     )
 

@@ -54,12 +54,15 @@ class PathTrial:
     gamma : float [rad]
         Pressure angle at phi = 0.
     roller_radius : float [m]
+    post : float [m]
+        Of the shoes of a walking wheel.
     """
 
     curvature: Callable[[Array], Array]
     radius: float
     gamma: float
     roller_radius: float
+    post: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ class BatchPaths:
     gamma : (n, designs) [rad]
     curvature : (n, designs) [1/m]
     roller_radius : (designs,) [m]
+    post : (designs,) [m]
     mirrored : bool
         The paths go on to negative angles as their own mirror image.
     """
@@ -82,6 +86,7 @@ class BatchPaths:
     gamma: Array
     curvature: Array
     roller_radius: Array
+    post: Array
     mirrored: bool = False
 
 
@@ -129,7 +134,8 @@ def paths_of(trials: Sequence[PathTrial], mesh: Mesh, phi: Array) -> BatchPaths:
     at_zero = phi == 0
     rho[at_zero], gamma[at_zero] = np.exp(start[0]), start[1]
     rollers = np.array([trial.roller_radius for trial in trials])
-    return BatchPaths(phi, rho, gamma, curvature[len(panels) * (DEGREE + 1) :], rollers, mesh.mirrored)
+    posts = np.array([trial.post for trial in trials])
+    return BatchPaths(phi, rho, gamma, curvature[len(panels) * (DEGREE + 1) :], rollers, posts, mesh.mirrored)
 
 
 def _limit_curvature(trial: PathTrial, phi: Array) -> Array:
@@ -266,6 +272,22 @@ def _gap(tried: BatchPaths, _contact: LineContact | None) -> Array:
     return np.asarray(behind - ahead[-1:])
 
 
+def _step(tried: BatchPaths, _contact: LineContact | None) -> Array:
+    """Travel of the hub over one leg: its height times the angle, plus the integral of H' sin(phi)."""
+    held = np.clip(tried.gamma, -STEEPEST, STEEPEST)
+    phi = tried.phi[:, None]
+    sine, cosine = np.sin(phi), np.cos(phi)
+    across = tried.rho * cosine
+    slope = tried.rho * (np.tan(held) * cosine - sine)
+    width = np.diff(phi, axis=0)
+    # trapezoids with the slopes at both ends: to the fourth power of the distance of the angles
+    area = width * (across[1:] + across[:-1]) / 2 + width**2 * (slope[:-1] - slope[1:]) / 12
+    height = tried.rho[_zero(tried)] + tried.post
+    ends = tried.rho[-1:] * sine[-1:] - tried.rho[:1] * sine[:1]
+    travel = height * (tried.phi[-1] - tried.phi[0]) + ends - area.sum(axis=0, keepdims=True)
+    return np.asarray(-(2.0 if tried.mirrored else 1.0) * travel)
+
+
 def _sharp(tried: BatchPaths, _contact: LineContact | None) -> Array:
     return tried.roller_radius * tried.curvature
 
@@ -285,6 +307,7 @@ _ALL = (
     Measure("size", mark("radius of the roller's path"), "m", _size),
     Measure("lift", mark("lift"), "m", _lift, least=True, whole=True),
     Measure("gap", mark("gap between prints"), "m", _gap, least=True, whole=True),
+    Measure("step", mark("step length"), "m", _step, least=True, whole=True),
 )
 
 MEASURES: Mapping[str, Measure] = {measure.name: measure for measure in _ALL}

@@ -26,7 +26,7 @@ from centrode.cams.parameter_choice.problem import (
 from centrode.cams.path_series import law_of, path_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam import CONSTANT, POINT, Cam, vary_cam
+from centrode.model.cam import CONSTANT, MEASURED, OF_WHEELS, POINT, Cam, vary_cam
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.reading import FrozenMap
@@ -512,7 +512,10 @@ def start_of(cam: Cam, family: Family) -> Array:
 def bounds_of(cam: Cam) -> dict[str, float]:
     """Bounds in SI by the names of measures; the admissible stress of the contact where none is given."""
     assert cam.choose is not None
-    bounds = {name: getattr(cam.choose, name) for name in ("stress", "pressure_angle", "size", "lift", "gap")}
+    bounds = {name: getattr(cam.choose, name) for name in MEASURED}
+    if bounds["step"] is not None and cam.mover is None:
+        what = _("a step is that of a walking wheel")
+        raise InputError("[choose] step", what, _("give [mover] with legs and post, or omit it"))
     if bounds["stress"] is None and cam.contact is not None:
         bounds["stress"] = cam.contact.admissible
     return {name: bound for name, bound in bounds.items() if bound is not None}
@@ -533,6 +536,7 @@ def _trial(cam: Cam, names: tuple[str, ...], values: Array) -> PathTrial:
         radius=given.get("start.radius", cam.start.radius),
         gamma=given.get("start.pressure_angle", cam.start.pressure_angle),
         roller_radius=given.get("roller.radius", roller),
+        post=0.0 if cam.mover is None else cam.mover.post,
     )
 
 
@@ -657,7 +661,8 @@ def measures_of(cam: Cam, angles: int) -> dict[str, float]:
     rho, gamma, curvature = (
         values[:, None] for values in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])
     )
-    tried = BatchPaths(phi, rho, gamma, curvature, np.array([radius]), mirrored)
+    post = 0.0 if cam.mover is None else cam.mover.post
+    tried = BatchPaths(phi, rho, gamma, curvature, np.array([radius]), np.array([post]), mirrored)
     if not np.isfinite(rho * gamma * curvature).all():
         return dict.fromkeys(names, math.nan)
     every = {**MEASURES, **{name: measure for name, (measure, _bound) in ALWAYS.items()}}
@@ -725,8 +730,8 @@ class CamChoice(PrintsSummary):
     def measures(self) -> tuple[str, ...]:
         """Names of the measures that this cam has: prints are those of a walking wheel."""
         kept = self.choice.chosen.measures
-        prints = self.cam.mover is not None or kept["gap"].bound is not None
-        return tuple(name for name in kept if name != "gap" or prints)
+        wheel = self.cam.mover is not None
+        return tuple(name for name in kept if name not in OF_WHEELS or wheel or kept[name].bound is not None)
 
 
 def choose_cam(

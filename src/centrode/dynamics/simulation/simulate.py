@@ -39,7 +39,9 @@ from centrode.kinematics.motion import (
     attributes_of,
     coordinates_along,
     dataset_of,
+    joints_of,
     judgements_of,
+    spherical_variables,
     vocabulary_variable,
 )
 from centrode.kinematics.path import SampleGrid, places_of
@@ -233,7 +235,13 @@ def simulation_dataset(
     if motion:
         return dataset_of(solved).assign(curves_named | occasions).assign_attrs(facts)
     variables = {**curves_named, **occasions, **judgements_of(solved, ())}
-    return selectable(xr.Dataset(variables, coordinates_along(solved), attributes_of(solved) | facts))
+    coordinates = coordinates_along(solved)
+    if solved.spins is not None:
+        # angles say on the sphere what the links do, and are few
+        joints = vocabulary_variable("joint_angle", ("sample", "joint"), solved.angles[0][0])
+        variables |= {"joint_angle": joints, **spherical_variables(solved, coordinates=False)}
+        coordinates |= joints_of(solved)
+    return selectable(xr.Dataset(variables, coordinates, attributes_of(solved) | facts))
 
 
 def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> DriveForces:

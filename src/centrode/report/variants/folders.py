@@ -25,7 +25,9 @@ from centrode.files.locks import hold_lock
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text, parse_mechanism
+from centrode.model.mechanism import Mechanism
 from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.sweeps.parameter_studies import analysis_results, check_analysis
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
 from centrode.views import motion
@@ -62,6 +64,7 @@ class Task:
     figures: bool
     more: WritesMore | None = None
     spelling: TableSpelling = PLAIN
+    compute: str | None = None
 
     @property
     def digest(self) -> str:
@@ -69,6 +72,7 @@ class Task:
         told = [__version__, self.topology, dict(self.variant.values), STEPS, self.figures]
         told += [] if self.more is None else [self.more.key]
         told += [] if self.spelling == PLAIN else [asdict(self.spelling)]
+        told += [] if self.compute is None else [self.compute]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -97,8 +101,10 @@ def run(task: Task) -> VariantRow:
     clear_folder(draft)
     draft.mkdir()
     try:
-        results = compute_variant(parse_mechanism(task.topology), task.variant)
+        results = compute_variant(parse_mechanism(task.topology), task.variant, task.compute)
         _write(results, draft, task.spelling, figures=task.figures)
+        if task.compute is not None and results.row.numbers and results.mechanism is not None:
+            _write_analysis(results.mechanism, task, draft)
         if task.more is not None and results.mechanism is not None:
             task.more(results, draft)
     except OSError:
@@ -148,6 +154,15 @@ def _write(results: VariantResults, folder: Path, spelling: TableSpelling, *, fi
             render.write_pictures(sheet.pictures, folder, mechanism.display)
 
 
+def _write_analysis(mechanism: Mechanism, task: Task, folder: Path) -> None:
+    """Tables and figures of the analysis of a variant."""
+    sheet = sheet_of(analysis_results(mechanism, str(task.compute)))
+    for name, table in sheet.tables.items():
+        render.write_table(table, folder / f"{name}.csv", mechanism.display, task.spelling)
+    if task.figures:
+        render.write_pictures(sheet.pictures, folder, mechanism.display)
+
+
 Progress: TypeAlias = Callable[[int, int], None]
 
 LOCK, SUMMARY = ".lock", "summary.csv"
@@ -163,6 +178,7 @@ def write_variants(
     progress: Progress | None = None,
     more: WritesMore | None = None,
     spelling: TableSpelling | None = None,
+    compute: str | None = None,
 ) -> Variants:
     """Compute every variant of a table into a folder of its own, and sum them up in `summary.csv`.
 
@@ -178,6 +194,7 @@ def write_variants(
     progress : called with (variants done, variants in all)
     more : writes further files of each variant into its folder
     spelling : workbooks, decimal commas; plain CSV alone by default
+    compute : as of `variants`; the folder of each variant has the tables and figures of the analysis too
 
     Returns
     -------
@@ -203,10 +220,13 @@ def write_variants(
     folder = Path(folder)
     spelling = spelling or PLAIN
     spelling.check()
+    if compute is not None:
+        check_analysis(compute)
     text = mechanism_text(topology)
     given = read_variants(topology, table)
     tasks = [
-        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling) for variant in given
+        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling, compute)
+        for variant in given
     ]
     keep_inputs(folder / SUMMARY)
     keep_inputs(folder / LOCK)
