@@ -87,17 +87,21 @@ def study(
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
+    *,
+    incomplete: bool = False,
 ) -> MotionResults:
     """Check a mechanism and compute its motion, its machine and its reactions.
 
     Parameters
     ----------
     samples, start, stop : as of `motion`
+    incomplete : leave out a machine that is described wrongly as well
 
     Raises
     ------
     InputError, NotComputedYet
-        As `motion`. A machine or reactions that cannot be computed are left out; `refusals` says why.
+        As `motion`. A machine or reactions that cannot be computed, or whose masses or loads are not complete, are left
+        out; `refusals` says why.
 
     Examples
     --------
@@ -109,7 +113,7 @@ def study(
     """
     prepared = ready(mechanism)
     solved = solve(prepared, requested_grid(prepared, samples, start, stop))
-    return _results(solved, dataset_of(solved), samples)
+    return _results(solved, dataset_of(solved), samples, incomplete=incomplete)
 
 
 def results_of_motion(mechanism: Mechanism, course: xr.Dataset) -> MotionResults:
@@ -152,7 +156,12 @@ def _is_evenly_spaced(places: npt.NDArray[np.float64]) -> bool:
 
 
 def _results(
-    solved: Solved, data: xr.Dataset, samples: int | None, *, over_range: bool = True
+    solved: Solved,
+    data: xr.Dataset,
+    samples: int | None,
+    *,
+    over_range: bool = True,
+    incomplete: bool = False,
 ) -> MotionResults:
     """What follows from a motion that is solved already; `samples` are those of the machine's cycle."""
     prepared, mechanism = solved.ready, solved.ready.mechanism
@@ -162,10 +171,14 @@ def _results(
         machine = None if mechanism.machine is None else machine_results(mechanism, samples)
     except (MotionError, NotComputedYet) as refusal:
         refusals["flywheel"] = refusal
+    except InputError as refusal:
+        if not incomplete and not _lacks_masses_or_loads(mechanism):
+            raise
+        refusals["flywheel"] = refusal
     try:
         if has_masses_or_loads(mechanism):
             reactions = _reactions(mechanism, solved, over_range)
-    except (InputError, NotComputedYet) as refusal:
+    except InputError as refusal:
         refusals["reactions"] = refusal
     most = most_samples(solved)
     by_each_drive = len(mechanism.drives) > 1 and solved.status.size <= most
@@ -184,6 +197,17 @@ def _results(
         refusals,
     )
     return replace(found, limits=_limits(solved)) if found.unreached else found
+
+
+def _lacks_masses_or_loads(mechanism: Mechanism) -> bool:
+    """Whether masses or loads are not complete."""
+    try:
+        MassesAndLoads.of(mechanism)
+    except NotComputedYet:
+        return False
+    except InputError:
+        return True
+    return False
 
 
 def with_instants(results: MotionResults, instants: Sequence[float], points: Sequence[str]) -> MotionResults:

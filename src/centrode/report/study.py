@@ -200,7 +200,7 @@ class ReportStudy:
     @property
     def study(self) -> MotionResults:
         """Everything that `run` computes."""
-        return self.once("study", lambda: study(self.mechanism))
+        return self.once("study", lambda: study(self.mechanism, incomplete=True))
 
     @property
     def results(self) -> Mapping[str, Any]:

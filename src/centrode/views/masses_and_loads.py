@@ -61,23 +61,42 @@ def sheet(masses: LinkMasses) -> Sheet:
 
 
 def _masses(masses: LinkMasses) -> Iterator[Block]:
-    mechanism, found = masses.mechanism, masses.masses
-    if found:
-        inertia = tuple(_inertia(mechanism, one) for one in found)
+    """A row of each link that has a mass, with what is known of it, and what is not."""
+    mechanism = masses.mechanism
+    known = {one.link: one for one in masses.masses}
+    rows = [
+        (Name(name), *(_known(mechanism, known[name]) if name in known else _given(mechanism, name)))
+        for name in mechanism.links
+        if name not in masses.massless
+    ]
+    if rows:
+        link, mass, centre, inertia = zip(*rows, strict=True)
         yield Table(
             (
-                Column("link", tuple(Name(one.link) for one in found), head=Sentence("link")),
-                Column("mass", tuple(_number(one.mass) for one in found), "kg", Sentence("mass")),
-                Column(
-                    "centre",
-                    tuple(_centre(mechanism, one) for one in found),
-                    head=Sentence("centre of mass"),
-                ),
+                Column("link", link, head=Sentence("link")),
+                Column("mass", mass, "kg", Sentence("mass")),
+                Column("centre", centre, head=Sentence("centre of mass")),
                 Column("inertia", inertia, "kg m^2", Sentence("central moment of inertia")),
             )
         )
+    for reason in masses.incomplete.values():
+        yield Paragraph(Sentence("Not complete: {reason}.", reason=Name(str(reason))))
     if masses.massless:
         yield Paragraph(Sentence("Without mass: {links}.", links=_names(masses.massless)))
+
+
+def _known(mechanism: Mechanism, one: Mass) -> tuple[Text, Text, Text]:
+    """Mass, centre and inertia of a link."""
+    return _number(one.mass), _centre(mechanism, one), _inertia(mechanism, one)
+
+
+def _given(mechanism: Mechanism, name: str) -> tuple[Text, Text, Text]:
+    """What a description has of a mass that is not complete."""
+    link = mechanism.links[name]
+    mass = UNKNOWN if link.mass is None else _number(link.mass)
+    centre = Name(link.centre) if isinstance(link.centre, str) else UNKNOWN
+    inertia = _number(link.inertia) if isinstance(link.inertia, int | float) else UNKNOWN
+    return mass, centre, inertia
 
 
 def _inertia(mechanism: Mechanism, one: Mass) -> Text:
