@@ -13,7 +13,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.load_discontinuities import jumps_of
-from centrode.dynamics.loads import AppliedLoad, LoadDiagram, MassesAndLoads
+from centrode.dynamics.loads import AppliedLoad, LoadDiagram, LoadTable, MassesAndLoads
 from centrode.dynamics.masses import coordinates_of as speeds_of
 from centrode.dynamics.masses import share, shares
 from centrode.dynamics.state import About, DriveMotion, State, getters_of
@@ -561,7 +561,9 @@ def _state_of_nodes(solved: Solved, burden: MassesAndLoads) -> State:
 
 def state_of_nodes(solved: Solved, burden: MassesAndLoads, moving: DriveMotion) -> State:
     """The state at the one sample of a traced motion, with time [s], parameter and rate as given."""
-    if any(isinstance(effort.amount, LoadDiagram) for load in burden.loads for effort in load.efforts):
+    if any(
+        isinstance(effort.amount, LoadDiagram | LoadTable) for load in burden.loads for effort in load.efforts
+    ):
         raise Untraceable(mark("indicator diagrams"))
     path, mechanism = solved.ready.kinematics.path, solved.ready.mechanism
     return State(

@@ -49,7 +49,7 @@ from centrode.model.follower_cam import (
 )
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
 from centrode.model.links import RING_AND_POINT, SHAPES, Frame, Gear, Guide, Link, Rolling, Track
-from centrode.model.loads import FITS, FORMS, KINDS, Load
+from centrode.model.loads import FITS, FORMS, KINDS, OVER, STROKE_ENDS, Load
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
 from centrode.model.settings import (
@@ -243,6 +243,10 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "vector": list_of(AMOUNT, 2, 3),
         "axes": NAME,
         "value": AMOUNT,
+        "over": {"enum": list(OVER)},
+        "measured_from": {"enum": list(STROKE_ENDS)},
+        "pressure": quantity_schema("pressure"),
+        "diameter": above_zero("length"),
         "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 3), 2, reading.TABLE_ROWS)]},
         "stiffness": quantity_schema("stiffness"),
         "damping": quantity_schema("damping"),

@@ -10,6 +10,8 @@ import numpy as np
 
 from centrode.dynamics.state import Centre
 from centrode.model.loads import (
+    DISPLACEMENT,
+    DRIVE,
     AnyLoad,
     BearingFriction,
     GuideForce,
@@ -45,6 +47,12 @@ AMOUNTS = (
     ("coefficient", Symbol("f")),
 )
 """Numbers of a load, by what stands before them."""
+TABLES = {
+    "displacement": Sentence("indicator diagram of {count} points"),
+    "stroke": Sentence("indicator diagram of {count} points over the stroke"),
+    "drive": Sentence("table of {count} points over the drive"),
+    "time": Sentence("table of {count} points over time"),
+}
 UNKNOWN = Number(math.nan)
 
 
@@ -181,9 +189,19 @@ def _amount(load: AnyLoad) -> Text:
         value = getattr(load, key, None)
         if value is not None:
             parts.append(_number(value) if before == NOTHING else Joined((before, _number(value)), " = "))
-    if isinstance(load, GuideForce) and load.table is not None:
+    if isinstance(load, GuideForce | Torque) and load.table is not None:
         count = Number(len(load.table), digits="d")
-        parts.append(Sentence("indicator diagram of {count} points", count=count))
+        parts.append(
+            TABLES[load.over or (DRIVE if isinstance(load, Torque) else DISPLACEMENT)].fill(count=count)
+        )
+    if isinstance(load, GuideForce) and load.pressure is not None and load.diameter is not None:
+        parts.append(
+            Sentence(
+                "as shares of {pressure} on a piston of {diameter} across",
+                pressure=Number(load.pressure, "Pa", unit_fixed=True),
+                diameter=Number(load.diameter, "m"),
+            )
+        )
     if isinstance(load, PointForce) and load.while_moving is not None:
         way = Place(tuple(map(float, load.while_moving)), "1")
         parts.append(Sentence("while the point moves towards {way}", way=way))
