@@ -221,6 +221,8 @@ def _mass_of(mechanism: Mechanism, name: str, still: set[str], given: Given, m: 
         return solid_of(mechanism, name, given, m)
     link = mechanism.links[name]
     reader = _MassReader(name, link, given)
+    if link.masses:
+        return reader.of_parts(still=name in still)
     mass, inertia = reader.number("mass", link.mass or 0.0), reader.inertia(name in still)
     if is_none(mass) and is_none(inertia):
         return None
@@ -233,6 +235,8 @@ def centre_of(
     mechanism: Mechanism, link: str, given: Given | None = None, m: Namespace = ARRAYS
 ) -> Centre | Radial:
     """Centre of mass of a link: given, the only point, or by its shape; InputError where nothing tells it."""
+    if mechanism.links[link].masses:
+        return _MassReader(link, mechanism.links[link], given or {}).of_parts(still=True).centre
     if mechanism.space == "sphere":
         return InertiaReader(link, mechanism.links[link], given or {}, mechanism.sphere_radius, m).centre()
     return _MassReader(link, mechanism.links[link], given or {}).centre()
@@ -240,7 +244,8 @@ def centre_of(
 
 def has_masses_or_loads(mechanism: Mechanism) -> bool:
     """Whether a description has anything for dynamics."""
-    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
+    links = mechanism.links.values()
+    return bool(mechanism.loads) or any(link.mass or link.inertia or link.masses for link in links)
 
 
 @dataclass(frozen=True)
@@ -314,6 +319,29 @@ class _MassReader(LinkNumbers):
             point: (self.number(f"points.{point}.x", x), self.number(f"points.{point}.y", y))
             for point, (x, y) in self.link.coordinates.items()
         }
+
+    def of_parts(self, still: bool) -> Mass:
+        """Several masses as one: their sum, their common centre, and by parallel axes the inertia about it."""
+        base, (x, y) = next(iter(self.local.items()))
+        parts: list[tuple[Number, Number, Number, Number]] = []
+        if self.link.mass is not None or self.link.inertia is not None:
+            own = self.centre() if self.link.mass else Centre(self.name, base, 0.0, 0.0)
+            u, v = self.local[own.base]
+            mass = self.number("mass", self.link.mass or 0.0)
+            parts.append((mass, u - x + own.along, v - y + own.across, self.inertia(still)))
+        for part in self.link.masses:
+            u, v = self.local[part.at] if isinstance(part.at, str) else part.at
+            parts.append((part.mass, u - x, v - y, part.inertia))
+        whole = sum(mass for mass, _u, _v, _own in parts)
+        if is_none(whole):
+            return Mass(self.name, whole, Centre(self.name, base, 0.0, 0.0), sum(part[3] for part in parts))
+        along = sum(mass * u for mass, u, _v, _own in parts) / whole
+        across = sum(mass * v for mass, _u, v, _own in parts) / whole
+        inertia = sum(
+            own + mass * ((u - along) * (u - along) + (v - across) * (v - across))
+            for mass, u, v, own in parts
+        )
+        return Mass(self.name, whole, Centre(self.name, base, along, across), inertia)
 
     def centre(self) -> Centre:
         given, link = self.link.centre, self.link

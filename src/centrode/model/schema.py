@@ -48,7 +48,18 @@ from centrode.model.follower_cam import (
     Tool,
 )
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
-from centrode.model.links import RING_AND_POINT, SHAPES, Frame, Gear, Guide, Link, Rolling, Track
+from centrode.model.links import (
+    MASSES,
+    RING_AND_POINT,
+    SHAPES,
+    Frame,
+    Gear,
+    Guide,
+    Link,
+    PartMass,
+    Rolling,
+    Track,
+)
 from centrode.model.loads import FITS, FORMS, KINDS, OVER, STROKE_ENDS, Load
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
@@ -173,9 +184,15 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "inertia": _INERTIA,
         "shape": {"enum": list(SHAPES)},
         "radius": above_zero("length"),
+        "masses": list_of(reference_to(PartMass), 0, MASSES),
         "centre_radius": quantity_schema("length"),
         "model": {"enum": [RING_AND_POINT]},
         "reference": _NAMES,
+    },
+    PartMass: {
+        "mass": quantity_schema("mass"),
+        "at": {"anyOf": [_COORDINATES, NAME]},
+        "inertia": quantity_schema("inertia"),
     },
     Guide: {
         "point": NAME,

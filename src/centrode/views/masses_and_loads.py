@@ -87,6 +87,14 @@ def _masses(masses: LinkMasses) -> Iterator[Block]:
                 Column("inertia", inertia, "kg m^2", Sentence("central moment of inertia")),
             )
         )
+    several = [name for name, link in mechanism.links.items() if link.masses and name in known]
+    if several:
+        yield Paragraph(
+            Sentence(
+                "The masses of {links} are given one by one; the table has their sum, centre and inertia.",
+                links=_names(several),
+            )
+        )
     for reason in masses.incomplete.values():
         yield Paragraph(Sentence("Not complete: {reason}.", reason=Name(str(reason))))
     if masses.massless:
@@ -121,8 +129,9 @@ def _centre(mechanism: Mechanism, one: Mass) -> Text:
     """Where a centre of mass lies: in a point, or beside one in the axes of its link."""
     if not one.weighs:
         return UNKNOWN
-    own = mechanism.links[one.link].centre
-    if isinstance(own, str):
+    link = mechanism.links[one.link]
+    own = link.centre
+    if isinstance(own, str) and not link.masses:
         return Name(own)
     if not isinstance(one.centre, Centre):
         distance = Number(float(one.centre.distance), "m", unit_fixed=True)
