@@ -251,6 +251,16 @@ REACTIONS = Topic(
             FlagOption(
                 "steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")
             ),
+            ValueOption(
+                "speed",
+                mark("V"),
+                mark('With --at: speed of the drive in its own sense ("65 rpm"); 0 at rest.'),
+            ),
+            ValueOption(
+                "acceleration",
+                mark("A"),
+                mark('With --speed: acceleration of the drive in its own sense ("-2.77 rad/s^2").'),
+            ),
             FlagOption("frictionless", mark("Omit Coulomb friction.")),
             RangeOptions(),
         ),

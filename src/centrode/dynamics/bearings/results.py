@@ -14,9 +14,10 @@ from centrode.dynamics.bearings.extremes import BearingLoad, bearing_loads
 from centrode.dynamics.bearings.wear import bearings, motion_beside
 from centrode.dynamics.kinetostatics.reactions import Speed, reactions
 from centrode.dynamics.reduction import reduce
-from centrode.errors import CentrodeError
+from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import motion
 from centrode.kinematics.several_inputs.limits import End, limits_met
+from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
 
@@ -68,6 +69,8 @@ def reaction_results(
     at: Sequence[float | str] = (),
     *,
     steady: bool = False,
+    speed: float | str | None = None,
+    acceleration: float | str | None = None,
     frictionless: bool = False,
     complete: bool = True,
     instants: npt.ArrayLike | None = None,
@@ -79,6 +82,7 @@ def reaction_results(
     samples, start, stop : as of `motion`
     at : single places in place of the range, numbers in SI or texts with a unit ("120 deg")
     steady : at the real speed of a machine in steady motion, not at its mean speed
+    speed, acceleration : of the drive in its own sense, at the places `at`: numbers in SI or texts with a unit
     frictionless : without friction by coefficients
     complete : with loads and wear of the bearings, which take several times as long as the reactions
     instants : further places [rad, m or s] for equations with numbers
@@ -90,8 +94,20 @@ def reaction_results(
     """
     instant = mechanism.motion_parameter.instant
     places = [instant.read(place, "at") for place in at] or None
-    speed: Speed = "steady" if steady else "mean"
-    found = reactions(mechanism, samples, start, stop, places, speed=speed, friction=not frictionless)
+    if steady and speed is not None:
+        what = _("a speed is given, and the real one of the machine is requested")
+        raise InputError("speed", what, _("choose one of them"))
+    pace: Speed | float | str = ("steady" if steady else "mean") if speed is None else speed
+    found = reactions(
+        mechanism,
+        samples,
+        start,
+        stop,
+        places,
+        speed=pace,
+        acceleration=acceleration,
+        friction=not frictionless,
+    )
     results = ReactionResults(mechanism, found, tuple(at))
     if complete and not at:
         results = with_bearings(mechanism, found)

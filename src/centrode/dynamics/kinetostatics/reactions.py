@@ -13,6 +13,7 @@ import xarray as xr
 from centrode.dynamics.kinetostatics.applied_forces import (
     InputMotion,
     Outer,
+    given_motion,
     input_motion_of,
     outer_of,
     rates_of,
@@ -491,7 +492,8 @@ def reactions(
     stop: float | str | None = None,
     at: npt.ArrayLike | None = None,
     *,
-    speed: Speed = "mean",
+    speed: Speed | float | str = "mean",
+    acceleration: float | str | None = None,
     friction: bool = True,
 ) -> xr.Dataset:
     """Forces in every joint and what the drives must give, from J' lambda = -Q with one list of constraints.
@@ -500,8 +502,11 @@ def reactions(
     ----------
     samples, start, stop, at
         As for `motion`; with `speed="steady"` as for `steady_motion`, without start and stop.
-    speed : "mean" or "steady"
-        The speed of `reduce`, or the real one of a machine in steady motion.
+    speed : "mean", "steady", or a speed [rad/s or m/s] or a text with a unit ("65 rpm")
+        The speed of `reduce`, or the real one of a machine in steady motion; or that of the drive in its own sense at
+        the places `at`, 0 for static equilibrium.
+    acceleration : [rad/s^2 or m/s^2] or a text with a unit ("-2.77 rad/s^2")
+        Of the drive in its own sense, with a given speed.
     friction
         Whether Coulomb friction counts; where there is any, `friction_moment`, `friction_force`,
         `friction_power`, `efficiency` and more tell it (docs: friction).
@@ -530,9 +535,12 @@ def reactions(
     mechanism = mechanism_of(mechanism)
     mechanism = mechanism if friction else without_friction(mechanism)
     burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
-    if speed not in SPEEDS:
-        what = _("{name} is not a speed").format(name=f'"{speed}"')
-        raise InputError("speed", what, _("use one of {known}").format(known=", ".join(SPEEDS)))
+    if speed in SPEEDS and acceleration is not None:
+        what = _("an acceleration is given without a speed")
+        raise InputError("acceleration", what, _("give the speed of the drive as well, 0 at rest"))
+    if speed not in SPEEDS and at is None:
+        what = _("a speed is given for a whole range")
+        raise InputError("speed", what, _("give the positions with at"))
     if speed == "steady":
         if start is not None or stop is not None:
             what = _("steady motion is given over a whole cycle")
@@ -543,7 +551,8 @@ def reactions(
     prepared = ready(mechanism)
     span = grid_of(prepared, samples, start, stop, at)
     solved = solve(prepared, span)
-    return reactions_at(solved, burden, input_motion_of(solved, burden), contacts, at is None)
+    pace = input_motion_of(solved, burden) if speed == "mean" else given_motion(solved, speed, acceleration)
+    return reactions_at(solved, burden, pace, contacts, at is None)
 
 
 def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:
