@@ -340,7 +340,7 @@ class LoadTable:
 
     @classmethod
     def over(
-        cls, mechanism: Mechanism, label: str, rows: tuple[tuple[float, ...], ...], over: str
+        cls, mechanism: Mechanism, label: str, rows: tuple[tuple[float, ...], ...], over: str | None
     ) -> LoadTable:
         """The table of a load; InputError over the drive of a mechanism that has several.
 

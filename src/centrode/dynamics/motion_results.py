@@ -168,7 +168,7 @@ def _results(
     refusals: dict[str, CentrodeError] = {}
     machine = reactions = None
     try:
-        machine = None if mechanism.machine is None else machine_results(mechanism, samples)
+        machine = machine_results(mechanism, samples) if mechanism.runs_at_mean_speed else None
     except (MotionError, NotComputedYet) as refusal:
         refusals["flywheel"] = refusal
     except InputError as refusal:

@@ -169,12 +169,12 @@ _PLACED: Schema = {
 _POSITION: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED]}
 _THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, NAME]}
 _DIRECTION: Schema = {"anyOf": [_PAIR, *quantity_schema("angle")["anyOf"]]}
-_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, 2)]}
+_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, reading.POINTS)]}
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
 
 PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Display: {"length": TEXT, "angle": TEXT},
-    Frame: {"points": table_of(_POSITION, reading.POINTS)},
+    Frame: {"points": {"anyOf": [table_of(_POSITION, reading.POINTS), list_of(NAME, 0, reading.POINTS)]}},
     Link: {
         "points": _POINTS,
         "length": above_zero("length"),
@@ -291,6 +291,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Shaft: {"inertia": quantity_schema("inertia"), "ratio": quantity_schema("ratio"), "name": TEXT},
     FlywheelShape: {
         "ratio": quantity_schema("ratio"),
+        "inertia": above_zero("inertia"),
         "density": above_zero("density"),
         "width": above_zero("ratio"),
         "inner": quantity_schema("ratio"),
@@ -338,6 +339,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "gravity": list_of(quantity_schema("acceleration"), 2, 3),
         "radius": above_zero("length"),
         "display": reference_to(Display),
+        "points": table_of(_COORDINATES, reading.POINTS),
         "frame": reference_to(Frame),
         "links": table_of(reference_to(Link), reading.LINKS),
         "guides": list_of(reference_to(Guide), 0, reading.GUIDES),

@@ -28,6 +28,7 @@ from centrode.model.loads import (
     Torque,
 )
 from centrode.model.reading import FRAME
+from centrode.model.settings import Shaft
 from centrode.sheets.sheet import Block, Chapter, Column, Fact, FactTable, Paragraph, Section, Sheet, Table
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Place, Sentence, Symbol, Text
 from centrode.views.load_names import KINDS, load_text
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from centrode.dynamics.masses import LinkMasses
     from centrode.dynamics.state import Mass
     from centrode.model.mechanism import Mechanism
-    from centrode.model.settings import Machine, Shaft
+    from centrode.model.settings import Machine
 
 AMOUNTS = (
     ("value", NOTHING),
@@ -239,8 +240,9 @@ def _bracketed_vector(values: Sequence[object]) -> Text:
 
 
 def _machine(machine: Machine) -> Iterator[Fact]:
-    speed = Number(machine.mean_speed, "rad/s", unit_fixed=True)
-    yield Fact(Sentence("mean speed of the drive"), speed)
+    if machine.mean_speed:
+        speed = Number(machine.mean_speed, "rad/s", unit_fixed=True)
+        yield Fact(Sentence("mean speed of the drive"), speed)
     if machine.fluctuation is not None:
         yield Fact(Sentence("admissible coefficient of fluctuation"), Number(machine.fluctuation))
     for number, shaft in enumerate(machine.shafts, start=1):
@@ -248,6 +250,11 @@ def _machine(machine: Machine) -> Iterator[Fact]:
             Name(shaft.name) if shaft.name else Sentence("shaft {number}", number=Number(number, digits="d"))
         )
         yield Fact(label, _shaft(shaft))
+    if machine.flywheel.inertia is not None:
+        yield Fact(
+            Sentence("flywheel"),
+            _shaft(Shaft(inertia=machine.flywheel.inertia, ratio=machine.flywheel.ratio)),
+        )
     if machine.driving is not None:
         yield Fact(Sentence("course of the driving moment"), Name(machine.driving))
 

@@ -419,7 +419,7 @@ def _course(drive: Drive, mechanism: Mechanism) -> tuple[str, Text]:
     """How a drive moves, as a key of sentences, and its speed; a machine runs at a speed of its own."""
     parameter = mechanism.motion_parameter.drive(drive.id)
     machine = mechanism.machine
-    if machine is not None and machine.mean_speed is not None and parameter.unit == "rad":
+    if machine is not None and mechanism.runs_at_mean_speed and parameter.unit == "rad":
         return MEAN, Number(30.0 * machine.mean_speed / math.pi, "rpm", ".4g", unit_fixed=True)
     if drive.speed is None:
         return BY_LAW, NOTHING

@@ -464,7 +464,7 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
 def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Rates, bool]:
     """The state at the speed that `reduce` takes, its rates by time, and whether the machine gives the speed."""
     span, prepared = solved.span, solved.ready
-    by_machine = prepared.mechanism.machine is not None and prepared.parameter.is_uniform
+    by_machine = prepared.mechanism.runs_at_mean_speed and prepared.parameter.is_uniform
     if by_machine:
         moving = Reducer(prepared, burden).moving(span.parameter)
         return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), True

@@ -178,7 +178,7 @@ def input_motion_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
     path = prepared.kinematics.path
     if path.by_time:
         refuse_drive_in_formulas(burden)
-    if path.by_time or prepared.mechanism.machine is None or not path.parameter.is_uniform:
+    if path.by_time or not prepared.mechanism.runs_at_mean_speed or not path.parameter.is_uniform:
         return _along(span, "drive")
     moving = Reducer(prepared, burden).moving(span.parameter)
     return InputMotion(moving, np.zeros(len(span.parameter)), "machine")
