@@ -127,6 +127,10 @@ AMOUNT: Schema = {
 }
 
 
+FOLLOWING = {(LiftSegment, "angle")}
+"""Keys that every part has, but that may follow from others: the angle of a segment from its share or its time."""
+
+
 def schema_of(
     title: str, whole: type[DescriptionPart], properties: Mapping[type[DescriptionPart], Schema]
 ) -> Schema:
@@ -144,6 +148,7 @@ def _object(part: type[DescriptionPart], properties: Mapping[type[DescriptionPar
         key
         for key, name in part.keys().items()
         if name in part.model_fields and part.model_fields[name].is_required()
+        if (part, key) not in FOLLOWING
     ]
     schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
     return {**schema, "required": required} if required else schema
@@ -394,6 +399,8 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     },
     LiftSegment: {
         "angle": above_zero("angle"),
+        "share": above_zero("ratio"),
+        "time": above_zero("time"),
         "from": quantity_schema("angle"),
         "to": AMOUNT,
         "curve": {"enum": list(laws.LIFT_CURVES)},
