@@ -308,9 +308,7 @@ def _columns_over(over: Over, kind: str) -> TableColumns:
         case "stroke":
             return TableColumns(("ratio", kind, kind), "[s/H, force, force]", 2)
         case "drive":
-            drives = READING.get().parameter.drives
-            turned = drives[0].kind if drives else "angle"
-            return TableColumns((turned, kind), "[drive, force]", 2)
+            return TableColumns((READING.get().parameter.variable.kind, kind), "[drive, force]", 2)
         case "time":
             return TableColumns(("time", kind), "[time, force]", 2)
         case _:
