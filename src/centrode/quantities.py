@@ -512,6 +512,8 @@ CAMS = (
     Quantity("drawn_angle", "φ", "rad", mark("angle of the cam at the drawn places")),
     Quantity("drawn_motion", "", "m", mark("lift and derivatives at the drawn places")),
     Quantity("share", "u", "1", mark("share of the angle")),
+    Quantity("drawn_share", "φ/β", "1", mark("share of the angle at the drawn places")),
+    Quantity("drawn_rise", "s/h", "1", mark("share of the rise at the drawn places")),
     Quantity("rise_share", "s/h", "1", mark("share of the rise")),
     Quantity("peak_coefficient", "C", "1", mark("peak coefficient")),
     Quantity("torque_coefficient", "C_T", "1", mark("peak coefficient of velocity times acceleration")),

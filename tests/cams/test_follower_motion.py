@@ -35,6 +35,7 @@ LITERATURE = {
     "cycloidal": (2.0, 6.283, 39.48, (2.0, 2 * PI, 4 * PI**2)),
     "3-4-5": (1.875, 5.773, 60.0, (15 / 8, 10 / math.sqrt(3), 60.0)),
     "4-5-6-7": (2.188, 7.513, 52.5, (35 / 16, 84 * math.sqrt(5) / 25, 52.5)),
+    "trapezoid": (2.0, 5.333, 42.67, (2.0, 16 / 3, 128 / 3)),
     "modified sine": (1.760, 5.528, 69.47, (4 * PI / (4 + PI), 4 * PI**2 / (4 + PI), 16 * PI**3 / (4 + PI))),
     "modified trapezoid": (2.0, 4.888, 61.43, (2.0, 8 * PI / (2 + PI), 32 * PI**2 / (2 + PI))),
 }
@@ -67,6 +68,8 @@ def test_coefficients_do_not_depend_on_rise_and_angle(name: str, rise: float, an
 
 def test_velocity_times_acceleration_has_its_closed_forms() -> None:
     expected = {
+        "parabolic": 8.0,  # 4 u times 4, up to the middle
+        "trapezoid": 80 / 9,  # 5/3 times 16/3, where the acceleration begins to fall
         "harmonic": PI**3 / 8,  # pi/2 sin x pi^2/2 cos x
         "cycloidal": 3 * math.sqrt(3) * PI / 2,  # (1 - cos x) 2 pi sin x, greatest at 120 deg
         "uniform": 0.0,
@@ -80,10 +83,12 @@ def test_where_laws_jump_against_dwells() -> None:
     found = {name: peaks_of(SegmentedLaw((LawSegment(1.0, 1.0, name),))).first_jump for name in CURVES}
     assert found == {
         "uniform": 1,
+        "parabolic": 2,
         "harmonic": 2,
         "cycloidal": 3,
         "3-4-5": 3,
         "4-5-6-7": 4,
+        "trapezoid": 3,
         "modified sine": 3,
         "modified trapezoid": 3,
     }
@@ -384,3 +389,34 @@ def test_jumps_are_drawn_as_such() -> None:
 def test_what_is_no_cam_in_python_is_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(InputError):
         ct.PlateCam(kind="cam", **wrong)
+
+
+def test_constant_acceleration_turns_round_in_the_middle_of_a_rise() -> None:
+    """s = 2 h u^2, then mirrored: the acceleration 4 h / beta^2 changes its sign at once, and results say so."""
+    results = follower_motion_results(rise_and_fall("parabolic"))
+    assert results.first_jump == 2 and results.peaks[0].coefficients == pytest.approx(
+        (2.0, 4.0, 0.0), abs=64 * EPS
+    )
+    rise, fall = results.inner_joints
+    for joint, middle, angle, sign in ((rise, 50, 100, 1), (fall, 200, 120, -1)):
+        size = sign * 4 * 24e-3 / math.radians(angle) ** 2
+        assert math.degrees(joint.angle) == pytest.approx(middle, rel=8 * EPS)
+        assert (joint.before[2], joint.after[2]) == pytest.approx((size, -size), rel=64 * EPS)
+        assert joint.jumps[:2] == (0.0, 0.0) and joint.jumps[2] == pytest.approx(-2 * size, rel=64 * EPS)
+    # the figure has a dashed line at each of the six jumps and at the beginning of the turn, the table a row
+    figure = ct.figures(results)["cam-motion"]
+    dashed = [[line for line in axes.lines if line.get_linestyle() == "--"] for axes in figure.axes]
+    assert [len(lines) for lines in dashed] == [0, 0, 7, 0]
+    assert "inside them" in ct.summary(results)
+
+
+def test_laws_are_drawn_from_both_sides_of_a_jump() -> None:
+    found = compare_laws(curves=["parabolic", "trapezoid"])
+    share = found.drawn_share.values
+    middle = np.flatnonzero(np.abs(share - 0.5) < 1e-12)
+    assert len(middle) == 2 and (np.diff(share) > 0).all()
+    drawn = found.drawn_rise.sel(law="parabolic", derivative=2).values[middle]
+    assert drawn.tolist() == [4.0, -4.0]
+    corner = np.flatnonzero(np.abs(share - 0.125) < 1e-12)
+    jerk = found.drawn_rise.sel(law="trapezoid", derivative=3).values[corner]
+    assert jerk == pytest.approx([128 / 3, 0.0], rel=64 * EPS, abs=0)

@@ -304,7 +304,7 @@ def test_describe(centrode: Centrode) -> None:
     done = centrode("describe", "slider-between-cranks")
     assert (done.code, done.err) == (0, "")
     assert done.out.startswith(
-        "Slider between two cranks\n\nBesides the frame the mechanism has 5 moving links: "
+        "Slider between two cranks\n\nThe mechanism has 6 links: the frame and 5 moving links "
     )
     assert max(map(len, done.out.splitlines())) <= 100
     whole = " ".join(done.out.split())

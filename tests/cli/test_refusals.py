@@ -174,10 +174,6 @@ CHANGES = {
         "speed = 1", 'table = "../../etc/passwd"',
         'press.toml, [[drives]] 1, table: "../../etc/passwd" is not in the folder of the description; put',
     ),
-    "no speed": (
-        "speed = 1", "speed = 0",
-        "[[drives]] OA: its speed is zero; give a speed, or a law",
-    ),
     "a billion samples": (
         "[assembly]", "[study]\nsamples = 1000000000\n[assembly]",
         "press.toml, [study]: samples must lie between 1 and 1000000, got 1000000000; choose fewer samples",

@@ -114,7 +114,15 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {"follower_push", "follower_moment", "contact_force", "cam_torque"}
     ends = ("slope", "second", "third", "fourth", "velocity", "acceleration", "jerk")
     cams |= {f"{front}_{end}" for front in ("lift", "swing") for end in ends}
-    cams |= {"share", "rise_share", "peak_coefficient", "torque_coefficient", "first_jump"}
+    cams |= {
+        "drawn_share",
+        "drawn_rise",
+        "share",
+        "rise_share",
+        "peak_coefficient",
+        "torque_coefficient",
+        "first_jump",
+    }
     known |= cams
     known |= {"moment_of_links", "inertia_moment_of_group"}
     known |= {

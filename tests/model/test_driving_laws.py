@@ -139,7 +139,10 @@ def test_repeated_segments_need_a_time_to_run() -> None:
         ('to = 1, time = "-2 s", curve = "uniform"', 'segment 1: time must be positive, got "-2 s"'),
         ('to = 1, time = "2 m", curve = "uniform"', "segment 1, time: expected a time (s)"),
         ('to = 1, time = 1, curve = "cycloid"', 'got "cycloid"; did you mean "cycloidal"?'),
-        ("to = 1, time = 1, curve = 3", 'segment 1, curve: expected one of "uniform", "harmonic"'),
+        (
+            "to = 1, time = 1, curve = 3",
+            'segment 1, curve: expected one of "uniform", "parabolic", "harmonic"',
+        ),
         ('time = 1, curve = "3-4-5"', 'segment 1: "to" is missing'),
         (
             'to = 1, time = 1, curve = "dwell"',

@@ -172,3 +172,28 @@ def test_every_chapter_is_told() -> None:
         r"^\| `([\w-]+)` \| ", page.partition("\n## Chapters")[2].partition("\n##")[0], re.MULTILINE
     )
     assert told == list(CHAPTERS)
+
+
+def test_a_missing_centre_of_mass_fails_what_needs_it_alone() -> None:
+    """Motion, tables and drawings need no masses; the others say what is missing."""
+    text = (
+        FOUR_BAR[: FOUR_BAR.index("[report]")]
+        + """
+samples = 9
+[machine]
+mean_speed = "60 rpm"
+[[loads]]
+kind = "torque"
+link = "DB"
+value = -2
+"""
+    )
+    text = text.replace(
+        "length = 3\n", "points = { D = [0, 0], B = [3, 0], E = [1, 1] }\nmass = 2\ninertia = 0.1\n"
+    )
+    made = ct.report(ct.parse_mechanism(text))
+    reasons = {chapter.name: chapter.missing for chapter in made.chapters if chapter.missing}
+    assert set(reasons) == {"reduction", "flywheel", "real-motion", "force-polygons", "balance"}
+    assert all("[links.DB]: the position of its centre" in reason for reason in reasons.values())
+    kept = {chapter.name for chapter in made.chapters} - set(reasons)
+    assert {"tables", "plots", "graphic", "centres", "masses-and-loads", "checks"} <= kept

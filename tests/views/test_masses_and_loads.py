@@ -7,7 +7,7 @@ import pytest
 import centrode as ct
 from centrode.dynamics.masses import link_masses
 from centrode.locale import speaking
-from centrode.render.document.blocks import TableBlock
+from centrode.render.document.blocks import ParagraphBlock, TableBlock
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
 from centrode.views.masses_and_loads import sheet
@@ -39,3 +39,27 @@ def test_names_come_out_character_by_character(hostile: str) -> None:
     assert loads[0] == [f"{hostile} too", "момент", hostile, "2.5*t"]
     assert loads[1][3] == "1,25"
     assert machine[0][1] == "1,5 рад/с" and machine[1][0] == hostile
+
+
+def test_a_mass_that_is_not_complete_leaves_the_others_as_they_are() -> None:
+    """A table has what is given of every link, and the reason below it says what is missing."""
+    mechanism = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={
+            "OA": {"points": ["O", "A"], "length": 1, "mass": 2.5, "shape": "rod"},
+            "AC": {"points": {"A": [0, 0], "B": [1, 0], "C": [1, 1]}, "mass": 3.25, "inertia": 0.125},
+            "CD": {"points": ["C", "D"], "length": 1},
+        },
+        drives=[{"link": name, "speed": 1} for name in ("OA", "AC", "CD")],
+    )
+    found = link_masses(mechanism)
+    assert [mass.link for mass in found.masses] == ["OA"] and found.massless == ("CD",)
+    assert found.incomplete["AC"].what == "the position of its centre of mass is not given"
+    chapter = document_chapter("masses-and-loads", sheet(found), Numbers(mechanism.display))
+    table, reason, massless = chapter.sections[0].blocks
+    assert isinstance(table, TableBlock)
+    assert [row[0] for row in table.rows] == ["OA", "AC"]
+    assert table.rows[1][1] == "3.25" and table.rows[1][3] == "0.125"
+    assert isinstance(reason, ParagraphBlock) and isinstance(massless, ParagraphBlock)
+    assert "links.AC" in reason.text and "give centre, or shape" in reason.text
+    assert "CD" in massless.text

@@ -20,8 +20,8 @@ from mechanisms import four_bar
 from samples import examples_at_hand
 
 WORKED = """\
-Besides the frame the mechanism has 5 moving links: OA, AC, CB, BD, slider C. Hinged to the frame: OA in O, BD in D. \
-Hinged to each other: OA and AC in A, CB and BD in B. A slider, hinged to AC and CB in C, moves along a fixed \
+The mechanism has 6 links: the frame and 5 moving links (OA, AC, CB, BD, slider C). Hinged to the frame: OA in O, \
+BD in D. Hinged to each other: OA and AC in A, CB and BD in B. A slider, hinged to AC and CB in C, moves along a fixed \
 horizontal guide.
 
 Crank OA is driven: it turns about O at a constant 1 rad/s. Coupler AC reciprocates the slider in C along its \
@@ -49,6 +49,15 @@ def test_the_worked_example() -> None:
     motion = ct.motion(ct.example("slider-between-cranks"), 2001)
     assert f"{np.ptp(motion.slide.to_numpy()):.4g}" == "1.279"
     assert f"{math.degrees(np.ptp(motion.angle.sel(link='BD').to_numpy())):.3g}" == "29.7"
+
+
+def test_a_machine_runs_at_its_mean_speed() -> None:
+    """65 rpm of the machine, not the rate of 1 rad/s by which the motion is computed."""
+    text = words_of(ct.example("six-bar-press"))
+    assert "Crank OA is driven: it turns about O at a mean speed of 65 rpm." in text
+    assert "57.3" not in text
+    alone = ct.example("six-bar-press").model_copy(update={"machine": None})
+    assert "it turns about O at a constant 57.3 deg/s." in words_of(alone)
 
 
 @pytest.mark.parametrize("name", examples_at_hand(ct.example_names()))

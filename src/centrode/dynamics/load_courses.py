@@ -149,7 +149,7 @@ def driving_moments(mechanism: Mechanism, reduction: xr.Dataset) -> Array | None
 
     It is that of the cycle with loads at the mean speed; None where nothing tells it.
     """
-    if mechanism.machine is None or "reduced_moment" not in reduction:
+    if not mechanism.runs_at_mean_speed or "reduced_moment" not in reduction:
         return None
     with suppress(CentrodeError):
         solution = solution_of(mechanism)

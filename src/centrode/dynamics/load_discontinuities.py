@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.load_coordinates import Coordinate
-from centrode.dynamics.loads import REST, AppliedLoad, LoadTerm
+from centrode.dynamics.loads import REST, AppliedLoad, LoadTable, LoadTerm
 from centrode.dynamics.state import State
 from centrode.numerics.search import foretold_brackets, newton_roots
 
@@ -33,10 +33,11 @@ def jumps_of(loads: Sequence[AppliedLoad], at: StateAt, nodes: Array) -> Array:
     for effort in _load_terms(loads):
         if effort.amount.levels:
             kinked.setdefault(effort.coordinate, set()).update(effort.amount.levels)
-    if not (turning or kinked) or len(nodes) < 2:
+    tables = [effort.amount for effort in _load_terms(loads) if isinstance(effort.amount, LoadTable)]
+    if not (turning or kinked or tables) or len(nodes) < 2:
         return np.empty(0)
     state = at(nodes)
-    places = [np.empty(0)]
+    places = [np.array([x for table in tables for x in table.kinks(float(nodes[0]), float(nodes[-1]))])]
     for coordinate in turning:
         places += _turning_points(coordinate, at, nodes, state)
     for coordinate, levels in kinked.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from math import hypot
+from math import ceil, floor, hypot, tau
 from typing import Any, TypeAlias, assert_never
 
 import numpy as np
@@ -22,13 +22,18 @@ from centrode.dynamics.load_coordinates import (
 )
 from centrode.dynamics.masses import centre_of, masses_of
 from centrode.dynamics.state import Given, Mass, State
+from centrode.dynamics.strokes import ends_of_stroke
 from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.path import JETS
 from centrode.locale import _
 from centrode.model.loads import (
+    DRIVE,
+    GREATEST,
     LOAD_VARIABLES,
     PLAIN_SUM,
+    STROKE,
+    TIME,
     AnyLoad,
     BearingFriction,
     CoefficientFriction,
@@ -311,9 +316,84 @@ class LoadDiagram:
         return InputError(self.label, text, _("add rows up to the ends of the stroke"))
 
 
+@dataclass(frozen=True)
+class LoadTable:
+    """Straight lines between the rows of a table over the value of the drive or over time.
+
+    Attributes
+    ----------
+    label : of the load, for messages
+    rows : (value of the drive [rad or m] or time [s], force [N] or moment [N m])
+    of : "q" or "t"
+    period : change of the drive's value after which the rows repeat; 0 where they do not
+    """
+
+    label: str
+    rows: tuple[tuple[float, ...], ...]
+    of: str
+    period: float = 0.0
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+    energy_class = EnergyClass.OTHER
+    by_place = False
+
+    @classmethod
+    def over(
+        cls, mechanism: Mechanism, label: str, rows: tuple[tuple[float, ...], ...], over: str | None
+    ) -> LoadTable:
+        """The table of a load; InputError over the drive of a mechanism that has several.
+
+        A table over one or more whole turns of the drive repeats.
+        """
+        if over == TIME:
+            return cls(label, rows, "t")
+        drives = mechanism.motion_parameter.drives
+        if len(drives) != 1:
+            what = _("a table over the drive needs a mechanism with one drive")
+            raise InputError(label, what, _("give the force over the displacement or over time"))
+        turns = (rows[-1][0] - rows[0][0]) / tau
+        whole = drives[0].turns and round(turns) >= 1 and abs(turns - round(turns)) <= SLACK
+        return cls(label, rows, "q", round(turns) * tau if whole else 0.0)
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """The value of the drive, or time."""
+        return frozenset(self.of)
+
+    def kinks(self, first: float, last: float) -> list[float]:
+        """Values of the drive at the rows of the table, strictly between two; none over time."""
+        if self.of != "q":
+            return []
+        low, high = sorted((first, last))
+        places = [row[0] for row in self.rows]
+        if self.period:
+            numbers = range(
+                floor((low - places[-1]) / self.period), ceil((high - places[0]) / self.period) + 1
+            )
+            places = [place + number * self.period for number in numbers for place in places]
+        return [place for place in places if low < place < high]
+
+    def __call__(self, now: Situation) -> Number:
+        at, force = np.array(self.rows).T
+        place = np.asarray(now.q if self.of == "q" else now.t, dtype=np.float64)
+        if self.period:
+            place = at[0] + np.mod(place - at[0], self.period)
+            return np.interp(place, at, force)
+        slack = SLACK * (at[-1] - at[0])
+        inside = (place >= at[0] - slack) & (place <= at[-1] + slack)
+        return np.where(inside, np.interp(place, at, force), np.nan)
+
+    def refusal(self, place: float) -> InputError:
+        """What is said of a value of the drive, or of a time, beside the table."""
+        what = _("its table lies between {low:.6g} and {high:.6g}, and its load is needed at {value:.6g}")
+        text = what.format(value=place, low=self.rows[0][0], high=self.rows[-1][0])
+        return InputError(self.label, text, _("add rows, or choose a shorter range; a whole turn repeats"))
+
+
 StoredLaw: TypeAlias = Weight | TorsionSpring | StraightSpring
 """What has a potential energy."""
-LoadLaw: TypeAlias = StoredLaw | Constant | LoadFormula | Damper | Friction | Square | LoadDiagram
+LoadLaw: TypeAlias = StoredLaw | Constant | LoadFormula | Damper | Friction | Square | LoadDiagram | LoadTable
 
 
 # Loads as efforts: amounts along coordinates, and how great they are in a state.
@@ -421,6 +501,8 @@ class AppliedLoad:
 
         if isinstance(effort.amount, LoadDiagram):
             return effort.amount.refusal(first(effort.coordinate.value(state)))
+        if isinstance(effort.amount, LoadTable):
+            return effort.amount.refusal(first(state.parameter if effort.amount.of == "q" else state.time))
         what = _("it has no finite value at {value:.6g}").format(value=first(state.parameter))
         return InputError(self.where, what, _("correct its formula"))
 
@@ -497,11 +579,12 @@ def _terms_of_load(
     match load:
         case PointForce():
             return _force(load, where)
-        case GuideForce(guide=guide, value=value, table=table):
-            return [
-                LoadTerm(Slide(guide), _amount(value, where) if table is None else LoadDiagram(where, table))
-            ]
-        case Torque(value=value):
+        case GuideForce(guide=guide):
+            return [LoadTerm(Slide(guide), _amount_along_guide(mechanism, load, where, given))]
+        case Torque(value=value, table=rows):
+            if rows is not None:
+                table = LoadTable.over(mechanism, where, rows, load.over or DRIVE)
+                return [LoadTerm(turning_of(mechanism, load, where, measured=False), table)]
             amount = _amount(value, where)
             return [LoadTerm(turning_of(mechanism, load, where, "x" in amount.uses), amount)]
         case PointSpring(stiffness=stiffness, free_length=free):
@@ -548,6 +631,31 @@ def _force(load: PointForce, where: str) -> list[LoadTerm]:
         for unit, value in zip(units, load.vector, strict=True)
         if value != 0.0
     ]
+
+
+def _amount_along_guide(
+    mechanism: Mechanism, load: GuideForce, where: str, given: Given | None
+) -> Constant | LoadFormula | LoadDiagram | LoadTable:
+    """A value, an indicator diagram over the displacement or the stroke, or a table over the drive or time."""
+    if load.table is None:
+        return _amount(load.value, where)
+    factor = load.factor
+    rows = load.table if factor == 1.0 else tuple((at, *(x * factor for x in row)) for at, *row in load.table)
+    if load.over in (DRIVE, TIME):
+        return LoadTable.over(mechanism, where, rows, load.over)
+    if load.over != STROKE:
+        return LoadDiagram(where, rows)
+    if given:
+        what = _("a table over the stroke is not computed where dimensions vary")
+        raise NotComputedYet(where, what, _("give the table over the displacement"))
+    least, greatest = ends_of_stroke(mechanism, load.guide, where)
+    stroke = greatest - least
+    if load.measured_from == GREATEST:
+        # seen from there the displacement grows on the way back: rows and columns change places
+        return LoadDiagram(
+            where, tuple((greatest - at * stroke, *reversed(row)) for at, *row in reversed(rows))
+        )
+    return LoadDiagram(where, tuple((least + at * stroke, *row) for at, *row in rows))
 
 
 def _friction_in_hinge(mechanism: Mechanism, load: HingeFriction, where: str) -> LoadTerm:

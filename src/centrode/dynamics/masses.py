@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import dist
@@ -47,18 +47,15 @@ STRAIGHT = 1e-9
 """Points of an arc may lie off its great circle by this: coordinates are given in decimals."""
 
 
-def solids_of(mechanism: Mechanism, given: Given, m: Namespace) -> tuple[Mass, ...]:
-    """Links of a spherical mechanism that have mass or inertia; raises InputError for what is not complete."""
-    solids = []
-    for name, link in mechanism.links.items():
-        reader = InertiaReader(name, link, given, mechanism.sphere_radius, m)
-        mass, inertia = reader.mass, reader.inertia()
-        if is_none(mass) and not inertia:
-            continue
-        # inertia without mass: the centre does not move anything
-        centre = Radial(name, (1.0, 0.0, 0.0), 0.0) if is_none(mass) else reader.centre()
-        solids.append(Mass(name, mass, centre, inertia))
-    return tuple(solids)
+def solid_of(mechanism: Mechanism, name: str, given: Given, m: Namespace) -> Mass | None:
+    """Mass of a link on the sphere; None of a massless one, InputError for what is not complete."""
+    reader = InertiaReader(name, mechanism.links[name], given, mechanism.sphere_radius, m)
+    mass, inertia = reader.mass, reader.inertia()
+    if is_none(mass) and not inertia:
+        return None
+    # inertia without mass: the centre does not move anything
+    centre = Radial(name, (1.0, 0.0, 0.0), 0.0) if is_none(mass) else reader.centre()
+    return Mass(name, mass, centre, inertia)
 
 
 @dataclass(frozen=True)
@@ -213,25 +210,33 @@ def masses_of(mechanism: Mechanism, given: Given | None = None, m: Namespace = A
     InputError
         A mass whose centre, or whose inertia although its link turns, nothing tells.
     """
-    if mechanism.space == "sphere":
-        return solids_of(mechanism, given or {}, m)
     still = _links_that_do_not_turn(mechanism)
-    masses = []
-    for name, link in mechanism.links.items():
-        reader = _MassReader(name, link, given or {})
-        mass, inertia = reader.number("mass", link.mass or 0.0), reader.inertia(name in still)
-        if is_none(mass) and is_none(inertia):
-            continue
-        first = next(iter(link.coordinates))
-        centre = Centre(name, first, 0.0, 0.0) if is_none(mass) else reader.centre()
-        masses.append(Mass(name, mass, centre, inertia))
-    return tuple(masses)
+    masses = (_mass_of(mechanism, name, still, given or {}, m) for name in mechanism.links)
+    return tuple(mass for mass in masses if mass is not None)
+
+
+def _mass_of(mechanism: Mechanism, name: str, still: set[str], given: Given, m: Namespace) -> Mass | None:
+    """Mass of a link; None of a massless one, InputError for what is not complete."""
+    if mechanism.space == "sphere":
+        return solid_of(mechanism, name, given, m)
+    link = mechanism.links[name]
+    reader = _MassReader(name, link, given)
+    if link.masses:
+        return reader.of_parts(still=name in still)
+    mass, inertia = reader.number("mass", link.mass or 0.0), reader.inertia(name in still)
+    if is_none(mass) and is_none(inertia):
+        return None
+    first = next(iter(link.coordinates))
+    centre = Centre(name, first, 0.0, 0.0) if is_none(mass) else reader.centre()
+    return Mass(name, mass, centre, inertia)
 
 
 def centre_of(
     mechanism: Mechanism, link: str, given: Given | None = None, m: Namespace = ARRAYS
 ) -> Centre | Radial:
     """Centre of mass of a link: given, the only point, or by its shape; InputError where nothing tells it."""
+    if mechanism.links[link].masses:
+        return _MassReader(link, mechanism.links[link], given or {}).of_parts(still=True).centre
     if mechanism.space == "sphere":
         return InertiaReader(link, mechanism.links[link], given or {}, mechanism.sphere_radius, m).centre()
     return _MassReader(link, mechanism.links[link], given or {}).centre()
@@ -239,7 +244,8 @@ def centre_of(
 
 def has_masses_or_loads(mechanism: Mechanism) -> bool:
     """Whether a description has anything for dynamics."""
-    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
+    links = mechanism.links.values()
+    return bool(mechanism.loads) or any(link.mass or link.inertia or link.masses for link in links)
 
 
 @dataclass(frozen=True)
@@ -249,18 +255,34 @@ class LinkMasses:
     Attributes
     ----------
     mechanism : the mechanism
-    masses : of the links that have mass or inertia [kg, m, kg m^2]
-    massless : names of the other links
+    masses : of the links whose mass is known [kg, m, kg m^2]
+    massless : names of the links without mass and without inertia
+    incomplete : link -> what its mass lacks
     """
 
     mechanism: Mechanism
     masses: tuple[Mass, ...]
     massless: tuple[str, ...]
+    incomplete: Mapping[str, InputError]
 
 
 def link_masses(mechanism: Mechanism) -> LinkMasses:
-    """Masses of the links; raises InputError as `masses_of` does."""
-    return LinkMasses(mechanism, masses_of(mechanism), massless_links(mechanism))
+    """Masses of the links, each for itself: one that lacks its centre or its inertia leaves the others as they are."""
+    still = _links_that_do_not_turn(mechanism)
+    masses: list[Mass] = []
+    massless: list[str] = []
+    incomplete: dict[str, InputError] = {}
+    for name in mechanism.links:
+        try:
+            mass = _mass_of(mechanism, name, still, {}, ARRAYS)
+        except InputError as reason:
+            incomplete[name] = reason
+            continue
+        if mass is None:
+            massless.append(name)
+        else:
+            masses.append(mass)
+    return LinkMasses(mechanism, tuple(masses), tuple(massless), incomplete)
 
 
 def massless_links(mechanism: Mechanism) -> tuple[str, ...]:
@@ -297,6 +319,29 @@ class _MassReader(LinkNumbers):
             point: (self.number(f"points.{point}.x", x), self.number(f"points.{point}.y", y))
             for point, (x, y) in self.link.coordinates.items()
         }
+
+    def of_parts(self, still: bool) -> Mass:
+        """Several masses as one: their sum, their common centre, and by parallel axes the inertia about it."""
+        base, (x, y) = next(iter(self.local.items()))
+        parts: list[tuple[Number, Number, Number, Number]] = []
+        if self.link.mass is not None or self.link.inertia is not None:
+            own = self.centre() if self.link.mass else Centre(self.name, base, 0.0, 0.0)
+            u, v = self.local[own.base]
+            mass = self.number("mass", self.link.mass or 0.0)
+            parts.append((mass, u - x + own.along, v - y + own.across, self.inertia(still)))
+        for part in self.link.masses:
+            u, v = self.local[part.at] if isinstance(part.at, str) else part.at
+            parts.append((part.mass, u - x, v - y, part.inertia))
+        whole = sum(mass for mass, _u, _v, _own in parts)
+        if is_none(whole):
+            return Mass(self.name, whole, Centre(self.name, base, 0.0, 0.0), sum(part[3] for part in parts))
+        along = sum(mass * u for mass, u, _v, _own in parts) / whole
+        across = sum(mass * v for mass, _u, v, _own in parts) / whole
+        inertia = sum(
+            own + mass * ((u - along) * (u - along) + (v - across) * (v - across))
+            for mass, u, v, own in parts
+        )
+        return Mass(self.name, whole, Centre(self.name, base, along, across), inertia)
 
     def centre(self) -> Centre:
         given, link = self.link.centre, self.link

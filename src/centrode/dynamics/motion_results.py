@@ -89,6 +89,7 @@ def study(
     stop: float | str | None = None,
     *,
     motion: MotionOfDrive = "mean",
+    incomplete: bool = False,
 ) -> MotionResults:
     """Check a mechanism and compute its motion, its machine and its reactions.
 
@@ -96,11 +97,13 @@ def study(
     ----------
     samples, start, stop : as of `motion`
     motion : of the reactions: "mean", or "real", over the cycle of the machine
+    incomplete : leave out a machine that is described wrongly as well
 
     Raises
     ------
     InputError, NotComputedYet
-        As `motion`. A machine or reactions that cannot be computed are left out; `refusals` says why.
+        As `motion`. A machine or reactions that cannot be computed, or whose masses or loads are not complete, are left
+        out; `refusals` says why.
 
     Examples
     --------
@@ -113,7 +116,7 @@ def study(
     check_motion(motion)
     prepared = ready(mechanism)
     solved = solve(prepared, requested_grid(prepared, samples, start, stop))
-    return _results(solved, dataset_of(solved), samples, of_forces=motion)
+    return _results(solved, dataset_of(solved), samples, of_forces=motion, incomplete=incomplete)
 
 
 def results_of_motion(mechanism: Mechanism, course: xr.Dataset) -> MotionResults:
@@ -162,14 +165,19 @@ def _results(
     *,
     over_range: bool = True,
     of_forces: MotionOfDrive = "mean",
+    incomplete: bool = False,
 ) -> MotionResults:
     """What follows from a motion that is solved already; `samples` are those of the machine's cycle."""
     prepared, mechanism = solved.ready, solved.ready.mechanism
     refusals: dict[str, CentrodeError] = {}
     machine = reactions = None
     try:
-        machine = None if mechanism.machine is None else machine_results(mechanism, samples)
+        machine = machine_results(mechanism, samples) if mechanism.runs_at_mean_speed else None
     except (MotionError, NotComputedYet) as refusal:
+        refusals["flywheel"] = refusal
+    except InputError as refusal:
+        if not incomplete and not _lacks_masses_or_loads(mechanism):
+            raise
         refusals["flywheel"] = refusal
     try:
         if has_masses_or_loads(mechanism) and of_forces == "real":
@@ -195,6 +203,17 @@ def _results(
         refusals,
     )
     return replace(found, limits=_limits(solved)) if found.unreached else found
+
+
+def _lacks_masses_or_loads(mechanism: Mechanism) -> bool:
+    """Whether masses or loads are not complete."""
+    try:
+        MassesAndLoads.of(mechanism)
+    except NotComputedYet:
+        return False
+    except InputError:
+        return True
+    return False
 
 
 def with_instants(results: MotionResults, instants: Sequence[float], points: Sequence[str]) -> MotionResults:

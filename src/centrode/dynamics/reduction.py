@@ -13,7 +13,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.load_discontinuities import jumps_of
-from centrode.dynamics.loads import AppliedLoad, LoadDiagram, MassesAndLoads
+from centrode.dynamics.loads import AppliedLoad, LoadDiagram, LoadTable, MassesAndLoads
 from centrode.dynamics.masses import coordinates_of as speeds_of
 from centrode.dynamics.masses import share, shares
 from centrode.dynamics.state import About, DriveMotion, State, getters_of
@@ -155,11 +155,8 @@ class Reducer:
     def default_rate(self) -> float | None:
         """Speed of the drive [rad/s or m/s]: the machine's mean speed in the drive's sense, else the drive's own."""
         mechanism, path = self.ready.mechanism, self.ready.kinematics.path
-        if mechanism.machine is not None:
-            mean = mechanism.machine.mean_speed
-            if mean == 0.0:
-                raise InputError("[machine] mean_speed", _("its speed is zero"), _("give the mean speed"))
-            return copysign(mean, path.forward)
+        if mechanism.machine is not None and mechanism.runs_at_mean_speed:
+            return copysign(mechanism.machine.mean_speed, path.forward)
         return path.parameter.constant_speed
 
     def moving(
@@ -457,7 +454,7 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
 def _by_drive(solved: Solved) -> bool:
     """Whether loads are taken at the speed of the drive, and not at the machine's mean speed."""
     ready = solved.ready
-    return ready.mechanism.machine is None or not ready.parameter.is_uniform
+    return not ready.mechanism.runs_at_mean_speed or not ready.parameter.is_uniform
 
 
 def motion_of_loads(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
@@ -540,7 +537,7 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
 def _batch_moving(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
     """The speed that loads see, as `reduction_of` has it."""
     span, ready = solved.span, solved.ready
-    if ready.mechanism.machine is None or not ready.parameter.is_uniform:
+    if not ready.mechanism.runs_at_mean_speed or not ready.parameter.is_uniform:
         return DriveMotion(span.time, span.parameter, span.rate)
     speed = Reducer(ready, burden).default_rate
     assert speed is not None
@@ -561,7 +558,9 @@ def _state_of_nodes(solved: Solved, burden: MassesAndLoads) -> State:
 
 def state_of_nodes(solved: Solved, burden: MassesAndLoads, moving: DriveMotion) -> State:
     """The state at the one sample of a traced motion, with time [s], parameter and rate as given."""
-    if any(isinstance(effort.amount, LoadDiagram) for load in burden.loads for effort in load.efforts):
+    if any(
+        isinstance(effort.amount, LoadDiagram | LoadTable) for load in burden.loads for effort in load.efforts
+    ):
         raise Untraceable(mark("indicator diagrams"))
     path, mechanism = solved.ready.kinematics.path, solved.ready.mechanism
     return State(

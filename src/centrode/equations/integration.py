@@ -616,6 +616,9 @@ def integrate(
     mechanism = mechanism_of(mechanism)
     _check(method, steps, tolerance)
     prepared = ready(mechanism)
+    if prepared.parameter.constant_speed == 0.0:
+        where = f"[[drives]] {mechanism.drives[0].id}"
+        raise InputError(where, _("its speed is zero"), _("give a speed, or a law"))
     form = form_of(prepared)
     start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
     solved = solve(prepared, requested_grid(prepared, steps + 1, start, stop))
@@ -687,7 +690,9 @@ def closed_motion(mechanism: Mechanism, integration: xr.Dataset, samples: int = 
 
 
 def is_integrated(mechanism: Mechanism) -> bool:
-    """Whether a mechanism moves in the plane and has unknowns that its equations give."""
+    """Whether a mechanism moves in the plane, with time, and has unknowns that its equations give."""
+    if mechanism.motion_parameter.constant_speed == 0.0:
+        return False
     return mechanism.space == "plane" and bool(equations(mechanism).unknowns)
 
 

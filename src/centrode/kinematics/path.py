@@ -550,10 +550,11 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
 
 def _at_values(path: Path, values: Array) -> SampleGrid:
     # with one drive at constant speed times follow from the values, and the law is not asked
-    driven, speed = path.driven[0], path.parameter.constant_speed
-    if not speed:
-        raise InputError(f"[[drives]] {driven.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
+    speed = path.parameter.constant_speed
     ones = np.ones(len(values))
+    if not speed:
+        # at rest in each of these positions: no time passes between them
+        return SampleGrid(0.0 * ones, values, 0.0 * ones, 0.0 * ones)
     return SampleGrid(path.parameter.times(values, path.start), values, speed * ones, 0.0 * ones)
 
 

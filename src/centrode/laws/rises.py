@@ -237,10 +237,16 @@ _TRAPEZOID = 1.0 / (2.0 + pi)
 
 CURVES: dict[str, RiseCurve] = {
     "uniform": _symmetric((0.5, Piece(0.0, 0.0, (1.0,)))),
+    "parabolic": _symmetric((0.5, Piece(0.0, 0.0, (0.0, 2.0)))),
     "harmonic": _symmetric((0.5, Piece(0.0, 0.0, wave=pi / 2, square=1.0))),
     "cycloidal": _symmetric((0.5, Piece(0.0, 0.0, wave=2 * pi, cycloid=0.5 / pi))),
     "3-4-5": _symmetric((0.5, Piece(0.0, 0.0, (0.0, 0.0, 10.0, -15.0, 6.0)))),
     "4-5-6-7": _symmetric((0.5, Piece(0.0, 0.0, (0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0)))),
+    "trapezoid": _symmetric(
+        (1 / 8, Piece(0.0, 0.0, (0.0, 0.0, 64 / 9))),
+        (3 / 8, Piece(1 / 8, 1 / 72, (1 / 3, 8 / 3))),
+        (0.5, Piece(0.5, 0.5, (2.0, 0.0, -64 / 9))),
+    ),
     "modified sine": _symmetric(
         (1 / 8, Piece(0.0, 0.0, wave=4 * pi, cycloid=_SINE / 4)),
         (0.5, Piece(0.5, 0.5, (4 * pi * _SINE,), wave=4 * pi / 3, cycloid=-9 * _SINE / 4)),
@@ -252,6 +258,9 @@ CURVES: dict[str, RiseCurve] = {
     ),
 }
 """Curves by name.
+
+The acceleration of the parabolic one is 4 up to u = 1/2; that of the trapezoid 128 u/3 up to 1/8, 16/3 up to 3/8,
+128 (1/2 - u)/3 up to 1/2.
 
 Accelerations of the modified ones (R. L. Norton, Cam Design and Manufacturing Handbook, 2009, chapter 3),
 in terms of the greatest one a:

@@ -311,6 +311,8 @@ SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log")
 CURVE_SYNONYMS = {
     "linear": "uniform",
     "constant velocity": "uniform",
+    "constant acceleration": "parabolic",
+    "parabola": "parabolic",
     "cosine": "harmonic",
     "cosine acceleration": "harmonic",
     "sine": "cycloidal",
@@ -320,6 +322,10 @@ CURVE_SYNONYMS = {
     "polynomial 3-4-5": "3-4-5",
     "septic": "4-5-6-7",
     "polynomial 4-5-6-7": "4-5-6-7",
+    "trapezoidal": "trapezoid",
+    "trapezoidal acceleration": "trapezoid",
+    "modified sinusoidal": "modified sine",
+    "modified trapezoidal": "modified trapezoid",
     "constant": DWELL,
     "pause": DWELL,
     "rest": DWELL,
@@ -329,7 +335,7 @@ CURVE_SYNONYMS = {
 DEGREE = 5
 """Of a B-spline: with it speed, acceleration, jerk and the rate of the jerk are continuous."""
 MOST_DEGREE = 15
-INNER_JUMPS = {"modified sine": 4, "modified trapezoid": 4}
+INNER_JUMPS = {"parabolic": 2, "trapezoid": 3, "modified sine": 4, "modified trapezoid": 4}
 """Curves of several formulas, and the lowest derivative that jumps where these meet."""
 
 

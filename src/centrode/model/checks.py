@@ -197,6 +197,10 @@ def _spherical(key: str, repair: str, at: Place) -> Problem:
 def _planar_keys(mechanism: Description) -> Iterator[Problem]:
     """Keys that mean something in the plane only."""
     for name, link in mechanism.links.items():
+        if link.masses:
+            yield _planar(
+                "masses", _("give mass, centre and inertia of the whole link"), ("links", name, "masses")
+            )
         if link.shape == "rod":
             yield _planar("rod", _("write arc, disc or ring"), ("links", name, "shape"))
         if link.model is not None and link.shape is not None:
@@ -403,6 +407,10 @@ def _links(mechanism: Description) -> Iterator[Problem]:
             yield from unknown_name_problems(
                 link.centre, link.coordinates, "point", ("links", name, "centre"), name
             )
+        for number, part in enumerate(link.masses):
+            if isinstance(part.at, str):
+                at = ("links", name, "masses", number, "at")
+                yield from unknown_name_problems(part.at, link.coordinates, "point", at, name)
 
 
 def _link(name: str, link: Link, at: Place) -> Iterator[Problem]:

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, model_validator
+from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, PlainValidator, model_validator
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.drives import Drive, motion_parameter_of
+from centrode.model.initial_points import with_links_between_points
 from centrode.model.links import Frame, Gear, Guide, Link, Rolling
 from centrode.model.loads import AnyLoad, read_load
 from centrode.model.motion_parameter import (
@@ -70,6 +71,8 @@ class Description(DescriptionPart):
     gravity: Annotated[tuple[float, ...], PlainValidator(_read_gravity)] | None = None
     radius: PositiveMetres | None = None
     display: Display = Display()
+    # read before the links and taken apart into them: a mechanism holds none
+    initial_points: Annotated[Mapping[str, Vector], Field(alias="points")] = FrozenMap({})
     frame: Frame = Frame()
     links: Annotated[Mapping[str, Link], link_table, AfterValidator(_fill_points)]
     guides: Annotated[tuple[Guide, ...], bounded_list(reading.GUIDES)] = ()
@@ -90,7 +93,8 @@ class Description(DescriptionPart):
     def _in_its_space(cls, data: Any, handler: ModelWrapValidatorHandler[Description]) -> Description:
         token = READING.set(_reading_of(data, READING.get()))
         try:
-            return handler(data)
+            given = isinstance(data, Mapping) and data.get("points")
+            return handler(with_links_between_points(data) if given else data)
         finally:
             READING.reset(token)
 
@@ -98,6 +102,11 @@ class Description(DescriptionPart):
     def sphere_radius(self) -> float:
         """Radius [m] of the sphere that masses and forces count on; 1 if it is not given."""
         return 1.0 if self.radius is None else self.radius
+
+    @property
+    def runs_at_mean_speed(self) -> bool:
+        """Whether a machine gives its drive a mean speed."""
+        return self.machine is not None and self.machine.mean_speed > 0.0
 
     @property
     def motion_parameter(self) -> MotionParameter:

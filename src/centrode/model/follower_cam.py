@@ -25,6 +25,7 @@ from centrode.laws.segments import segment_formula
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Material, Size, Steepness, Stress
+from centrode.model.cam_cycle import with_angles_of_segments
 from centrode.model.reading import (
     KEY,
     DescriptionPart,
@@ -302,6 +303,8 @@ class LiftSegment(DescriptionPart):
     ----------
     angle : float [rad], positive
         How far the cam turns meanwhile.
+    share, time : float [1], [s]
+        In place of the angle: its share of a turn, or how long the segment lasts.
     start : float [rad] or None
         "from" in a file: the angle at which it begins, where the one before has to end.
     to : float [m or rad]
@@ -320,6 +323,9 @@ class LiftSegment(DescriptionPart):
     """
 
     angle: Annotated[float, PlainValidator(_read_angle)]
+    # turned into the angle before a segment is read: no segment holds them
+    share: Annotated[float, quantity("ratio", positive)] | None = None
+    time: Annotated[float, quantity("time", positive)] | None = None
     start: Annotated[float | None, Field(alias="from")] = None
     to: float | None = None
     curve: Annotated[str, choice(*laws.LIFT_CURVES, other_names=laws.CURVE_SYNONYMS)] = laws.FORMULA
@@ -605,7 +611,7 @@ class PlateCam(DescriptionPart):
     def _of_its_follower(cls, data: Any, handler: ModelWrapValidatorHandler[PlateCam]) -> PlateCam:
         token = DRIVEN.set("angle" if _is_oscillating(data) else "length")
         try:
-            return handler(data)
+            return handler(with_angles_of_segments(data) if isinstance(data, Mapping) else data)
         finally:
             DRIVEN.reset(token)
 

@@ -110,6 +110,26 @@ def _resolve_position(name: str, position: Vector | Placed) -> Vector:
     return position.at
 
 
+class PartMass(DescriptionPart):
+    """One of several masses of a planar link.
+
+    Attributes
+    ----------
+    mass : float [kg]
+    at : local (x, y) [m] or a point's name
+    inertia : float [kg m^2]
+        About its own centre; none of a mass in one point.
+    """
+
+    mass: Annotated[float, quantity("mass", not_negative)]
+    at: Spot
+    inertia: Annotated[float, quantity("inertia", not_negative)] = 0.0
+
+
+MASSES = 100
+"""Masses of one link."""
+
+
 class Link(DescriptionPart):
     """A rigid link.
 
@@ -125,6 +145,8 @@ class Link(DescriptionPart):
         On the sphere three principal moments in the link's axes, or its tensor.
     shape : "rod", "disc", "ring" or, on the sphere, "arc"
         Fills centre and inertia; a disc and a ring have a `radius` [m].
+    masses : tuple of PartMass
+        In the plane: further masses, beside `mass` or alone.
     centre_radius : float [m]
         On the sphere: how far the centre of mass is from the centre of the sphere.
     model : "ring and point mass"
@@ -147,6 +169,7 @@ class Link(DescriptionPart):
     inertia: Annotated[Inertia, PlainValidator(read_inertia)] | None = None
     shape: Annotated[Shape, choice(*SHAPES)] | None = None
     radius: PositiveMetres | None = None
+    masses: Annotated[tuple[PartMass, ...], bounded_list(MASSES)] = ()
     centre_radius: Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None = None
     model: Annotated[Literal["ring and point mass"], choice(RING_AND_POINT)] | None = None
     reference: Annotated[tuple[Name, ...], bounded_list(2)] | None = None

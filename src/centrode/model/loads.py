@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from math import pi
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, assert_never, get_args
 
-from pydantic import ConfigDict, PlainValidator, ValidationError
+from pydantic import ConfigDict, PlainValidator, ValidationError, ValidationInfo, field_validator
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -48,6 +49,8 @@ FRICTION_SIZES = ("value", "viscous", "quadratic", "coefficient")
 _OF_HINGE, _OF_SLIDER = ("radius", "fit", "pin"), ("length", "height")
 # a force in a point has a vector, one along a guide a value or a table
 _IN_POINT, _ALONG_GUIDE = ("vector", "axes", "while_moving"), ("value", "table")
+# what says how a table is meant
+_OF_TABLE, _OF_PISTON = ("over", "measured_from"), ("pressure", "diameter")
 
 
 class LoadKeys(NamedTuple):
@@ -59,8 +62,12 @@ class LoadKeys(NamedTuple):
 
 
 _KEYS_OF: Mapping[str, LoadKeys] = {
-    "force": LoadKeys(("point", "guide"), (), ("vector", "value", "table", "axes", "while_moving")),
-    "torque": LoadKeys(("link",), ("value",), ("relative_to", "axis")),
+    "force": LoadKeys(
+        ("point", "guide"),
+        (),
+        ("vector", "value", "table", *_OF_TABLE, *_OF_PISTON, "axes", "while_moving"),
+    ),
+    "torque": LoadKeys(("link",), (), ("value", "table", "over", "relative_to", "axis")),
     "spring": LoadKeys(
         ("points", "link"), ("stiffness",), ("free_length", "free_angle", "relative_to", "axis")
     ),
@@ -89,6 +96,9 @@ def load_key_problems(kind: str, given: Mapping[str, Any]) -> list[Problem]:
         problems.append(Problem(_("a {kind} acts on one of: {keys}").format(kind=kind, keys=words)))
     elif kind == "force":
         problems += _of_force(given, set(given), said)
+    elif kind == "torque":
+        problems += one_of(given, ("value", "table"))
+        problems += _of_table(given, (DRIVE, TIME))
     elif kind == "friction":
         problems += _of_friction(given, set(given), said)
     return problems
@@ -98,7 +108,7 @@ def _of_force(given: Mapping[str, Any], present: set[str], said: set[str]) -> li
     """A force in a point has a vector; one along a guide a value or a table."""
     if "point" in present:
         missing = [] if "vector" in present else [missing_key("vector")]
-        wrong = [key for key in _ALONG_GUIDE if key in present]
+        wrong = [key for key in (*_ALONG_GUIDE, *_OF_TABLE, *_OF_PISTON) if key in said]
         what = _("{key} is used with a force along a guide only")
         repair = _("give vector, or a guide in place of the point")
     else:
@@ -106,7 +116,29 @@ def _of_force(given: Mapping[str, Any], present: set[str], said: set[str]) -> li
         wrong = [key for key in _IN_POINT if key in said]
         what = _("{key} is used with a force in a point only")
         repair = _("give value or table, or a point in place of the guide")
+        missing += _of_table(given, OVER)
     return missing + [Problem(what.format(key=value_text(key)), repair) for key in wrong]
+
+
+def _of_table(given: Mapping[str, Any], may_be: tuple[str, ...]) -> list[Problem]:
+    """What says how a table is meant needs one; a pressure needs a piston, and shares of a stroke their end."""
+    if given.get("table") is None:
+        wrong = [key for key in (*_OF_TABLE, *_OF_PISTON) if given.get(key) is not None]
+        what = _("{key} is used with a table only")
+        return [Problem(what.format(key=value_text(key)), _("give table, or remove it")) for key in wrong]
+    over = given.get("over")
+    problems = []
+    if over in OVER and over not in may_be:
+        what = _("the table of a torque is over {choices}")
+        said = what.format(choices=", ".join(map(value_text, may_be)))
+        problems.append(Problem(said, _("choose one of them"), ("over",)))
+    if given.get("measured_from") is not None and over != STROKE:
+        what = _("measured_from is used with a table over the stroke only")
+        problems.append(Problem(what, _('remove it, or write over = "stroke"')))
+    piston = [key for key in _OF_PISTON if given.get(key) is not None]
+    if len(piston) == 1:
+        problems.append(missing_key(next(key for key in _OF_PISTON if key not in piston)))
+    return problems
 
 
 def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) -> list[Problem]:
@@ -176,9 +208,16 @@ Fit = Literal["clearance", "new", "worn-in"]
 CLEARANCE: Fit = "clearance"
 FITS = (CLEARANCE, "new", "worn-in")
 LEAST_ROWS = 2
+Over = Literal["displacement", "stroke", "drive", "time"]
+DISPLACEMENT, STROKE, DRIVE, TIME = OVER = get_args(Over)
+"""What the rows of a table are given over: along the guide, its share of the stroke, the value of the drive, time."""
+StrokeEnd = Literal["least", "greatest"]
+LEAST, GREATEST = STROKE_ENDS = get_args(StrokeEnd)
+"""Displacement at which the share of the stroke is zero."""
 
 _KEYS = (
-    *("kind", "name", "point", "link", "guide", "points", "vector", "axes", "value", "table", "stiffness"),
+    *("kind", "name", "point", "link", "guide", "points", "vector", "axes", "value"),
+    *("over", "measured_from", "pressure", "diameter", "table", "stiffness"),
     *("damping", "viscous", "quadratic", "coefficient", "radius", "fit", "pin", "length", "height", "form"),
     *("free_length", "free_angle", "relative_to", "axis", "while_moving"),
 )
@@ -240,19 +279,46 @@ def _dry_friction(kind: str) -> PlainValidator:
     return PlainValidator(read)
 
 
-def _read_diagram(value: object) -> tuple[tuple[float, ...], ...] | None:
+Rows = tuple[tuple[float, ...], ...]
+
+
+def _read_diagram(value: object, over: Over, kind: str) -> Rows | None:
+    """Rows of a table; `kind` is that of its forces."""
     if value is None:
         return None
-    columns = TableColumns(("length", "force", "force"), "[displacement, force, force]", 2)
-    rows = read_rows(value, columns, READING.get().folder)
+    rows = read_rows(value, _columns_over(over, kind), READING.get().folder)
     if len(rows) < LEAST_ROWS or any(not low[0] < high[0] for low, high in pairwise(rows)):
         what = _("a diagram needs two rows or more, with displacements that increase")
-        raise Problem(what, _("sort the rows, and keep one of equal displacements"))
+        repair = _("sort the rows, and keep one of equal displacements")
+        if over != DISPLACEMENT:
+            what = _("a table needs two rows or more, with first numbers that increase")
+            repair = _("sort the rows, and keep one of equal first numbers")
+        raise Problem(what, repair)
+    if over == STROKE and (rows[0][0], rows[-1][0]) != (0.0, 1.0):
+        what = _("a table over the stroke begins at 0 and ends at 1")
+        raise Problem(what, _("give shares of the stroke, from 0 to 1"))
     return rows
 
 
+def _columns_over(over: Over, kind: str) -> TableColumns:
+    """Columns of a table over something, whose forces are of a kind."""
+    match over:
+        case "displacement":
+            return TableColumns(("length", kind, kind), "[displacement, force, force]", 2)
+        case "stroke":
+            return TableColumns(("ratio", kind, kind), "[s/H, force, force]", 2)
+        case "drive":
+            return TableColumns((READING.get().parameter.variable.kind, kind), "[drive, force]", 2)
+        case "time":
+            return TableColumns(("time", kind), "[time, force]", 2)
+        case _:
+            assert_never(over)
+
+
 ForceAmount = Annotated[Amount | None, _amount_or_none("force")]
-Diagram = Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_diagram)]
+Pressure = Annotated[
+    float | None, PlainValidator(lambda value: None if value is None else si(value, "pressure"))
+]
 Axis = Annotated[str | tuple[float, ...], PlainValidator(_read_axis)] | None
 FreeLength = Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None
 TwoPoints = Annotated[tuple[Name, ...], bounded_list(2)]
@@ -317,21 +383,48 @@ class GuideForce(Load):
 
     Attributes
     ----------
+    over : what the rows of the table are given over
+        The displacement along the guide [m], its share of the stroke, the value of the drive [rad or m], or time [s].
+    measured_from : "least" or "greatest"
+        Over the stroke: the displacement at which the share is 0.
+    pressure, diameter : float [Pa], [m]
+        The table has pressures as shares of this one, which acts on a piston of this diameter; along the guide where
+        the pressure is positive, against it where it is negative.
     table : rows of (displacement [m], force [N]) or (displacement, force forwards, force backwards)
-        In a file it may be the path of a CSV file beside it.
+        In a file it may be the path of a CSV file beside it. Over the drive and over time a row has one force.
     """
 
     kind: Literal["force"]
     guide: Name
     value: ForceAmount = None
-    table: Diagram = None
+    over: Annotated[Over, choice(*OVER)] | None = None
+    measured_from: Annotated[StrokeEnd, choice(*STROKE_ENDS)] | None = None
+    pressure: Pressure = None
+    diameter: PositiveLength | None = None
+    table: Rows | None = None
+
+    @field_validator("table", mode="plain")
+    @classmethod
+    def _table(cls, value: object, info: ValidationInfo) -> Rows | None:
+        shares = info.data.get("pressure") is not None
+        return _read_diagram(value, info.data.get("over") or DISPLACEMENT, "ratio" if shares else "force")
+
+    @property
+    def factor(self) -> float:
+        """What a force of the table is multiplied by: 1, or the greatest force on a piston [N]."""
+        if self.pressure is None or self.diameter is None:
+            return 1.0
+        return 0.25 * pi * self.diameter**2 * self.pressure
 
 
 class Torque(Load):
-    """A torque [N m] on a link, against another.
+    """A torque [N m] on a link, against another, by its value or by a table.
 
     Attributes
     ----------
+    over : "drive" or "time"
+        What the rows of the table are given over: the value of the drive [rad or m], if left out, or time [s].
+    table : rows of (value of the drive or time, torque [N m])
     relative_to : "frame" or the link against which it works
     axis : a point's name, or (x, y, z) in the axes of the frame
         On the sphere: about what it works, where the links do not share exactly one point.
@@ -339,9 +432,16 @@ class Torque(Load):
 
     kind: Literal["torque"]
     link: Name
-    value: Annotated[Amount, PlainValidator(lambda value: _amount(value, "torque"))]
+    value: Annotated[Amount | None, _amount_or_none("torque")] = None
+    over: Annotated[Over, choice(*OVER)] | None = None
+    table: Rows | None = None
     relative_to: Name = FRAME
     axis: Axis = None
+
+    @field_validator("table", mode="plain")
+    @classmethod
+    def _table(cls, value: object, info: ValidationInfo) -> Rows | None:
+        return _read_diagram(value, info.data.get("over") or DRIVE, "torque")
 
 
 class PointSpring(Load):

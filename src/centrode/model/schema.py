@@ -57,8 +57,19 @@ from centrode.model.follower_cam import (
     Tool,
 )
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
-from centrode.model.links import RING_AND_POINT, SHAPES, Frame, Gear, Guide, Link, Rolling, Track
-from centrode.model.loads import FITS, FORMS, KINDS, Load
+from centrode.model.links import (
+    MASSES,
+    RING_AND_POINT,
+    SHAPES,
+    Frame,
+    Gear,
+    Guide,
+    Link,
+    PartMass,
+    Rolling,
+    Track,
+)
+from centrode.model.loads import FITS, FORMS, KINDS, OVER, STROKE_ENDS, Load
 from centrode.model.page_standards import STANDARDS
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
@@ -133,6 +144,10 @@ AMOUNT: Schema = {
 }
 
 
+FOLLOWING = {(LiftSegment, "angle")}
+"""Keys that every part has, but that may follow from others: the angle of a segment from its share or its time."""
+
+
 def schema_of(
     title: str, whole: type[DescriptionPart], properties: Mapping[type[DescriptionPart], Schema]
 ) -> Schema:
@@ -150,6 +165,7 @@ def _object(part: type[DescriptionPart], properties: Mapping[type[DescriptionPar
         key
         for key, name in part.keys().items()
         if name in part.model_fields and part.model_fields[name].is_required()
+        if (part, key) not in FOLLOWING
     ]
     schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
     return {**schema, "required": required} if required else schema
@@ -194,7 +210,7 @@ _PLACED: Schema = {
 _POSITION: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED]}
 _THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, NAME]}
 _DIRECTION: Schema = {"anyOf": [_PAIR, *quantity_schema("angle")["anyOf"]]}
-_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, 2)]}
+_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, reading.POINTS)]}
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
 
 PROPERTIES: dict[type[DescriptionPart], Schema] = {
@@ -204,7 +220,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "angular_velocity": {"enum": list(ANGULAR_VELOCITIES)},
         "angular_acceleration": {"enum": list(ANGULAR_ACCELERATIONS)},
     },
-    Frame: {"points": table_of(_POSITION, reading.POINTS)},
+    Frame: {"points": {"anyOf": [table_of(_POSITION, reading.POINTS), list_of(NAME, 0, reading.POINTS)]}},
     Link: {
         "points": _POINTS,
         "length": above_zero("length"),
@@ -214,9 +230,15 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "inertia": _INERTIA,
         "shape": {"enum": list(SHAPES)},
         "radius": above_zero("length"),
+        "masses": list_of(reference_to(PartMass), 0, MASSES),
         "centre_radius": quantity_schema("length"),
         "model": {"enum": [RING_AND_POINT]},
         "reference": _NAMES,
+    },
+    PartMass: {
+        "mass": quantity_schema("mass"),
+        "at": {"anyOf": [_COORDINATES, NAME]},
+        "inertia": quantity_schema("inertia"),
     },
     Guide: {
         "point": NAME,
@@ -284,6 +306,10 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "vector": list_of(AMOUNT, 2, 3),
         "axes": NAME,
         "value": AMOUNT,
+        "over": {"enum": list(OVER)},
+        "measured_from": {"enum": list(STROKE_ENDS)},
+        "pressure": quantity_schema("pressure"),
+        "diameter": above_zero("length"),
         "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 3), 2, reading.TABLE_ROWS)]},
         "stiffness": quantity_schema("stiffness"),
         "damping": quantity_schema("damping"),
@@ -311,6 +337,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Shaft: {"inertia": quantity_schema("inertia"), "ratio": quantity_schema("ratio"), "name": TEXT},
     FlywheelShape: {
         "ratio": quantity_schema("ratio"),
+        "inertia": above_zero("inertia"),
         "density": above_zero("density"),
         "width": above_zero("ratio"),
         "inner": quantity_schema("ratio"),
@@ -372,6 +399,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "gravity": list_of(quantity_schema("acceleration"), 2, 3),
         "radius": above_zero("length"),
         "display": reference_to(Display),
+        "points": table_of(_COORDINATES, reading.POINTS),
         "frame": reference_to(Frame),
         "links": table_of(reference_to(Link), reading.LINKS),
         "guides": list_of(reference_to(Guide), 0, reading.GUIDES),
@@ -426,6 +454,8 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     },
     LiftSegment: {
         "angle": above_zero("angle"),
+        "share": above_zero("ratio"),
+        "time": above_zero("time"),
         "from": quantity_schema("angle"),
         "to": AMOUNT,
         "curve": {"enum": list(laws.LIFT_CURVES)},

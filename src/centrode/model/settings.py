@@ -278,6 +278,8 @@ class FlywheelShape(DescriptionPart):
     ----------
     ratio : float
         Speed of its shaft over the drive's.
+    inertia : float [kg m^2]
+        Of a flywheel that is there, about its own axis.
     density : float [kg/m^3]
     width, inner : float
         Width, and inner diameter of a rim, over the outer diameter.
@@ -286,6 +288,7 @@ class FlywheelShape(DescriptionPart):
     """
 
     ratio: Annotated[float, quantity("ratio", _ratio)] = 1.0
+    inertia: Annotated[float, quantity("inertia", positive)] | None = None
     density: Annotated[float, quantity("density", positive)] = 7800.0
     width: Annotated[float, quantity("ratio", positive)] = 0.2
     inner: Annotated[float, quantity("ratio", _hollow)] = 0.8
@@ -298,7 +301,7 @@ class Machine(DescriptionPart):
     Attributes
     ----------
     mean_speed : float [rad/s]
-        Of the drive, positive; the sense is that of the drive.
+        Of the drive, positive; the sense is that of the drive. 0 where it is not given: then the shafts alone count.
     fluctuation : float
         Coefficient of fluctuation (non-uniformity) that a flywheel has to bring about, below 2.
     shafts : tuple of Shaft
@@ -308,11 +311,18 @@ class Machine(DescriptionPart):
         How the driving moment goes, up to a factor; constant if left out.
     """
 
-    mean_speed: Annotated[float, PlainValidator(partial(angular_speed, read=positive))]
+    mean_speed: Annotated[float, PlainValidator(partial(angular_speed, read=positive))] = 0.0
     fluctuation: Annotated[float, quantity("ratio", _fluctuation)] | None = None
     shafts: Annotated[tuple[Shaft, ...], bounded_list(SHAFTS)] = ()
     flywheel: FlywheelShape = FlywheelShape()
     driving: Annotated[str, PlainValidator(_driving_formula)] | None = None
+
+    @property
+    def inertia(self) -> float:
+        """What turns with the drive besides the links, shafts and a flywheel that is there, reduced to it [kg m^2]."""
+        shafts = sum(shaft.inertia * shaft.ratio**2 for shaft in self.shafts)
+        wheel = self.flywheel
+        return shafts if wheel.inertia is None else shafts + wheel.inertia * wheel.ratio**2
 
 
 # What a description wishes of its report: `[report]`.

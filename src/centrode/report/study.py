@@ -271,7 +271,9 @@ class ReportStudy:
     @property
     def study(self) -> MotionResults:
         """Everything that `run` computes."""
-        return self.once("study", lambda: study(self.mechanism, motion=self.motion_of_forces))
+        return self.once(
+            "study", lambda: study(self.mechanism, motion=self.motion_of_forces, incomplete=True)
+        )
 
     @property
     def motion_of_forces(self) -> MotionOfDrive:

@@ -255,6 +255,16 @@ REACTIONS = Topic(
                 mark('Only at this value of the drive ("120 deg"), or time ("1 s"); may be repeated.')
             ),
             MOTION,
+            ValueOption(
+                "speed",
+                mark("V"),
+                mark('With --at: speed of the drive in its own sense ("65 rpm"); 0 at rest.'),
+            ),
+            ValueOption(
+                "acceleration",
+                mark("A"),
+                mark('With --speed: acceleration of the drive in its own sense ("-2.77 rad/s^2").'),
+            ),
             FlagOption("frictionless", mark("Omit Coulomb friction.")),
             RangeOptions(),
         ),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.dynamics.masses import massless_links
+from centrode.dynamics.masses import masses_of, massless_links
 from centrode.model.files import mechanism_text
 from centrode.quantities import QUANTITIES
 from centrode.sheets.charts import (
@@ -294,7 +294,7 @@ def _effects_of(balance: Balance) -> Iterator[_Effect]:
             before, after = (float(data[name].sel(order=order)) for data in both)
             yield _Effect(text, unit, before, after, whole)
     before, after = (
-        sum(link.mass or 0.0 for link in one.links.values()) for one in (balance.mechanism, balance.balanced)
+        sum(float(mass.mass) for mass in masses_of(one)) for one in (balance.mechanism, balance.balanced)
     )
     yield _Effect(Sentence("mass of all links"), "kg", before, after, before)
 

@@ -218,8 +218,9 @@ def _from_to(ends: tuple[float, float], unit: str) -> Text:
 def _joints(results: FollowerMotionResults, heads: Sequence[Text], caption: Sentence) -> Table:
     """What derivatives change by where segments meet, the first segment with the last one at 0."""
     names = motion_names(results.motion.swings)[0][1:]
-    joints = (results.joints[-1], *results.joints[:-1])
-    angles = [0.0, *(joint.angle for joint in results.joints[:-1])]
+    places_of = [(0.0, results.joints[-1]), *((joint.angle, joint) for joint in results.joints[:-1])]
+    places_of += [(joint.angle, joint) for joint in results.inner_joints]
+    angles, joints = zip(*sorted(places_of, key=lambda one: one[0]), strict=True)
     places = tuple(Number(place, "rad", digits="", unit_hidden=True) for place in angles)
     columns = [Column("angle", places, "rad", heads[0])]
     for order, (name, head) in enumerate(zip(names, heads[1:], strict=True), 1):
@@ -232,6 +233,10 @@ def _joints(results: FollowerMotionResults, heads: Sequence[Text], caption: Sent
 
 def _joints_printed(results: FollowerMotionResults) -> Table:
     heads = [Symbol("φ"), *symbols_of(motion_names(results.motion.swings)[0][1 : ORDER + 1])]
+    if results.inner_joints:
+        return _joints(
+            results, heads, Sentence("Jumps of the derivatives where segments meet and inside them")
+        )
     return _joints(results, heads, Sentence("Jumps of the derivatives where segments meet"))
 
 
@@ -264,10 +269,13 @@ def _plot(results: FollowerMotionResults) -> SpanPlot:
     for order, name in enumerate(names):
         quantity, pace = QUANTITIES[name], 1.0 if speed is None else speed**order
         sides = [(pace * joint.before[order], pace * joint.after[order]) for joint in results.joints]
-        jumps = tuple((end, *side) for end, side in zip(ends, (sides[-1], *sides), strict=True))
+        jumps = [(end, *side) for end, side in zip(ends, (sides[-1], *sides), strict=True)]
+        jumps += [
+            (one.angle, pace * one.before[order], pace * one.after[order]) for one in results.inner_joints
+        ]
         curve = Curve(Sentence(quantity.long_name), pace * drawn[:, order], 0)
         label = AxisLabel(symbol=Symbol(quantity.symbol), unit=quantity.unit)
-        panels.append(SpanPanel(label, (curve,), jumps))
+        panels.append(SpanPanel(label, (curve,), tuple(jumps)))
     return SpanPlot(
         Sentence("Motion of the follower"),
         Title(results.cam.title),
@@ -287,7 +295,13 @@ def _chapter(results: FollowerMotionResults) -> Chapter:
     swings = results.motion.swings
     rates = [Expression(f"Delta {rate(swings, order)}") for order in ORDERS]
     heads = [Expression("phi"), *rates, Expression(f"Delta {letter_of(swings)}^((4))")]
-    joints = Sentence("Jumps of the derivatives where segments meet; a dash: continuous, to rounding")
+    joints = (
+        Sentence(
+            "Jumps of the derivatives where segments meet and inside them; a dash: continuous, to rounding"
+        )
+        if results.inner_joints
+        else Sentence("Jumps of the derivatives where segments meet; a dash: continuous, to rounding")
+    )
     plot = Illustration("cam-motion", Sentence("Lift, velocity, acceleration and jerk over a turn"))
     sections = (
         Section(NOTHING, (*_given(results), FactTable(_facts(results)))),

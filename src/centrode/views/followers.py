@@ -22,8 +22,10 @@ Array = npt.NDArray[np.float64]
 MEGA = 1e-6
 CURVE_NAMES = {
     "uniform": Sentence("uniform"),
+    "parabolic": Sentence("parabolic"),
     "harmonic": Sentence("harmonic"),
     "cycloidal": Sentence("cycloidal"),
+    "trapezoid": Sentence("trapezoid"),
     "modified sine": Sentence("modified sine"),
     "modified trapezoid": Sentence("modified trapezoid"),
     "dwell": Sentence("dwell"),

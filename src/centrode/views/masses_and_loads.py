@@ -10,6 +10,8 @@ import numpy as np
 
 from centrode.dynamics.state import Centre
 from centrode.model.loads import (
+    DISPLACEMENT,
+    DRIVE,
     AnyLoad,
     BearingFriction,
     GuideForce,
@@ -26,6 +28,7 @@ from centrode.model.loads import (
     Torque,
 )
 from centrode.model.reading import FRAME
+from centrode.model.settings import Shaft
 from centrode.model.values import TurnsPerMinute
 from centrode.sheets.sheet import (
     Block,
@@ -47,7 +50,7 @@ if TYPE_CHECKING:
     from centrode.dynamics.masses import LinkMasses
     from centrode.dynamics.state import Mass
     from centrode.model.mechanism import Mechanism
-    from centrode.model.settings import Machine, Shaft
+    from centrode.model.settings import Machine
 
 AMOUNTS = (
     ("value", NOTHING),
@@ -58,6 +61,12 @@ AMOUNTS = (
     ("coefficient", Symbol("f")),
 )
 """Numbers of a load, by what stands before them."""
+TABLES = {
+    "displacement": Sentence("indicator diagram of {count} points"),
+    "stroke": Sentence("indicator diagram of {count} points over the stroke"),
+    "drive": Sentence("table of {count} points over the drive"),
+    "time": Sentence("table of {count} points over time"),
+}
 UNKNOWN = Number(math.nan)
 
 
@@ -74,23 +83,50 @@ def sheet(masses: LinkMasses) -> Sheet:
 
 
 def _masses(masses: LinkMasses) -> Iterator[Block]:
-    mechanism, found = masses.mechanism, masses.masses
-    if found:
-        inertia = tuple(_inertia(mechanism, one) for one in found)
+    """A row of each link that has a mass, with what is known of it, and what is not."""
+    mechanism = masses.mechanism
+    known = {one.link: one for one in masses.masses}
+    rows = [
+        (Name(name), *(_known(mechanism, known[name]) if name in known else _given(mechanism, name)))
+        for name in mechanism.links
+        if name not in masses.massless
+    ]
+    if rows:
+        link, mass, centre, inertia = zip(*rows, strict=True)
         yield Table(
             (
-                Column("link", tuple(Name(one.link) for one in found), head=Sentence("link")),
-                Column("mass", tuple(_number(one.mass) for one in found), "kg", Sentence("mass")),
-                Column(
-                    "centre",
-                    tuple(_centre(mechanism, one) for one in found),
-                    head=Sentence("centre of mass"),
-                ),
+                Column("link", link, head=Sentence("link")),
+                Column("mass", mass, "kg", Sentence("mass")),
+                Column("centre", centre, head=Sentence("centre of mass")),
                 Column("inertia", inertia, "kg m^2", Sentence("central moment of inertia")),
             )
         )
+    several = [name for name, link in mechanism.links.items() if link.masses and name in known]
+    if several:
+        yield Paragraph(
+            Sentence(
+                "The masses of {links} are given one by one; the table has their sum, centre and inertia.",
+                links=_names(several),
+            )
+        )
+    for reason in masses.incomplete.values():
+        yield Paragraph(Sentence("Not complete: {reason}.", reason=Name(str(reason))))
     if masses.massless:
         yield Paragraph(Sentence("Without mass: {links}.", links=_names(masses.massless)))
+
+
+def _known(mechanism: Mechanism, one: Mass) -> tuple[Text, Text, Text]:
+    """Mass, centre and inertia of a link."""
+    return _number(one.mass), _centre(mechanism, one), _inertia(mechanism, one)
+
+
+def _given(mechanism: Mechanism, name: str) -> tuple[Text, Text, Text]:
+    """What a description has of a mass that is not complete."""
+    link = mechanism.links[name]
+    mass = UNKNOWN if link.mass is None else _number(link.mass)
+    centre = Name(link.centre) if isinstance(link.centre, str) else UNKNOWN
+    inertia = _number(link.inertia) if isinstance(link.inertia, int | float) else UNKNOWN
+    return mass, centre, inertia
 
 
 def _inertia(mechanism: Mechanism, one: Mass) -> Text:
@@ -107,8 +143,9 @@ def _centre(mechanism: Mechanism, one: Mass) -> Text:
     """Where a centre of mass lies: in a point, or beside one in the axes of its link."""
     if not one.weighs:
         return UNKNOWN
-    own = mechanism.links[one.link].centre
-    if isinstance(own, str):
+    link = mechanism.links[one.link]
+    own = link.centre
+    if isinstance(own, str) and not link.masses:
         return Name(own)
     if not isinstance(one.centre, Centre):
         distance = Number(float(one.centre.distance), "m", unit_fixed=True)
@@ -177,9 +214,19 @@ def _amount(load: AnyLoad) -> Text:
         value = getattr(load, key, None)
         if value is not None:
             parts.append(_number(value) if before == NOTHING else Joined((before, _number(value)), " = "))
-    if isinstance(load, GuideForce) and load.table is not None:
+    if isinstance(load, GuideForce | Torque) and load.table is not None:
         count = Number(len(load.table), digits="d")
-        parts.append(Sentence("indicator diagram of {count} points", count=count))
+        parts.append(
+            TABLES[load.over or (DRIVE if isinstance(load, Torque) else DISPLACEMENT)].fill(count=count)
+        )
+    if isinstance(load, GuideForce) and load.pressure is not None and load.diameter is not None:
+        parts.append(
+            Sentence(
+                "as shares of {pressure} on a piston of {diameter} across",
+                pressure=Number(load.pressure, "Pa", unit_fixed=True),
+                diameter=Number(load.diameter, "m"),
+            )
+        )
     if isinstance(load, PointForce) and load.while_moving is not None:
         way = Place(tuple(map(float, load.while_moving)), "1")
         parts.append(Sentence("while the point moves towards {way}", way=way))
@@ -208,11 +255,12 @@ def _bracketed_vector(values: Sequence[object]) -> Text:
 
 
 def _machine(machine: Machine) -> Iterator[Fact]:
-    speed: Text = Number(machine.mean_speed, "rad/s", unit_fixed=True)
-    if isinstance(machine.mean_speed, TurnsPerMinute):
-        turns = Number(machine.mean_speed.rpm, "rpm", unit_fixed=True)
-        speed = Sentence("{value} ({remark})", value=turns, remark=speed)
-    yield Fact(Sentence("mean speed of the drive"), speed)
+    if machine.mean_speed:
+        speed: Text = Number(machine.mean_speed, "rad/s", unit_fixed=True)
+        if isinstance(machine.mean_speed, TurnsPerMinute):
+            turns = Number(machine.mean_speed.rpm, "rpm", unit_fixed=True)
+            speed = Sentence("{value} ({remark})", value=turns, remark=speed)
+        yield Fact(Sentence("mean speed of the drive"), speed)
     if machine.fluctuation is not None:
         yield Fact(Sentence("admissible coefficient of fluctuation"), Number(machine.fluctuation))
     for number, shaft in enumerate(machine.shafts, start=1):
@@ -220,6 +268,11 @@ def _machine(machine: Machine) -> Iterator[Fact]:
             Name(shaft.name) if shaft.name else Sentence("shaft {number}", number=Number(number, digits="d"))
         )
         yield Fact(label, _shaft(shaft))
+    if machine.flywheel.inertia is not None:
+        yield Fact(
+            Sentence("flywheel"),
+            _shaft(Shaft(inertia=machine.flywheel.inertia, ratio=machine.flywheel.ratio)),
+        )
     if machine.driving is not None:
         yield Fact(Sentence("course of the driving moment"), Name(machine.driving))
 

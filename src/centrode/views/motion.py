@@ -120,6 +120,12 @@ def _range(results: MotionResults) -> Text:
     parameter, (first, last) = results.mechanism.motion_parameter, _ends(results, "time")
     if parameter.is_uniform:
         values = parameter.values(results.motion)
+        if parameter.constant_speed == 0.0:
+            return Sentence(
+                "{first} to {last}, at rest in each position",
+                first=place_number(float(values[0]), parameter.variable.unit),
+                last=place_number(float(values[-1]), parameter.variable.unit),
+            )
         return Sentence(
             "{first} to {last} in {duration}",
             first=place_number(float(values[0]), parameter.variable.unit),

@@ -139,7 +139,7 @@ def _shares(results: MotionLawResults) -> Table:
 
 def _plot(results: MotionLawResults) -> SpanPlot:
     """Lift and derivatives of each law over the rise."""
-    shares = results.dataset["rise_share"]
+    shares = results.dataset["drawn_rise"]
     panels = (
         SpanPanel(
             AxisLabel(symbol=Symbol(axis)),
@@ -154,7 +154,7 @@ def _plot(results: MotionLawResults) -> SpanPlot:
         Sentence("Laws of motion for one rise"),
         Title(results.cam.title),
         AxisLabel(Sentence("share of the angle"), Symbol("φ/β")),
-        results.dataset["share"].values,
+        results.dataset["drawn_share"].values,
         (0.0, 1.0),
         (),
         tuple(panels),

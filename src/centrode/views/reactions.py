@@ -242,6 +242,8 @@ def _speed(mechanism: Mechanism, reactions: xarray.Dataset) -> Text:
             return Sentence("{speed}, the mean speed of the machine", speed=speed)
         case "steady":
             return Sentence("{speed}, the real speed of the machine", speed=speed)
+        case "given":
+            return Sentence("{speed}, as given", speed=speed)
         case _:
             return speed
 

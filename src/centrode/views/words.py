@@ -180,9 +180,10 @@ def _on_joints(mechanism: Mechanism) -> Iterator[Text]:
     parts = moving_parts(mechanism)
     # Translators: {parts} is a list of names such as "OA, AC, slider C"
     yield Counted(
-        "Besides the frame the mechanism has {n} moving link: {parts}.",
-        "Besides the frame the mechanism has {n} moving links: {parts}.",
+        "The mechanism has {links} links: the frame and {n} moving link ({parts}).",
+        "The mechanism has {links} links: the frame and {n} moving links ({parts}).",
         len(parts),
+        links=Number(len(parts) + 1, digits="d"),
         parts=Joined(parts),
     )
     yield from _on_hinges(mechanism)
@@ -362,24 +363,30 @@ def _on_lever(roles: LinkRoles, group: Aim) -> Text:
     return LEVERS[key].fill(point=Name(group.target), **place)
 
 
-# Sentences on what is driven, and how.
+# Sentences on what is driven, and how: at a constant speed, by a law, or at the mean speed of a machine.
+
+CONSTANT, BY_LAW, MEAN = "constant", "by law", "mean"
 
 # Translators: {link} and {base} are names of links, {pivot} and {point} of points; names do not change.
 DRIVEN = {
-    ("crank", True): Sentence("Crank {link} is driven: it turns about {pivot} at a constant {speed}."),
-    ("crank", False): Sentence("Crank {link} is driven: it turns about {pivot} by a given law."),
-    ("link", True): Sentence("Link {link} is driven: it turns about {pivot} at a constant {speed}."),
-    ("link", False): Sentence("Link {link} is driven: it turns about {pivot} by a given law."),
-    ("free", True): Sentence("Link {link} is driven: its angle changes at a constant {speed}."),
-    ("free", False): Sentence("Link {link} is driven: its angle follows a given law."),
-    ("relative", True): Sentence("Link {link} is driven relative to link {base} at a constant {speed}."),
-    ("relative", False): Sentence("Link {link} is driven relative to link {base} by a given law."),
-    ("slider", True): Sentence("The slider in {point} is driven along its guide at a constant {speed}."),
-    ("slider", False): Sentence("The slider in {point} is driven along its guide by a given law."),
-    ("guided", True): Sentence("Link {link} is driven along its guide at a constant {speed}."),
-    ("guided", False): Sentence("Link {link} is driven along its guide by a given law."),
-    ("cylinder", True): Sentence("Cylinder {name} is driven: its length changes at a constant {speed}."),
-    ("cylinder", False): Sentence("Cylinder {name} is driven: its length follows a given law."),
+    ("crank", CONSTANT): Sentence("Crank {link} is driven: it turns about {pivot} at a constant {speed}."),
+    ("crank", BY_LAW): Sentence("Crank {link} is driven: it turns about {pivot} by a given law."),
+    ("link", CONSTANT): Sentence("Link {link} is driven: it turns about {pivot} at a constant {speed}."),
+    ("link", BY_LAW): Sentence("Link {link} is driven: it turns about {pivot} by a given law."),
+    ("free", CONSTANT): Sentence("Link {link} is driven: its angle changes at a constant {speed}."),
+    ("free", BY_LAW): Sentence("Link {link} is driven: its angle follows a given law."),
+    ("relative", CONSTANT): Sentence("Link {link} is driven relative to link {base} at a constant {speed}."),
+    ("relative", BY_LAW): Sentence("Link {link} is driven relative to link {base} by a given law."),
+    ("slider", CONSTANT): Sentence("The slider in {point} is driven along its guide at a constant {speed}."),
+    ("slider", BY_LAW): Sentence("The slider in {point} is driven along its guide by a given law."),
+    ("guided", CONSTANT): Sentence("Link {link} is driven along its guide at a constant {speed}."),
+    ("guided", BY_LAW): Sentence("Link {link} is driven along its guide by a given law."),
+    ("crank", MEAN): Sentence("Crank {link} is driven: it turns about {pivot} at a mean speed of {speed}."),
+    ("link", MEAN): Sentence("Link {link} is driven: it turns about {pivot} at a mean speed of {speed}."),
+    ("free", MEAN): Sentence("Link {link} is driven: its angle changes at a mean speed of {speed}."),
+    ("relative", MEAN): Sentence("Link {link} is driven relative to link {base} at a mean speed of {speed}."),
+    ("cylinder", CONSTANT): Sentence("Cylinder {name} is driven: its length changes at a constant {speed}."),
+    ("cylinder", BY_LAW): Sentence("Cylinder {name} is driven: its length follows a given law."),
 }
 
 BY_CAM = {
@@ -390,19 +397,17 @@ BY_CAM = {
 
 
 def _on_drive(drive: Drive, roles: LinkRoles) -> Text:
-    """What a drive drives, at a constant speed or by a law."""
+    """What a drive drives, at a constant speed, by a law, or in a machine."""
     mechanism = roles.mechanism
     if drive.turning is not None:
         return _on_cam(drive, mechanism)
-    constant = drive.speed is not None
-    unit = mechanism.motion_parameter.drive(drive.id).speed_unit
-    speed = NOTHING if drive.speed is None else speed_as_given(drive.speed, unit, ".4g")
+    course, speed = _course(drive, mechanism)
     if drive.kind == "distance":
-        return DRIVEN["cylinder", constant].fill(name=Name(drive.id), speed=speed)
+        return DRIVEN["cylinder", course].fill(name=Name(drive.id), speed=speed)
     if drive.guide is not None:
         guide = mechanism.guide(drive.guide)
         kind = "slider" if guide.link is None else "guided"
-        return DRIVEN[kind, constant].fill(
+        return DRIVEN[kind, course].fill(
             point=Name(guide.point), link=quoted_name(guide.link or ""), speed=speed
         )
     link = drive.link or ""
@@ -413,9 +418,20 @@ def _on_drive(drive: Drive, roles: LinkRoles) -> Text:
         kind = "free"
     else:
         kind = "crank" if roles.turns_fully(link) and not roles.is_wheel(link) else "link"
-    return DRIVEN[kind, constant].fill(
+    return DRIVEN[kind, course].fill(
         link=quoted_name(link), pivot=Name(pivot or ""), base=quoted_name(drive.relative_to), speed=speed
     )
+
+
+def _course(drive: Drive, mechanism: Mechanism) -> tuple[str, Text]:
+    """How a drive moves, as a key of sentences, and its speed; a machine runs at a speed of its own."""
+    parameter = mechanism.motion_parameter.drive(drive.id)
+    machine = mechanism.machine
+    if machine is not None and mechanism.runs_at_mean_speed and parameter.unit == "rad":
+        return MEAN, Number(30.0 * machine.mean_speed / math.pi, "rpm", ".4g", unit_fixed=True)
+    if drive.speed is None:
+        return BY_LAW, NOTHING
+    return CONSTANT, speed_as_given(drive.speed, parameter.speed_unit, ".4g")
 
 
 def _on_cam(drive: Drive, mechanism: Mechanism) -> Text:

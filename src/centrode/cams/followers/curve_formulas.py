@@ -64,6 +64,18 @@ CURVES: dict[str, tuple[Rule, ...]] = {
     "uniform": (
         Rule(1.0, "1", ("h u", "frac(h, beta)", "0"), lambda u: (u, np.ones_like(u), np.zeros_like(u))),
     ),
+    "parabolic": (
+        Rule(
+            1 / 2, "1/2",
+            ("2 h u^2", "frac(4 h, beta) u", "frac(4 h, beta^2)"),
+            lambda u: (2 * u**2, 4 * u, 4 * np.ones_like(u)),
+        ),
+        Rule(
+            1.0, "1",
+            ("h (1 - 2 (1 - u)^2)", "frac(4 h, beta) (1 - u)", "-frac(4 h, beta^2)"),
+            lambda u: (1 - 2 * (1 - u) ** 2, 4 * (1 - u), -4 * np.ones_like(u)),
+        ),
+    ),
     "harmonic": (
         Rule(
             1.0, "1",
@@ -88,6 +100,57 @@ CURVES: dict[str, tuple[Rule, ...]] = {
     ),
     "3-4-5": (_polynomial((10, 3), (-15, 4), (6, 5)),),
     "4-5-6-7": (_polynomial((35, 4), (-84, 5), (70, 6), (-20, 7)),),
+    "trapezoid": (
+        Rule(
+            1 / 8, "1/8",
+            ("frac(64 h, 9) u^3", "frac(64 h, 3 beta) u^2", "frac(128 h, 3 beta^2) u"),
+            lambda u: (64 / 9 * u**3, 64 / 3 * u**2, 128 / 3 * u),
+        ),
+        Rule(
+            3 / 8, "3/8",
+            (
+                "h (frac(1, 72) + frac(1, 3) (u - frac(1, 8)) + frac(8, 3) (u - frac(1, 8))^2)",
+                "frac(h, 3 beta) (1 + 16 (u - frac(1, 8)))",
+                "frac(16 h, 3 beta^2)",
+            ),
+            lambda u: (
+                1 / 72 + (u - 1 / 8) / 3 + 8 / 3 * (u - 1 / 8) ** 2,
+                (1 + 16 * (u - 1 / 8)) / 3,
+                16 / 3 * np.ones_like(u),
+            ),
+        ),
+        Rule(
+            5 / 8, "5/8",
+            (
+                "h (2 u - frac(1, 2) - frac(64, 9) (u - frac(1, 2))^3)",
+                "frac(h, beta) (2 - frac(64, 3) (u - frac(1, 2))^2)",
+                "-frac(128 h, 3 beta^2) (u - frac(1, 2))",
+            ),
+            lambda u: (
+                2 * u - 1 / 2 - 64 / 9 * (u - 1 / 2) ** 3,
+                2 - 64 / 3 * (u - 1 / 2) ** 2,
+                -128 / 3 * (u - 1 / 2),
+            ),
+        ),
+        Rule(
+            7 / 8, "7/8",
+            (
+                "h (frac(71, 72) - frac(1, 3) (frac(7, 8) - u) - frac(8, 3) (frac(7, 8) - u)^2)",
+                "frac(h, 3 beta) (1 + 16 (frac(7, 8) - u))",
+                "-frac(16 h, 3 beta^2)",
+            ),
+            lambda u: (
+                71 / 72 - (7 / 8 - u) / 3 - 8 / 3 * (7 / 8 - u) ** 2,
+                (1 + 16 * (7 / 8 - u)) / 3,
+                -16 / 3 * np.ones_like(u),
+            ),
+        ),
+        Rule(
+            1.0, "1",
+            ("h (1 - frac(64, 9) (1 - u)^3)", "frac(64 h, 3 beta) (1 - u)^2", "-frac(128 h, 3 beta^2) (1 - u)"),
+            lambda u: (1 - 64 / 9 * (1 - u) ** 3, 64 / 3 * (1 - u) ** 2, -128 / 3 * (1 - u)),
+        ),
+    ),
     "modified sine": (
         Rule(
             1 / 8, "1/8",
@@ -202,10 +265,12 @@ CURVES: dict[str, tuple[Rule, ...]] = {
 
 PEAKS: dict[str, tuple[tuple[str, str, str], tuple[float, float, float]]] = {
     "uniform": (("1", "0", "0"), (1.0, 0.0, 0.0)),
+    "parabolic": (("2", "4", "0"), (2.0, 4.0, 0.0)),
     "harmonic": (("frac(pi, 2)", "frac(pi^2, 2)", "frac(pi^3, 2)"), (pi / 2, pi**2 / 2, pi**3 / 2)),
     "cycloidal": (("2", "2 pi", "4 pi^2"), (2.0, 2 * pi, 4 * pi**2)),
     "3-4-5": (("frac(15, 8)", "frac(10, sqrt(3))", "60"), (15 / 8, 10 / 3**0.5, 60.0)),
     "4-5-6-7": (("frac(35, 16)", "frac(84 sqrt(5), 25)", "frac(105, 2)"), (35 / 16, 84 * 5**0.5 / 25, 52.5)),
+    "trapezoid": (("2", "frac(16, 3)", "frac(128, 3)"), (2.0, 16 / 3, 128 / 3)),
     "modified sine": (
         ("frac(4 pi, 4 + pi)", "frac(4 pi^2, 4 + pi)", "frac(16 pi^3, 4 + pi)"),
         (4 * pi * _S, 4 * pi**2 * _S, 16 * pi**3 * _S),

@@ -19,6 +19,7 @@ from centrode.errors import InputError, Status
 from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
 from centrode.kinematics.sample_index import selectable
 from centrode.laws import CURVES, LawSegment, SegmentedLaw
+from centrode.laws.segments import INNER_JUMPS
 from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
@@ -162,10 +163,31 @@ def joints_of(motion: FollowerMotion, order: int = ORDER) -> tuple[LawJoint, ...
     return tuple(_joint(motion, number, order) for number in range(len(motion.law.ends)))
 
 
+def inner_joints_of(motion: FollowerMotion, order: int = ORDER) -> tuple[LawJoint, ...]:
+    """Where formulas of one curve meet so that velocity, acceleration or jerk jumps, in the middle of a segment."""
+    law, found = motion.law, []
+    for number, (start, end) in enumerate(pairwise((0.0, *law.ends))):
+        if INNER_JUMPS.get(law.segments[number].curve, ORDER) < ORDER:
+            places = [place for place, angle in enumerate(law.whole.breaks) if start < angle < end]
+            found += [_inner_joint(motion, number, place, order) for place in places]
+    return tuple(joint for joint in found if joint.first_jump is not None)
+
+
+def _inner_joint(motion: FollowerMotion, number: int, place: int, order: int) -> LawJoint:
+    angle = motion.law.whole.breaks[place]
+    at = Jet.variable(Rounded.of(np.float64(angle)), order)
+    sides = [motion.law.whole.at_row(row, _BOUNDED, at) for row in (place, place + 1)]
+    return _joint_between(number, angle, order, sides)
+
+
 def _joint(motion: FollowerMotion, number: int, order: int) -> LawJoint:
     angle = motion.law.ends[number]
     place = Jet.variable(Rounded.of(np.float64(angle)), order)
-    sides = motion.law.at_joint(number, _BOUNDED, place)
+    return _joint_between(number, angle, order, motion.law.at_joint(number, _BOUNDED, place))
+
+
+def _joint_between(number: int, angle: float, order: int, sides: Sequence[Any]) -> LawJoint:
+    """The joint of the formulas on its two sides."""
     before, after = ([Rounded.of(side.derivative(k)) for k in range(order + 1)] for side in sides)
     return LawJoint(
         number,
@@ -372,6 +394,8 @@ def _motion_dataset(
     share = np.linspace(0.0, 1.0, samples)
     peaks = [peaks_of(law) for law in laws.values()]
     curves = [_over(law, share, rise if name == ITS_OWN else 1.0) for name, law in laws.items()]
+    drawn = _drawn_share(laws, share)
+    lines = [_over(law, drawn, rise if name == ITS_OWN else 1.0) for name, law in laws.items()]
     data = {
         "peak_coefficient": vocabulary_variable(
             "peak_coefficient", ("law", "derivative"), [[np.nan, *one.coefficients] for one in peaks]
@@ -381,6 +405,8 @@ def _motion_dataset(
         ),
         "first_jump": vocabulary_variable("first_jump", ("law",), [one.first_jump or 0 for one in peaks]),
         "rise_share": vocabulary_variable("rise_share", ("law", "derivative", "sample"), np.stack(curves)),
+        "drawn_share": vocabulary_variable("drawn_share", ("place",), drawn),
+        "drawn_rise": vocabulary_variable("drawn_rise", ("law", "derivative", "place"), np.stack(lines)),
     }
     coordinates = {
         "law": labels_of(tuple(laws)),
@@ -389,6 +415,18 @@ def _motion_dataset(
     }
     facts = {"rise": rise, "angle": angle, "version": __version__}
     return xr.Dataset(data, coords=coordinates, attrs=facts | ({} if speed is None else {"speed": speed}))
+
+
+def _drawn_share(laws: Mapping[str, SegmentedLaw], share: Array) -> Array:
+    """Shares at which laws are drawn: where a derivative of one of them jumps inside, both sides of the place."""
+    inner = {
+        place / law.period
+        for law in laws.values()
+        if INNER_JUMPS.get(law.segments[0].curve, ORDER) < ORDER
+        for place in law.whole.breaks[1:-1]
+    }
+    places = np.array(sorted(inner))
+    return np.sort(np.concatenate([np.setdiff1d(share, places), np.nextafter(places, 0.0), places]))
 
 
 def _over(law: SegmentedLaw, share: Array, rise: float) -> Array:

@@ -22,6 +22,7 @@ from centrode.cams.followers.motion import (
     first_jump,
     follower_motion,
     greatest_size,
+    inner_joints_of,
     joints_of,
     peaks_of,
     stretches,
@@ -58,6 +59,7 @@ class FollowerMotionResults:
     lift : extremes of the lift [m or rad]
     greatest : greatest velocity, acceleration and jerk by the angle of the cam, with sign, each with its place [rad]
     joints : where segments meet
+    inner_joints : where formulas of one curve meet so that velocity, acceleration or jerk jumps
     first_jump : the lowest derivative that jumps; None if up to the fourth none does
     peaks : coefficients of each segment
     instants : chosen angles of the cam [rad]
@@ -70,6 +72,7 @@ class FollowerMotionResults:
     lift: Extremes
     greatest: tuple[tuple[float, float], ...]
     joints: tuple[LawJoint, ...]
+    inner_joints: tuple[LawJoint, ...]
     first_jump: int | None
     peaks: tuple[Peaks, ...]
     instants: Array
@@ -117,6 +120,7 @@ def follower_motion_results(
         lift,
         greatest,
         joints_of(motion),
+        inner_joints_of(motion),
         first_jump(motion),
         tuple(peaks_of(motion.law, number) for number in range(len(plate.segments))),
         phi,

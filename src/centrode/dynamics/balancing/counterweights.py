@@ -278,7 +278,7 @@ def _heavier(link: Link, own: Mass | None, added: Counterweight) -> Link:
     # both bodies' inertia about the common centre (Steiner)
     inertia += added.inertia + mass * abs(centre - middle) ** 2 + added.mass * abs(extra - middle) ** 2
     changes = {"mass": whole, "centre": (middle.real, middle.imag), "inertia": inertia}
-    return link.model_copy(update={**changes, "shape": None, "radius": None})
+    return link.model_copy(update={**changes, "shape": None, "radius": None, "masses": ()})
 
 
 def add_inertia(link: Link, own: Mass | None, inertia: float) -> Link:
@@ -286,7 +286,12 @@ def add_inertia(link: Link, own: Mass | None, inertia: float) -> Link:
     if own is None:
         return link.model_copy(update={"inertia": inertia})
     x, y = link.coordinates[own.planar_centre.base]
-    changes: dict[str, object] = {"inertia": own.moment_of_inertia + inertia, "shape": None, "radius": None}
+    changes: dict[str, object] = {
+        "inertia": own.moment_of_inertia + inertia,
+        "shape": None,
+        "radius": None,
+        "masses": (),
+    }
     if own.weighs:
         changes["centre"] = (x + own.planar_centre.along, y + own.planar_centre.across)
     return link.model_copy(update=changes)

@@ -235,7 +235,7 @@ def constant_rate(prepared: Ready) -> float:
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
     rate = float(path.parameter.constant_speed or 0.0)
     # a machine's mean speed counts before the drive's own, in the drive's sense
-    if mechanism.machine is not None:
+    if mechanism.machine is not None and mechanism.runs_at_mean_speed:
         rate = copysign(mechanism.machine.mean_speed, path.forward)
     if rate == 0.0:
         what = _("its speed is zero, so there is no inertia force")
@@ -641,7 +641,7 @@ def _sampled_range(
     prepared = ready(mechanism)
     path = prepared.kinematics.path
     span = grid_of(prepared, samples, start, stop, at)
-    if mechanism.machine is not None and path.parameter.is_uniform:
+    if mechanism.machine is not None and mechanism.runs_at_mean_speed and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
         time = path.parameter.times(span.parameter, path.start, rate)
         return prepared, SampleGrid(time, span.parameter, rate, 0.0 * rate)

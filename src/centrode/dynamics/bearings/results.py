@@ -72,6 +72,8 @@ def reaction_results(
     at: Sequence[float | str] = (),
     *,
     motion: MotionOfDrive = "mean",
+    speed: float | str | None = None,
+    acceleration: float | str | None = None,
     frictionless: bool = False,
     complete: bool = True,
     instants: npt.ArrayLike | None = None,
@@ -83,6 +85,7 @@ def reaction_results(
     samples, start, stop : as of `motion`
     at : single places in place of the range, numbers in SI or texts with a unit ("120 deg")
     motion : "mean", or "real": at the real speed of a machine in steady motion, over its cycle
+    speed, acceleration : of the drive in its own sense, at the places `at`: numbers in SI or texts with a unit
     frictionless : without friction by coefficients
     complete : with loads and wear of the bearings, which take several times as long as the reactions
     instants : further places [rad, m or s] for equations with numbers
@@ -94,7 +97,17 @@ def reaction_results(
     """
     instant = mechanism.motion_parameter.instant
     places = [instant.read(place, "at") for place in at] or None
-    found = reactions(mechanism, samples, start, stop, places, motion=motion, friction=not frictionless)
+    found = reactions(
+        mechanism,
+        samples,
+        start,
+        stop,
+        places,
+        motion=motion,
+        speed=speed,
+        acceleration=acceleration,
+        friction=not frictionless,
+    )
     results = ReactionResults(mechanism, found, tuple(at))
     if complete and not at:
         results = with_bearings(mechanism, found)

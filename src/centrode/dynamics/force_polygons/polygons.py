@@ -493,7 +493,7 @@ def _real_state(solved: Solved, pace: InputMotion) -> tuple[State, Rates, str]:
 def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Rates, str]:
     """The state at the speed that `reduce` takes, its rates by time, and whose they are."""
     span, prepared = solved.span, solved.ready
-    by_machine = prepared.mechanism.machine is not None and prepared.parameter.is_uniform
+    by_machine = prepared.mechanism.runs_at_mean_speed and prepared.parameter.is_uniform
     if by_machine:
         moving = Reducer(prepared, burden).moving(span.parameter)
         return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), "machine"

@@ -23,6 +23,9 @@ from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.reading import Problem
+from centrode.model.segments import rate as derivative_by_time
+from centrode.model.units import read_quantity
 from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -227,7 +230,7 @@ class InputMotion:
     Attributes
     ----------
     acceleration : (n)
-    source : "drive", "machine" or "steady"
+    source : "drive", "machine", "steady" or "given"
     group : group I of a machine in its real motion; None otherwise
     """
 
@@ -243,10 +246,43 @@ def input_motion_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
     path = prepared.kinematics.path
     if path.by_time:
         refuse_drive_in_formulas(burden)
-    if path.by_time or prepared.mechanism.machine is None or not path.parameter.is_uniform:
+    if path.by_time or not prepared.mechanism.runs_at_mean_speed or not path.parameter.is_uniform:
         return _along(span, "drive")
     moving = Reducer(prepared, burden).moving(span.parameter)
     return InputMotion(moving, np.zeros(len(span.parameter)), "machine")
+
+
+def given_motion(solved: Solved, speed: float | str, acceleration: float | str | None) -> InputMotion:
+    """The drive at a speed and an acceleration that are given, both in its own sense, at the places of a motion.
+
+    Numbers are in SI, texts have units ("65 rpm", "-2.77 rad/s^2"). The time in formulas of loads runs at this speed;
+    at rest it is 0.
+
+    Raises
+    ------
+    InputError
+        Several drives; a text that is no speed or no acceleration.
+    """
+    prepared = solved.ready
+    if len(prepared.mechanism.drives) != 1:
+        what = _("one speed is given, and there are several drives")
+        raise InputError("speed", what, _("give each drive its speed in the description"))
+    drive, path = prepared.parameter.drives[0], prepared.kinematics.path
+    # with zero added: at rest no sense is left
+    rate = path.forward * read_quantity(speed, drive.speed_kind, "speed") + 0.0
+    second = 0.0 if acceleration is None else path.forward * _acceleration(acceleration, drive.kind)
+    values = solved.span.parameter
+    ones = np.ones(len(values))
+    elapsed = (values - path.start) / rate if rate else 0.0 * ones
+    return InputMotion(DriveMotion(elapsed, values, rate * ones), second * ones, "given")
+
+
+def _acceleration(given: float | str, kind: str) -> float:
+    """An acceleration of a drive [rad/s^2 or m/s^2]; InputError for a text that is none."""
+    try:
+        return float(derivative_by_time(given, kind, 2))
+    except Problem as problem:
+        raise InputError("acceleration", problem.what, problem.repair) from None
 
 
 def steady_grid(

@@ -16,6 +16,7 @@ from centrode.dynamics.kinetostatics.applied_forces import (
     MotionOfDrive,
     Outer,
     check_motion,
+    given_motion,
     input_motion_of,
     outer_of,
     rates_of,
@@ -526,6 +527,8 @@ def reactions(
     at: npt.ArrayLike | None = None,
     *,
     motion: MotionOfDrive = "mean",
+    speed: float | str | None = None,
+    acceleration: float | str | None = None,
     friction: bool = True,
 ) -> xr.Dataset:
     """Forces in every joint and what the drives must give, from J' lambda = -Q with one list of constraints.
@@ -537,6 +540,10 @@ def reactions(
     motion : "mean" or "real"
         At the speed of `reduce`, or at the real speed and acceleration of a machine in steady motion: then also the
         inertia moment of what turns with the drive, and the driving moment.
+    speed : [rad/s or m/s] or a text with a unit ("65 rpm")
+        Of the drive in its own sense at the places `at`, in place of that motion; 0 for static equilibrium.
+    acceleration : [rad/s^2 or m/s^2] or a text with a unit ("-2.77 rad/s^2")
+        Of the drive in its own sense, with a given speed.
     friction
         Whether Coulomb friction counts; where there is any, `friction_moment`, `friction_force`,
         `friction_power`, `efficiency` and more tell it (docs: friction).
@@ -566,6 +573,7 @@ def reactions(
     mechanism = mechanism if friction else without_friction(mechanism)
     burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
     check_motion(motion)
+    _check_given(motion, speed, acceleration, at)
     if motion == "real":
         if start is not None or stop is not None:
             what = _("steady motion is given over a whole cycle")
@@ -576,7 +584,26 @@ def reactions(
     prepared = ready(mechanism)
     span = grid_of(prepared, samples, start, stop, at)
     solved = solve(prepared, span)
-    return reactions_at(solved, burden, input_motion_of(solved, burden), contacts, at is None)
+    pace = input_motion_of(solved, burden) if speed is None else given_motion(solved, speed, acceleration)
+    return reactions_at(solved, burden, pace, contacts, at is None)
+
+
+def _check_given(
+    motion: MotionOfDrive,
+    speed: float | str | None,
+    acceleration: float | str | None,
+    at: npt.ArrayLike | None,
+) -> None:
+    """Raise InputError for a given motion of the drive that lacks a part, or that two arguments contradict."""
+    if speed is None and acceleration is not None:
+        what = _("an acceleration is given without a speed")
+        raise InputError("acceleration", what, _("give the speed of the drive as well, 0 at rest"))
+    if speed is not None and motion == "real":
+        what = _("a speed is given, and the real one of the machine is requested")
+        raise InputError("speed", what, _("choose one of them"))
+    if speed is not None and at is None:
+        what = _("a speed is given for a whole range")
+        raise InputError("speed", what, _("give the positions with at"))
 
 
 def motion_of_reactions(found: xr.Dataset) -> MotionOfDrive:

@@ -197,9 +197,9 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     passing = mechanism.assembly.model_copy(update={"continuation": "smooth"})
     smooth = mechanism.model_copy(update={"assembly": passing}) if kept else mechanism
     reducer = Reducer(ready(smooth), MassesAndLoads.of(smooth))
-    shafts = () if mechanism.machine is None else mechanism.machine.shafts
+    added = 0.0 if mechanism.machine is None else mechanism.machine.inertia
     # shafts turn at a constant ratio: their inertia is a constant of the drive
-    rows = ReducedFunctions(reducer, sum(shaft.inertia * shaft.ratio**2 for shaft in shafts), kept)
+    rows = ReducedFunctions(reducer, added, kept)
     if not reducer.burden.masses and not rows.added:
         raise InputError(
             "[links]", _("no link has a mass: the equation of motion has no inertia"), _("give links a mass")

@@ -214,12 +214,15 @@ def flywheel(mechanism: MechanismSource, mean: MeanSpeed = "middle") -> Flywheel
 
 
 def need_fluctuation(mechanism: Mechanism, **_arguments: object) -> None:
-    """Raise InputError for a machine whose description does not limit the fluctuation of its speed."""
-    if mechanism.machine is not None and mechanism.machine.fluctuation is None:
+    """Raise InputError for a machine without a fluctuation that is allowed, and without a flywheel that is there."""
+    machine = mechanism.machine
+    if machine is not None and machine.fluctuation is None and machine.flywheel.inertia is None:
         raise InputError(
             "[machine]",
             _("fluctuation is missing"),
-            _("give the one that is allowed, such as fluctuation = 0.05"),
+            _(
+                "give the one that is allowed, such as fluctuation = 0.05, or the inertia of [machine.flywheel]"
+            ),
         )
 
 
@@ -249,7 +252,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
         obtained=checked.extremes().range / machine.mean_speed,
     )
     if machine.fluctuation is None or found.needed is None or found.tangents is None:
-        return common
+        return _with_sizes(common, machine.flywheel)
     by_source = needed_by_source(energies, machine.mean_speed, machine.fluctuation)
     # both meanings of the mean speed are reported, whichever was requested
     in_time = found if found.kind == "time" else in_other_mean(found, "time")
@@ -276,6 +279,15 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
         source_rim=source_rim,
         source_disc=source_disc,
     )
+
+
+def _with_sizes(found: Flywheel, shape: FlywheelShape) -> Flywheel:
+    """With the sizes of a wheel whose inertia is given, where one is."""
+    if shape.inertia is None:
+        return found
+    speed = abs(shape.ratio) * found.greatest_speed
+    rim, disc = (_size_wheel(shape.inertia, shape, inner, speed) for inner in (shape.inner, 0.0))
+    return replace(found, rim=rim, disc=disc)
 
 
 def _size_wheel(inertia: float, shape: FlywheelShape, inner: float, speed: float) -> Wheel | None:

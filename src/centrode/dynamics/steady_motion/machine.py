@@ -73,5 +73,5 @@ def results_of_flywheel(mechanism: Mechanism, flywheel: Flywheel) -> MachineResu
 
 
 def is_machine(mechanism: Mechanism) -> bool:
-    """Whether a description has a machine, and masses or loads that move it unevenly."""
-    return mechanism.machine is not None and has_masses_or_loads(mechanism)
+    """Whether a description has a machine with a mean speed, and masses or loads that move it unevenly."""
+    return mechanism.runs_at_mean_speed and has_masses_or_loads(mechanism)

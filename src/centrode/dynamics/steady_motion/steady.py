@@ -157,7 +157,7 @@ def solution_of(
     nodes = cycle.panels.nodes
     balance = balance_of(cycle, shape, np.full(len(nodes), mean))
     _check_matter(balance)
-    present = sum(shaft.inertia * shaft.ratio**2 for shaft in machine.shafts)
+    present = machine.inertia
     lines = None
     if machine.fluctuation is not None:
         spread = 0.5 * machine.fluctuation
@@ -193,6 +193,8 @@ def _machine(mechanism: Mechanism) -> Machine:
         raise InputError(
             "[machine]", _("it is missing"), _('give mean_speed = "65 rpm" and fluctuation = 0.05')
         )
+    if not mechanism.runs_at_mean_speed:
+        raise InputError("[machine]", _("mean_speed is missing"), _('give it, such as mean_speed = "65 rpm"'))
     return mechanism.machine
 
 

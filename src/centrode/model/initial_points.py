@@ -1,0 +1,181 @@
+"""Points given by their coordinates in the initial position: lengths and angles of links that follow from them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model import reading
+from centrode.model.reading import FRAME, Problem, Problems, named_entries, read_name, two_points, value_text
+from centrode.model.units import read_quantity
+from centrode.model.values import Vector, read_coordinates
+
+Tables = Mapping[str, Any]
+
+AGREES = 1e-9
+"""Coordinates, in metres or over a length, that differ by less are those of one point."""
+NEAR = 0.02
+"""So far [rad] the start of a drive may lie from the angle that rounded coordinates give its link."""
+
+
+def with_links_between_points(data: Tables) -> Tables:
+    """Tables of a mechanism in which links and guides have lengths and angles in place of the table `points`.
+
+    Raises
+    ------
+    Problems
+        On the sphere; a point that is missing or given twice in different places; points that coincide; a length, an
+        angle or a start that contradicts them.
+    """
+    if data.get("space") == "sphere":
+        what = _("points in the axes of the frame are given in the plane only")
+        raise Problem(what, _("give the links lengths and angles"), ("points",))
+    return _Expansion(data).tables()
+
+
+class _Expansion:
+    """Tables with the points that they name, and what is wrong with them."""
+
+    def __init__(self, data: Tables) -> None:
+        self.data = data
+        self.wrong: list[Problem] = []
+        self.places: dict[str, Vector] = {}
+        for name, value in named_entries(data["points"], read_name, reading.POINTS).items():
+            try:
+                self.places[name] = read_coordinates(value)
+            except Problem as problem:
+                self.wrong.append(Problem(problem.what, problem.repair, ("points", name)))
+        drives = data.get("drives")
+        entries = (
+            [one for one in drives if isinstance(one, Mapping)] if isinstance(drives, list | tuple) else []
+        )
+        self.driven = {one.get("link") for one in entries if one.get("start") is not None}
+        # first point and angle of each link that lies between points
+        self.poses: dict[str, tuple[Vector, float]] = {}
+
+    def tables(self) -> Tables:
+        """The tables without `points`."""
+        changed = {key: value for key, value in self.data.items() if key != "points"}
+        if self.wrong:
+            raise Problems(self.wrong)
+        frame, links = self.data.get("frame"), self.data.get("links")
+        if isinstance(frame, Mapping):
+            changed["frame"] = {**frame, "points": self._fixed(frame.get("points", {}))}
+        if isinstance(links, Mapping):
+            changed["links"] = {name: self._link(name, link) for name, link in links.items()}
+        for key, change in (("guides", self._guide), ("drives", self._drive)):
+            entries = self.data.get(key)
+            if isinstance(entries, list | tuple):
+                changed[key] = [change(number, entry) for number, entry in enumerate(entries)]
+        if self.wrong:
+            raise Problems(self.wrong)
+        return changed
+
+    def _fixed(self, points: Any) -> Any:
+        """Points of the frame: those named, and others with coordinates of their own."""
+        if isinstance(points, list | tuple):
+            return self._named(points, ("frame", "points"))
+        if isinstance(points, Mapping):
+            for name in points:
+                if name in self.places and not self._agrees(name, points[name]):
+                    what = _("point {name} is given twice, in different places").format(name=value_text(name))
+                    self._add(what, _("keep one of them"), "frame", "points", name)
+        return points
+
+    def _agrees(self, name: str, value: Any) -> bool:
+        try:
+            return math.dist(read_coordinates(value), self.places[name]) <= AGREES
+        except Problem:
+            return True  # what is wrong with these coordinates is said where they are read
+
+    def _named(self, names: Sequence[Any], at: reading.Place) -> dict[str, Vector]:
+        """Coordinates of points by their names; those that are missing are problems."""
+        for name in names:
+            if name not in self.places:
+                what = _("the coordinates of point {name} are not given").format(name=value_text(name))
+                self._add(what, reading.nearest(str(name), list(self.places)), *at)
+        return {name: self.places[name] for name in names if name in self.places}
+
+    def _link(self, name: str, link: Any) -> Any:
+        """A link whose points are named only: its length, or its points in axes of its own, and its angle."""
+        if not isinstance(link, Mapping):
+            return link
+        names = link.get("points")
+        if not names and link.get("length") is None:
+            names = two_points(str(name))
+        if not isinstance(names, list | tuple) or len(names) < 2:
+            return link
+        at = ("links", name)
+        places = self._named(names, (*at, "points"))
+        if len(places) < len(names):
+            return link
+        for key in ("length", "angle"):
+            if link.get(key) is not None:
+                self._add(_("{key} follows from its points").format(key=key), _("remove it"), *at, key)
+        first, second = places[names[0]], places[names[1]]
+        length = math.dist(first, second)
+        if length <= AGREES:
+            what = _("its points {first} and {second} coincide").format(first=names[0], second=names[1])
+            self._add(what, _("correct their coordinates"), *at, "points")
+            return link
+        angle = math.atan2(second[1] - first[1], second[0] - first[0])
+        self.poses[str(name)] = first, angle
+        # the start of a drive says how the angle of its link is counted
+        turned = {} if name in self.driven else {"angle": _in_radians(angle)}
+        if len(names) == 2:
+            return {**link, "points": tuple(names), "length": length, **turned}
+        local = {point: self._local(str(name), place) for point, place in places.items()}
+        # exactly on the axis that they make
+        local |= {names[0]: (0.0, 0.0), names[1]: (length, 0.0)}
+        return {**link, "points": local, **turned}
+
+    def _local(self, link: str, place: Vector) -> Vector:
+        """A place in the axes of a link: from its first point towards its second."""
+        (x, y), angle = self.poses[link]
+        cosine, sine = math.cos(angle), math.sin(angle)
+        u, v = place[0] - x, place[1] - y
+        return u * cosine + v * sine, v * cosine - u * sine
+
+    def _guide(self, number: int, guide: Any) -> Any:
+        """A guide without a line of its own passes through its point, where that is in the initial position."""
+        if not isinstance(guide, Mapping):
+            return guide
+        through, on = guide.get("through"), guide.get("on", FRAME)
+        name = guide.get("point") if through is None else through
+        if not isinstance(name, str) or name not in self.places or (on != FRAME and on not in self.poses):
+            return guide
+        place = self.places[name]
+        return {**guide, "through": place if on == FRAME else self._local(on, place)}
+
+    def _drive(self, number: int, drive: Any) -> Any:
+        """A drive of a link's angle starts where its points are; a start of its own says how the angle is counted."""
+        link = drive.get("link") if isinstance(drive, Mapping) else None
+        if link not in self.poses or any(drive.get(key) for key in ("guide", "distance")):
+            return drive
+        base = drive.get("relative_to", FRAME)
+        if base != FRAME and base not in self.poses:
+            return drive
+        angle = self.poses[link][1] - (0.0 if base == FRAME else self.poses[base][1])
+        start = drive.get("start")
+        if start is None:
+            return {**drive, "start": _in_radians(angle)}
+        try:
+            turned = math.remainder(read_quantity(start, "angle", "") - angle, math.tau)
+        except InputError:
+            return drive  # what is wrong with the start is said where it is read
+        if abs(turned) > NEAR:
+            what = _("it starts at {start}, and the points put {link} at {angle:.6g} deg")
+            said = what.format(start=value_text(start), link=value_text(link), angle=math.degrees(angle))
+            self._add(said, _("correct the start, or the points"), "drives", number, "start")
+        return drive
+
+    def _add(self, what: str, repair: str, *at: Any) -> None:
+        self.wrong.append(Problem(what, repair, at))
+
+
+def _in_radians(angle: float) -> str:
+    """An angle as a text with its unit, which reads back exactly: a file may refuse bare angles."""
+    return f"{angle!r} rad"
