@@ -18,6 +18,7 @@ from centrode.model.cam import Cam, vary_cam
 from centrode.model.description import Description
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
+from centrode.model.load_paths import ROOMS, kind_of_place, place_of_number, with_number
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
 from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
@@ -181,7 +182,7 @@ def _in_one_line(match: re.Match[str]) -> str:
 
 
 # Values of a mechanism by their paths: links.AC.length, frame.points.D.x, guides.C.through.y,
-# drives.OA.speed.
+# drives.OA.speed; those of loads, machine and simulation are in load_paths.
 
 _AXES = {"plane": ("x", "y"), "sphere": ("longitude", "latitude")}
 Spot = tuple[Any, Any]
@@ -200,6 +201,9 @@ def value_at(mechanism: Mechanism, path: str) -> float:
     >>> ct.value_at(ct.example("crank-rocker"), "links.AB.length")
     3.5
     """
+    if _is_dynamic(path):
+        place = place_of_number(mechanism, document(mechanism), path)
+        return _number_at(place.container, place.key, path)
     words = _words(mechanism, path)
     if words[0] == "guides" and words[2:] == ["direction"]:
         return mechanism.guide(words[1]).direction_angle
@@ -207,12 +211,30 @@ def value_at(mechanism: Mechanism, path: str) -> float:
         return mechanism.guide(words[1]).arc
     if words[0] == "rolling" and words[2:] == ["along", "direction"]:
         return _direction_of_track(mechanism, words[1], path)
-    container, key = _spot(document(mechanism), words, path)
+    return _number_at(*_spot(document(mechanism), words, path), path)
+
+
+def _is_dynamic(path: str) -> bool:
+    """Whether a path names a number of the loads, the machine, the simulation or gravity."""
+    return path.partition(".")[0] in ROOMS
+
+
+def _number_at(container: Any, key: Any, path: str) -> float:
     value = container.get(key) if isinstance(container, dict) else container[key]
+    if isinstance(value, str):
+        value = _plain_number(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         what = _("{path} is not a number here").format(path=path)
         raise InputError("", what, _("give it a value first"))
     return float(value)
+
+
+def _plain_number(text: str) -> float | None:
+    """The number that a formula is, where it is one alone ("1")."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def with_value(description: AnyDescription, path: str, value: float | str) -> AnyDescription:
@@ -238,6 +260,10 @@ def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mech
     """The same with several numbers at once: only all of them together have to fit."""
     tables = document(mechanism)
     for path, value in values.items():
+        if _is_dynamic(path):
+            place = place_of_number(mechanism, tables, path)
+            place.container[place.key] = with_number(place, value)
+            continue
         container, key = _spot(tables, _words(mechanism, path), path)
         container[key] = value
     return mechanism_from(tables)
@@ -245,6 +271,8 @@ def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mech
 
 def kind_at(mechanism: Mechanism, path: str) -> str:
     """Kind of quantity that a path names ("length", "angle", ...); raises InputError where there is no such path."""
+    if _is_dynamic(path):
+        return kind_of_place(mechanism, place_of_number(mechanism, document(mechanism), path), path)
     words = _words(mechanism, path)
     _spot(document(mechanism), words, path)
     key, on_sphere = words[-1], mechanism.space == "sphere"
@@ -279,7 +307,7 @@ def _words(mechanism: Mechanism, path: str) -> list[str]:
         "drives": [drive.id for drive in mechanism.drives],
     }
     if room not in names:
-        raise _unknown(path, room, list(names))
+        raise _unknown(path, room, [*names, *ROOMS])
     name, tail = _first(rest, names[room], path)
     if tail.startswith("points.") or name == "points":
         inner = tail.removeprefix("points.")

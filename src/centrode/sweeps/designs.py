@@ -18,10 +18,11 @@ import numpy.typing as npt
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.files import value_at
+from centrode.model.files import kind_at, value_at
+from centrode.model.load_paths import ROOMS
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
-from centrode.model.units import read_quantity
+from centrode.model.units import KINDS, read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 
@@ -91,6 +92,8 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
     except InputError as error:
         raise InputError("vary", error.what, error.repair) from None
     room, word = path.partition(".")[0], path.rpartition(".")[2]
+    if room in ROOMS:
+        return kind_at(mechanism, path)
     if word in _METRES and room == "links":
         return "length"
     if word in _ALONG:
@@ -103,9 +106,10 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
 
 def unit_of(mechanism: Mechanism, path: str) -> str:
     """SI unit of the number at a path; "1" where it has none."""
-    return {"length": "m", "ratio": "1", "mass": "kg", "inertia": "kg m^2"}.get(
-        kind_of(mechanism, path), "rad"
-    )
+    kind = kind_of(mechanism, path)
+    if path.partition(".")[0] in ROOMS:
+        return KINDS[kind].unit.replace("*", " ") or "1"
+    return {"length": "m", "ratio": "1", "mass": "kg", "inertia": "kg m^2"}.get(kind, "rad")
 
 
 def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:

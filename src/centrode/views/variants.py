@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from centrode.assignments.answers import InstantAnswers
     from centrode.assignments.results import VariantRow, Variants
+    from centrode.model.motion_parameter import DriveCoordinate
 
 STATUS_WORDS = {
     "ok": Sentence("ok"),
@@ -138,10 +139,14 @@ def _summary(variants: Variants) -> Table:
 
 def _data_chapter(variants: Variants) -> Chapter:
     """The numbers of the table; those that are the same throughout, as of a link and its drive, stand once."""
-    columns: dict[tuple[float, ...], Column] = {}
+    columns: dict[tuple[object, ...], Column] = {}
+    if any(variant.source for variant in variants.given):
+        sources = tuple(Name(variant.source) for variant in variants.given)
+        columns[sources] = Column("topology", sources, head=Sentence("topology"))
     for path in dict.fromkeys(path for variant in variants.given for path in variant.values):
         values = tuple(variant.values.get(path, nan) for variant in variants.given)
-        unit = KINDS[kind_at(variants.mechanism, path)].unit
+        base = next(one for one in variants.given if path in one.values).base(variants.mechanism)
+        unit = KINDS[kind_at(base, path)].unit.replace("*", " ") or "1"
         columns.setdefault(values, Column(path, np.array(values), unit, Name(path)))
     names = [variant.name for variant in variants.given]
     return Chapter(
@@ -228,7 +233,7 @@ def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
     speeds = (("v", "m/s"), ("a", "m/s^2")) if flat else (("v", "1/s"), ("a", "1/s^2"))
     drives = [
         table
-        for drive in mechanism.motion_parameter.drives
+        for drive in _drives(variants)
         for table in _quantity(
             {
                 name: {drive.name: answer.drives[drive.name]} if drive.name in answer.drives else {}
@@ -247,6 +252,13 @@ def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
         Section(Sentence("Balancing moments and forces of the drives"), tuple(drives)),
     )
     return Chapter(_title(variants, instant), tuple(section for section in sections if section.blocks))
+
+
+def _drives(variants: Variants) -> list[DriveCoordinate]:
+    """The drives of all topologies, each name once."""
+    topologies = [variant.base(variants.mechanism) for variant in variants.given]
+    found = {drive.name: drive for one in topologies for drive in one.motion_parameter.drives}
+    return list(found.values())
 
 
 def _title(variants: Variants, instant: _InstantOfAll) -> Text:

@@ -10,7 +10,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
@@ -203,10 +203,17 @@ def write_variants(
     folder = Path(folder)
     spelling = spelling or PLAIN
     spelling.check()
-    text = mechanism_text(topology)
     given = read_variants(topology, table)
     tasks = [
-        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling) for variant in given
+        Task(
+            mechanism_text(variant.base(topology)),
+            replace(variant, topology=None),
+            folder / f"variant-{variant.name}",
+            figures,
+            more,
+            spelling,
+        )
+        for variant in given
     ]
     keep_inputs(folder / SUMMARY)
     keep_inputs(folder / LOCK)
