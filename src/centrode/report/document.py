@@ -81,18 +81,23 @@ def report(
         options = replace(options, instants=at)
     with nullcontext() if language is None else speaking(language):
         study = ReportStudy(description, settle_options(description, options, CHAPTERS))
-        study.assemble()
-        wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
-        chapters = tuple(_chapters(wanted, study, said))
-        opening = opening_of(study, chapters)
-        if not study.wishes.full:
-            opening, chapters = move_players(opening, gather_checks(chapters))
-        title = _(description.title) or name or _("Mechanism")
-        subtitle = _("Computed by centrode {version}").format(version=__version__)
-        made = Report(
-            title, subtitle, chosen_language(), caption_blocks(chapters), opening, _description_text(study)
-        )
-        return refer_to_figures(number_blocks(made))
+        return report_of_study(study, name, said)
+
+
+def report_of_study(study: ReportStudy, name: str = "", said: Said | None = None) -> Report:
+    """The report of a study, in the language that is spoken; what the study has computed is not computed again."""
+    study.assemble()
+    wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
+    chapters = tuple(_chapters(wanted, study, said))
+    opening = opening_of(study, chapters)
+    if not study.wishes.full:
+        opening, chapters = move_players(opening, gather_checks(chapters))
+    title = _(study.description.title) or name or _("Mechanism")
+    subtitle = _("Computed by centrode {version}").format(version=__version__)
+    made = Report(
+        title, subtitle, chosen_language(), caption_blocks(chapters), opening, _description_text(study)
+    )
+    return refer_to_figures(number_blocks(made))
 
 
 def _description_text(study: ReportStudy) -> DescriptionText:

@@ -53,6 +53,7 @@ CHAPTERS = (
     "centres",
     "integration",
     "rotatability",
+    "repaired-mechanism",
     "axes",
     "masses-and-loads",
     "reduction",
