@@ -234,7 +234,7 @@ class RepairSearch:
         return sorted(reached, key=lambda change: float(np.linalg.norm(change)))
 
     def greatest(self, spread: int) -> float | None:
-        """The greatest transmission angle [rad] that a candidate, or one near the best, keeps; None where none turns."""
+        """The greatest transmission angle [rad] that a candidate or one near the best keeps; None where none turns."""
         changes = self._spread(spread)
         margins = self.margins(changes)
         starts = self._apart(changes, -margins)

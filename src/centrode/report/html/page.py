@@ -17,7 +17,8 @@ from centrode.report.html.mathematics import formulas_of
 from centrode.report.texts import blocks_of
 
 HERE = Path(__file__).parent
-FONT = "math-font.woff2"
+FONT, COMMON_FONT = "math-font.woff2", "math-font-common.woff2"
+"""All letters that formulas can hold, and those of nearly every page."""
 SCRIPTS = (("page.js",), ("space.js", "picture.js", "animation.js"))
 STYLE = "page.css"
 
@@ -42,6 +43,7 @@ def html_page(report: Report) -> bytes:
 def _page(report: Report) -> str:
     report = number_blocks(report)
     formulas = formulas_of(one for block in blocks_of(report) for one in formulas_in(block))
+    font = COMMON_FONT if formulas.has_common_letters else FONT
     elements = Elements(formulas)
     opening = "".join(f"{elements.element(block)}\n" for block in report.opening)
     chapters = [_chapter(chapter, k, elements) for k, chapter in enumerate(report.chapters, start=1)]
@@ -52,7 +54,7 @@ def _page(report: Report) -> str:
         f'<!DOCTYPE html>\n<html lang="{html.escape(report.language)}">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{title}</title>\n<style>{_style()}{formulas.style}</style>\n</head>\n<body>\n"
+        f"<title>{title}</title>\n<style>{_style(font)}{formulas.style}{elements.drawings.style()}</style>\n</head>\n<body>\n"
         f'{elements.drawings.shared()}\n<div class="sheet">\n'
         f"<nav><details open><summary>{heading}</summary><ol>{contents}</ol></details></nav>\n"
         f"<main>\n<header><h1>{title}</h1>"
@@ -117,6 +119,6 @@ def _data(name: str) -> str:
 
 
 @cache
-def _style() -> str:
-    font = base64.b64encode((HERE / FONT).read_bytes()).decode()
-    return _data(STYLE).replace("@FONT@", font)
+def _style(font: str) -> str:
+    letters = base64.b64encode((HERE / font).read_bytes()).decode()
+    return _data(STYLE).replace("@FONT@", letters)
