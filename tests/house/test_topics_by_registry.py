@@ -36,6 +36,8 @@ ALLOWED = {
         "run",
         "equations",
     },
+    # the chapter of a repaired mechanism consists of those of other topics, and begins with what was changed
+    "report/repaired.py": {"centrode.views.single_changes"},
     # every document opens with the scheme of its mechanism
     "report/opening.py": {"centrode.views.schemes"},
     # a layer of a drawing at full size, not the topic

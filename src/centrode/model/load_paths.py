@@ -100,7 +100,7 @@ def place_of_number(mechanism: Mechanism, tables: dict[str, Any], path: str) -> 
     """Where the number of a path stands in the tables of a description; raises InputError where there is none."""
     room, _dot, rest = path.partition(".")
     if tables.get(room) is None and room != "simulation":
-        what = _("the description has no {room}: {path} is no number of it")
+        what = _("the description has no {room}: {path} is not a number of it")
         raise InputError("", what.format(room=room, path=value_text(path)), _("write one in the description"))
     if room == "gravity":
         return _component(tables, "gravity", rest, path, "acceleration")
@@ -167,7 +167,7 @@ def _of_part(mechanism: Mechanism, tables: dict[str, Any], room: str, rest: str,
         table = tables[room] = {}
     if len(words) > 1:
         if words[0] == "motor" and "motor" not in table:
-            what = _("the description has no {room}: {path} is no number of it")
+            what = _("the description has no {room}: {path} is not a number of it")
             raise InputError(
                 "", what.format(room=part, path=value_text(path)), _("write one in the description")
             )
