@@ -475,7 +475,9 @@ ROTATABILITY = Topic(
             ValueOption(
                 "least_transmission_angle",
                 mark("ANGLE"),
-                mark("Least transmission angle of every dyad over the turn; 20 deg by default, or less where that is out of reach."),
+                mark(
+                    "Least transmission angle of every dyad over the turn; by default 20 deg, or less where that is out of reach."
+                ),
             ),
         ),
         progress=mark("seeking a repair, %"),
