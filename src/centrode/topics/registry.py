@@ -476,7 +476,7 @@ ROTATABILITY = Topic(
                 "least_transmission_angle",
                 mark("ANGLE"),
                 mark(
-                    "Least transmission angle of every dyad over the turn; 20 deg, or less if out of reach, by default."
+                    "Least transmission angle of every dyad; by default 20 deg, or less where that is out of reach."
                 ),
             ),
         ),
