@@ -1,8 +1,8 @@
 """Cut the mathematical fonts of pages out of STIX Two Math: `python tools/math_font.py STIXTwoMath-Regular.ttf`.
 
 Needs fonttools and brotli. The same font gives the same bytes. The letters are those that formulas and names can hold:
-Latin, Greek and Cyrillic, mathematical italic, upright and bold, operators, arrows, brackets that grow. The smaller font
-has those of nearly every page; `common` in the place of the font cuts it anew out of the greater one.
+Latin, Greek and Cyrillic, mathematical italic, upright and bold, operators, arrows, brackets that grow. The smaller
+font has those of nearly every page; `common` in the place of the font cuts it anew out of the greater one.
 """
 
 from __future__ import annotations
