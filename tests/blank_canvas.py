@@ -34,6 +34,9 @@ class BlankCanvas:
     def print_svg(self, target: str | IO[bytes], **_metadata: object) -> None:
         _write(target, SVG)
 
+    def print_figure(self, target: str | IO[bytes], **_how: object) -> None:
+        _write(target, SVG)
+
     def print_png(self, target: str | IO[bytes], **_metadata: object) -> None:
         _write(target, PNG)
 
@@ -71,7 +74,7 @@ def blank_pictures() -> Iterator[None]:
     nothing is left out: in tests/render, and by the tests of commands and reports that are marked `drawn`.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(figures, "FigureCanvasSVG", BlankCanvas)
+        patch.setattr(figures, "DocumentCanvas", BlankCanvas)
         patch.setattr(files, "FigureCanvasAgg", BlankCanvas)
         patch.setattr(files, "FigureCanvasSVG", BlankCanvas)
         patch.setattr(Figure, "draw_without_rendering", lambda _figure: None)

@@ -14,7 +14,8 @@ import pytest
 
 import centrode as ct
 from centrode.analysis.redesign.candidates import Candidates, impossible, varyings
-from centrode.analysis.redesign.repair import DEFAULT_ANGLE, ENOUGH, Repair
+from centrode.analysis.redesign.repair import ANGLES as LEAST_ANGLES
+from centrode.analysis.redesign.repair import ENOUGH, Repair
 from centrode.kinematics.preparation import ready
 from centrode.model.examples import example_text
 from centrode.render.terminal import plain_text
@@ -27,6 +28,7 @@ Array = npt.NDArray[np.float64]
 VARIANTS = Path(__file__).parents[1] / "reference" / "planar-variants.csv"
 ANGLES = ("links.CB.angle", "links.BD.angle")
 LOCKED = ct.example("slider-between-cranks-locked")
+DEGREE = math.radians(1.0)
 
 
 def sines(phi: Array, lengths: tuple[float, float, float] = (1.0, 1.2, 0.8)) -> Array:
@@ -72,14 +74,14 @@ def variant(number: int) -> ct.Mechanism:
 
 @pytest.fixture(scope="module")
 def worked() -> Repair:
-    return ct.repair(LOCKED, ANGLES)
+    return ct.repair(LOCKED, ANGLES, least_transmission_angle=DEGREE)
 
 
 def test_the_locked_mechanism_of_the_source_is_made_to_turn(worked: Repair) -> None:
     assert worked.found
     assert worked.before.turns_fully is False
     assert worked.after is not None and worked.after.turns_fully is True
-    assert worked.reached is not None and worked.reached >= DEFAULT_ANGLE - ENOUGH
+    assert worked.reached is not None and worked.reached >= DEGREE - ENOUGH
     # the grid of `sines` misses its least value by less than the square of half a step
     assert sines(phi_of(worked)) == pytest.approx(math.sin(worked.reached), abs=1e-4)
     assert math.hypot(*(change.size for change in worked.changes)) == pytest.approx(worked.size, rel=1e-15)
@@ -96,14 +98,12 @@ def test_no_smaller_change_of_the_two_angles_turns(worked: Repair) -> None:
         axis=-1,
     )
     least = np.concatenate([sines(part) for part in np.array_split(phi, 20)])
-    assert least.max() < math.sin(DEFAULT_ANGLE)
-    assert sines(np.array([0.5, 1.9, 3.5])) > math.sin(
-        DEFAULT_ANGLE
-    )  # the source's own repair, much further away
+    assert least.max() < math.sin(DEGREE)
+    assert sines(np.array([0.5, 1.9, 3.5])) > math.sin(DEGREE)  # the source's own repair, much further away
 
 
 def test_the_same_question_has_the_same_answer(worked: Repair) -> None:
-    assert ct.repair(LOCKED, ANGLES).changes == worked.changes
+    assert ct.repair(LOCKED, ANGLES, least_transmission_angle=DEGREE).changes == worked.changes
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_lengths_change_by_as_little_as_the_rule_of_grashof_asks() -> None:
 def test_bounds_are_kept_and_a_pivot_may_move() -> None:
     mechanism = four_bar(2.0, 2.5, 3.0, 4.0, drives=[{"link": "OA", "start": 0.5, "speed": 1}])
     bounds = {"frame.points.D.x": ("3 m", "4 m"), "frame.points.D.y": (-0.2, 0.2)}
-    found = ct.repair(mechanism, bounds=bounds)
+    found = ct.repair(mechanism, bounds=bounds, least_transmission_angle=DEGREE)
     x, y = (change.after for change in found.changes)
     assert 3.0 <= x <= 4.0 and -0.2 <= y <= 0.2
     assert math.hypot(x, y) + 2.0 <= 2.5 + 3.0
@@ -192,9 +192,11 @@ def test_the_stroke_of_the_slider_is_too_long_for_short_rods() -> None:
     parts: dict[str, Any] = tomllib.loads(example_text("slider-between-cranks-locked"))
     parts["links"]["CB"]["length"] = parts["links"]["BD"]["length"] = 0.2
     mechanism = ct.Mechanism(**parts)
-    found = ct.repair(mechanism, ["links.AC.angle", *ANGLES])
+    found = ct.repair(mechanism, ["links.AC.angle", *ANGLES], least_transmission_angle=DEGREE)
     assert said_impossible(found).startswith("OA > 2 sqrt(CB BD cos 1 deg): 0.5 m > 0.39997 m")
-    longer = ct.repair(mechanism, ["links.CB.length", *ANGLES])  # CB up to 0.4 m could do
+    longer = ct.repair(
+        mechanism, ["links.CB.length", *ANGLES], least_transmission_angle=DEGREE
+    )  # up to 0.4 m
     assert longer.impossible is None
 
 
@@ -211,18 +213,39 @@ def test_impossible_is_never_said_of_what_turns() -> None:
         mechanism = ct.Mechanism(**parts)
         prepared = ready(mechanism)
         varying = varyings(prepared, ["links.AC.angle", *ANGLES], None)
-        reason = impossible(Candidates(prepared, varying), DEFAULT_ANGLE)
+        reason = impossible(Candidates(prepared, varying), DEGREE)
         phi = random.uniform(-math.pi, math.pi, (1500, 3))
         parted = np.array_split(phi, 4)
-        turning = any(sines(part, lengths).max() >= math.sin(DEFAULT_ANGLE) for part in parted)  # type: ignore[arg-type]
+        turning = any(sines(part, lengths).max() >= math.sin(DEGREE) for part in parted)  # type: ignore[arg-type]
         assert not (turning and reason is not None)
         excluded += reason is not None
         turned += turning
     assert excluded and turned
 
 
+def test_without_a_wish_twenty_degrees_are_kept() -> None:
+    found = ct.repair(LOCKED)
+    assert found.found and found.wanted == found.least_transmission_angle == LEAST_ANGLES[0]
+    assert found.reached is not None and found.reached >= math.radians(20) - ENOUGH
+    assert sines(phi_of(found)) >= math.sin(math.radians(20)) - 1e-6
+
+
+def test_what_is_out_of_reach_is_said_with_the_greatest_angle() -> None:
+    """The angle of AC alone bounds that of its own group: its cosine is crank and offset over AC."""
+    bound = math.acos(0.5 + math.sin(0.5))
+    found = ct.repair(LOCKED, ANGLES)
+    assert found.found and found.impossible is not None and found.wanted == LEAST_ANGLES[0]
+    assert found.least_transmission_angle == math.radians(10)
+    assert found.reached is not None and math.radians(10) - ENOUGH <= found.reached < bound
+    assert found.greatest == pytest.approx(bound, abs=1e-6)
+    said = ct.summary(found)
+    assert "\nout of reach" in said and "transmission angles of 11.64 deg at most" in said
+    strict = ct.repair(LOCKED, ANGLES, least_transmission_angle="20 deg")
+    assert not strict.found and strict.greatest == pytest.approx(bound, abs=1e-6)
+
+
 def test_none_found_claims_nothing(tmp_path: Path) -> None:
-    found = ct.repair(LOCKED, bounds={"links.CB.angle": (4.69, 4.71)})
+    found = ct.repair(LOCKED, bounds={"links.CB.angle": (4.69, 4.71)}, least_transmission_angle=DEGREE)
     assert not found.found and found.impossible is None and found.turning == 0
     said = ct.summary(found).splitlines()[1]
     assert said.split("  ", 1)[0] == "found"

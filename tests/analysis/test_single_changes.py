@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 import centrode as ct
+from centrode.analysis.redesign.proposal import propose
 from centrode.analysis.redesign.results import RotatabilityResults, rotatability_results
 from centrode.analysis.redesign.single_changes import (
     MARGINS,
@@ -19,9 +20,13 @@ from centrode.analysis.redesign.single_changes import (
     single_changes,
 )
 from centrode.errors import NotComputedYet
+from centrode.model.files import with_values
+from centrode.model.placement import replace_placed
 from mechanisms import four_bar
 
 DISPLAY = {"length": "mm", "angle": "deg"}
+TEN = MARGINS[1:]
+"""From 10 degrees on."""
 NODES = 1e-9
 """What parabolas between 720 nodes of the turn leave of a limiting value: a fourth power of their step, in parts of the
 greatest length."""
@@ -53,7 +58,7 @@ def test_a_four_bar_turns_from_the_lengths_of_grashofs_rule() -> None:
     mechanism = four_bar(
         *lengths.values(), drives=[{"link": "OA", "start": 1.0, "speed": 1}], display=DISPLAY
     )
-    found = single_changes(mechanism)
+    found = single_changes(mechanism, margins=TEN)
     changes = by_path(found)
     limits = {"links.OA.length": 0.03, "frame.points.D.x": 0.04, "links.DB.length": 0.08}
     assert set(changes) == set(limits)
@@ -67,7 +72,7 @@ def test_a_four_bar_turns_from_the_lengths_of_grashofs_rule() -> None:
         repaired = (lengths | {name: change.after}).values()
         assert turning(*repaired)
         assert change.least_angle == pytest.approx(least_angle(*repaired), rel=1e-12)
-        assert change.least_angle >= MARGINS[0]
+        assert change.least_angle >= TEN[0]
     assert found is not None and [one.path for one in found.without] == ["links.AB.length"]
     for length in np.linspace(0.2, 3.0, 500) * lengths["AB"]:
         assert not turning(*(lengths | {"AB": float(length)}).values())
@@ -77,7 +82,7 @@ def test_the_proposed_value_has_few_digits_of_the_unit_shown() -> None:
     mechanism = four_bar(
         0.06, 0.07, 0.05, 0.09, drives=[{"link": "OA", "start": 1.0, "speed": 1}], display=DISPLAY
     )
-    values = {path: change.after for path, change in by_path(single_changes(mechanism)).items()}
+    values = {path: change.after for path, change in by_path(single_changes(mechanism, margins=TEN)).items()}
     assert values == {"links.OA.length": 0.0295, "frame.points.D.x": 0.037, "links.DB.length": 0.081}
 
 
@@ -182,7 +187,7 @@ def test_a_swing_beyond_its_reach_needs_its_own_range_only() -> None:
         study=study,
         display=DISPLAY,
     )
-    found = single_changes(mechanism)
+    found = single_changes(mechanism, margins=TEN)
     changes = by_path(found)
     assert found is not None and not found.required.turn
     assert (found.required.low, found.required.high) == (study["from"], study["to"])
@@ -203,7 +208,7 @@ def test_a_spherical_crank_turns_from_the_arc_of_grashofs_rule() -> None:
     for path, value in (("links.AB.length", 50), ("drives.AB.start", 45), ("links.DC.angle", 50)):
         mechanism = ct.with_value(mechanism, path, f"{value} deg")
     assert ct.rotatability(mechanism).turns_fully is False
-    changes = by_path(single_changes(mechanism))
+    changes = by_path(single_changes(mechanism, margins=TEN))
     assert changes["links.AB.length"].bound == pytest.approx(math.radians(45), rel=1e-8)
     assert changes["links.BC.length"].bound == pytest.approx(math.radians(50), rel=1e-8)
     for change in changes.values():
@@ -213,7 +218,7 @@ def test_a_spherical_crank_turns_from_the_arc_of_grashofs_rule() -> None:
 def test_what_is_placed_is_placed_anew() -> None:
     mechanism = ct.example("slider-between-cranks-locked")
     assert {one.kind for one in dimensions_of_design(mechanism)} == {"length", "angle"}
-    changes = by_path(single_changes(mechanism))
+    changes = by_path(single_changes(mechanism, margins=TEN))
     change = changes["links.CB.angle"]
     repaired = change.repaired
     # C is at (1.5, 1/2 sin 0.5...) of the chain of initial angles; D follows from CB and BD
@@ -221,6 +226,50 @@ def test_what_is_placed_is_placed_anew() -> None:
     d = c + 1.2 * np.exp(1j * change.after) + 0.8 * np.exp(5.7j)
     assert repaired.frame.coordinates["D"] == pytest.approx((d.real, d.imag), rel=1e-12)
     assert ct.rotatability(repaired).turns_fully
+
+
+def test_twenty_degrees_are_kept_where_one_dimension_brings_them_about() -> None:
+    """Else the greatest that any dimension brings about is told: of the source's locked mechanism OA does it."""
+    found = single_changes("slider-between-cranks-locked")
+    assert found is not None and found.margin == MARGINS[0] and found.greatest is None
+    assert all(change.least_angle >= MARGINS[0] - 1e-9 for change in found.changes)
+    # row 19 of the source's table: the crank at a fifth of its length is the best that one dimension does
+    numbers = {"links.BD.length": 0.5, "links.CB.length": 1.0}
+    numbers |= {"links.AC.angle": 2.1, "links.CB.angle": 0.5, "links.BD.angle": 4.7}
+    lower = single_changes(replace_placed(with_values(ct.example("slider-between-cranks-locked"), numbers)))
+    assert lower is not None and lower.margin == math.radians(10)
+    assert lower.greatest == pytest.approx(math.acos(0.2 * 0.5 + math.sin(2.1)), rel=1e-6)
+
+
+def test_a_report_proposes_initial_angles_before_lengths() -> None:
+    """The source changes initial angles; they have few digits, and every group keeps 20 degrees by triangles alone."""
+    mechanism = ct.example("slider-between-cranks-locked")
+    found = single_changes(mechanism)
+    assert found is not None
+    proposed = propose(found)
+    assert proposed is not None and proposed.angle == proposed.wanted == MARGINS[0]
+    assert {one.kind for one in proposed.dimensions} == {"angle"}
+    assert all(change.after == round(change.after, 3) for change in proposed.changes)
+    phi2, phi3, phi4 = (proposed.repaired.initial_angle(link) for link in ("AC", "CB", "BD"))
+    turn = np.linspace(0.0, math.tau, 3601)
+    height = np.sin(phi2)
+    c = 0.5 * np.cos(turn) + np.sqrt(1.0 - (height - 0.5 * np.sin(turn)) ** 2) + 1j * height
+    d = 0.5 + np.exp(1j * phi2) + 1.2 * np.exp(1j * phi3) + 0.8 * np.exp(1j * phi4)
+    between = (1.2**2 + 0.8**2 - np.abs(c - d) ** 2) / (2 * 1.2 * 0.8)
+    sines = np.sqrt(1.0 - np.array([(0.5 * np.sin(turn) - height) ** 2, between**2]))
+    assert sines.min() == pytest.approx(math.sin(proposed.least_angle), abs=1e-5)
+    assert proposed.least_angle >= MARGINS[0] - 1e-9
+
+
+def test_of_a_four_bar_one_length_is_proposed() -> None:
+    mechanism = four_bar(
+        0.06, 0.07, 0.05, 0.09, drives=[{"link": "OA", "start": 1.0, "speed": 1}], display=DISPLAY
+    )
+    found = single_changes(mechanism)
+    assert found is not None
+    proposed = propose(found)
+    assert proposed is not None and proposed.several is None
+    assert [change.path for change in proposed.changes] == [found.changes[0].dimension.path]
 
 
 def test_no_repair_is_sought_where_nothing_locks_or_none_is_computed() -> None:
@@ -254,7 +303,8 @@ def test_where_no_single_dimension_helps_several_are_changed() -> None:
 
 def test_the_dead_position_is_drawn_at_the_limit() -> None:
     found = rotatability_results(slider_crank(0.6, 0.8, 0.3), complete=True)
-    assert isinstance(found, RotatabilityResults) and found.dead is not None and found.repair is not None
+    assert isinstance(found, RotatabilityResults) and found.dead is not None
+    assert found.proposed is not None and found.proposed.several is None
     # the crank's end is as far below the guide as the rod is long
     assert found.dead.limit.value == pytest.approx(math.pi + math.asin(0.5 / 0.6), rel=1e-12)
     a, b = (found.dead.locked.position.sel(point=name).values[0] for name in "AB")

@@ -68,7 +68,7 @@ def test_real_speed_and_acceleration_give_the_forces_of_the_steady_motion(press:
     steady = ct.steady_motion(press, at=[AT[1]])
     speed = abs(float(steady.drive_speed.values.ravel()[0]))
     acceleration = float(steady.drive_acceleration.values.ravel()[0])
-    real = ct.reactions(press, at=[AT[1]], speed="steady").balancing.values
+    real = ct.reactions(press, at=[AT[1]], motion="real").balancing.values
     given = ct.reactions(press, at=[AT[1]], speed=speed, acceleration=acceleration).balancing.values
     assert given == pytest.approx(real, rel=1e-9)
 

@@ -45,6 +45,8 @@ ALLOWED = {
         "centrode.dynamics.steady_motion.machine",
         "centrode.views.drawing_sheets",
     },
+    # the chapter of a repaired mechanism consists of those of other topics, and begins with what was changed
+    "report/repaired.py": {"centrode.views.single_changes"},
     # every document opens with the scheme of its mechanism
     "report/opening.py": {"centrode.views.schemes"},
     # a layer of a drawing at full size, not the topic

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from centrode.analysis.redesign.repair import Change
+from centrode.analysis.redesign.single_changes import Dimension
 from centrode.analysis.rotatability.causes import Cause, CauseKind, Tracer
 
 
@@ -39,6 +41,24 @@ class InstantAnswers:
 
 
 @dataclass(frozen=True)
+class RepairedAnswers:
+    """The answers of the mechanism that a report proposes in place of one that locks.
+
+    Attributes
+    ----------
+    dimensions, changes : what is changed, and its values before and after
+    angle, least_angle : transmission angle that every group keeps at least, and the exact least one [rad]
+    instants : as of `VariantAnswers`
+    """
+
+    dimensions: tuple[Dimension, ...]
+    changes: tuple[Change, ...]
+    angle: float
+    least_angle: float
+    instants: tuple[InstantAnswers, ...]
+
+
+@dataclass(frozen=True)
 class VariantAnswers:
     """The answers of a variant.
 
@@ -48,6 +68,7 @@ class VariantAnswers:
     mobility, formula : of the mechanism, and its structure by Assur groups
     failure : why it cannot do what its study wants, in a sentence; empty if it can
     instants : one for each that the report has
+    repaired : of the repaired mechanism; None where the variant makes its motion, or no repair was found
     """
 
     turns_fully: bool | None
@@ -60,6 +81,7 @@ class VariantAnswers:
     formula: str
     failure: str
     instants: tuple[InstantAnswers, ...]
+    repaired: RepairedAnswers | None = None
 
     def json_text(self) -> str:
         """As the file of a variant holds them."""
@@ -71,7 +93,20 @@ def read_answers(text: str) -> VariantAnswers:
     entries: dict[str, Any] = json.loads(text)
     causes = tuple(_cause(entry) for entry in entries.pop("causes"))
     instants = tuple(_instant(**entry) for entry in entries.pop("instants"))
-    return VariantAnswers(**entries, causes=causes, instants=instants)
+    repaired = _repaired(entries.pop("repaired", None))
+    return VariantAnswers(**entries, causes=causes, instants=instants, repaired=repaired)
+
+
+def _repaired(entry: dict[str, Any] | None) -> RepairedAnswers | None:
+    if entry is None:
+        return None
+    return RepairedAnswers(
+        tuple(Dimension(**one) for one in entry["dimensions"]),
+        tuple(Change(**one) for one in entry["changes"]),
+        entry["angle"],
+        entry["least_angle"],
+        tuple(_instant(**one) for one in entry["instants"]),
+    )
 
 
 def _instant(

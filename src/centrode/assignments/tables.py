@@ -6,18 +6,20 @@ import csv
 import io
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from decimal import Decimal
 from pathlib import Path
 from typing import TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model import reading
-from centrode.model.files import kind_at, with_values
+from centrode.model.examples.catalogue import load
+from centrode.model.files import kind_at, value_at, with_values
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
 from centrode.model.reading import Problem, csv_separator, nearest, read_file, read_name, value_text
-from centrode.model.units import read_quantity, unit_factor
+from centrode.model.units import read_quantity, scaled, unit_factor
 
 # Columns of a table of variants: which numbers of a mechanism a header names.
 #
@@ -26,12 +28,22 @@ from centrode.model.units import read_quantity, unit_factor
 # link, counted in the order of the description. l2 is the length of the second link, phi2_0 its initial
 # angle,
 # omega1 the speed of the drive of the first. A unit stands behind, in brackets or after an underscore.
+# A cell is a value, or a change of the number in the description: "+10 %", "x1.2", "+=5 mm". The column
+# "topology" names the description of a row, where it has its own.
 
 NAME = "variant"
 """Header of the column that names the variants."""
 NAMES = (NAME, "вариант", "варіант")
 """The same in every language of the messages."""
 
+TOPOLOGIES = ("topology", "file", "топология", "топологія", "файл")
+"""Headers of the column that names the description of each row: a file beside the table, or a built-in example."""
+
+_PLAIN = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_SHARE = re.compile(rf"([+\-−])\s*({_PLAIN})\s*%")
+_TIMES = re.compile(rf"[x×*хX]\s*({_PLAIN})")
+_STEP = re.compile(r"([+\-−])=\s*(\S.*)")
+_PERCENT = re.compile(rf"{_PLAIN}\s*%")
 _BRACKET = re.compile(r"(.*?)\s*\[([^\[\]]*)\]\s*")
 _SHORT = re.compile(r"(l|phi|φ|omega|ω)(\d{1,4})(_0)?(?:_([a-zA-Z°]\w*))?")
 _KINDS = {"l": "length", "phi": "angle", "φ": "angle", "omega": "speed", "ω": "speed"}
@@ -57,17 +69,31 @@ class VariantColumn:
     refuses_bare: bool = False
 
 
-def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColumn | None]:
-    """The columns of a table, None for the one with the names.
+Columns: TypeAlias = Sequence[VariantColumn | InputError | None]
+"""What the headers of a table name; None for names and topologies, an error for what a topology has not."""
 
-    Raises InputError: no column of names, a header that names nothing, two that name the same, a unit that does
-    not fit.
+
+def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> Columns:
+    """The columns of a table for one mechanism.
+
+    Raises InputError: no column of names, two that name the same; where the rows have no topologies of their own, a
+    header that names nothing, a unit that does not fit.
     """
-    found: list[VariantColumn | None] = []
+    found: list[VariantColumn | InputError | None] = []
     named: dict[str, str] = {}
+    several = any(_is_one_of(header, TOPOLOGIES) for header in headers)
     for header in headers:
-        column = None if header.strip().casefold() in NAMES else _column(mechanism, header)
-        for path in (NAME,) if column is None else column.paths:
+        column: VariantColumn | InputError | None = None
+        if not _is_one_of(header, (*NAMES, *TOPOLOGIES)):
+            try:
+                column = _column(mechanism, header)
+            except InputError as error:
+                if not several:
+                    raise
+                column = error
+        paths = column.paths if isinstance(column, VariantColumn) else ()
+        names = {NAME: NAMES, TOPOLOGIES[0]: TOPOLOGIES}
+        for path in (*paths, *(key for key, known in names.items() if _is_one_of(header, known))):
             if path in named:
                 both = _("columns {one} and {other} refer to the same number")
                 raise InputError(
@@ -83,6 +109,10 @@ def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[VariantColu
     if len(found) == 1:
         raise InputError("", _("no column has a number of the mechanism"), _hint(mechanism))
     return found
+
+
+def _is_one_of(header: str, known: Sequence[str]) -> bool:
+    return header.strip().casefold() in known
 
 
 def _column(mechanism: Mechanism, header: str) -> VariantColumn:
@@ -156,21 +186,36 @@ FORMULAS = ("=", "+", "-", "@")
 
 @dataclass(frozen=True)
 class Variant:
-    """One row of a table: its name and the numbers [SI] it puts into a mechanism, by their paths."""
+    """One row of a table.
+
+    Attributes
+    ----------
+    name : of the variant
+    values : numbers [SI] that it puts into its topology, by their paths
+    topology : its own description; None where it has that of all
+    source : the file or the example of its own description
+    """
 
     name: str
     values: Mapping[str, float]
+    topology: Mechanism | None = None
+    source: str = ""
+
+    def base(self, topology: Mechanism) -> Mechanism:
+        """The description whose numbers it changes: its own, else that of all variants."""
+        return topology if self.topology is None else self.topology
 
     def of(self, topology: Mechanism) -> Mechanism:
         """The mechanism of this variant; what the topology places is placed anew. Raises InputError if it is none."""
-        return replace_placed(with_values(topology, self.values))
+        return replace_placed(with_values(self.base(topology), self.values))
 
 
 def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
     """The variants of a table: the path of a CSV file, or rows from header to value.
 
     Commas, semicolons or tabulators separate the columns; decimals have a point, or between semicolons and
-    tabulators a comma. Raises InputError that names the row and the column.
+    tabulators a comma. Files that the column "topology" names lie beside the table. Raises InputError that names the
+    row and the column.
     """
     if isinstance(table, str | Path):
         where = Path(table).name
@@ -197,8 +242,10 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
             most=reading.TABLE_ROWS, count=len(rows)
         )
         raise InputError(where, what, _("split it into several"))
+    folder = Path(table).parent if isinstance(table, str | Path) else None
+    bases = _Bases(topology, columns, headers, folder)
     found = [
-        _variant(columns, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
+        _variant(bases, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
     ]
     seen: set[str] = set()
     for variant in found:
@@ -243,7 +290,7 @@ def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
             (
                 number,
                 [
-                    cells[k] if header.strip().casefold() in NAMES else points[k]
+                    cells[k] if _is_one_of(header, (*NAMES, *TOPOLOGIES)) else points[k]
                     for k, header in enumerate(headers)
                 ],
             )
@@ -270,17 +317,70 @@ def _mappings(table: Sequence[Mapping[str, object]], where: str) -> tuple[list[s
     return headers, rows
 
 
-def _variant(columns: Sequence[VariantColumn | None], row: list[object], where: str) -> Variant:
+@dataclass
+class _Bases:
+    """The descriptions that the rows of a table change, each with its columns.
+
+    Attributes
+    ----------
+    topology : of rows that name none
+    columns : of this one
+    headers : of the table
+    folder : where the table lies; None where it is no file
+    """
+
+    topology: Mechanism
+    columns: Columns
+    headers: Sequence[str]
+    folder: Path | None
+    others: dict[str, tuple[Mechanism, Columns]] = field(default_factory=dict)
+
+    def source(self, row: Sequence[object]) -> str:
+        """What a row names as its topology; empty where it names none."""
+        cells = (
+            str(cell).strip()
+            for header, cell in zip(self.headers, row, strict=True)
+            if _is_one_of(header, TOPOLOGIES) and cell is not None
+        )
+        return next(cells, "")
+
+    def of(self, source: str, where: str) -> tuple[Mechanism, Columns]:
+        """The description that a row names, and its columns."""
+        if not source:
+            return self.topology, self.columns
+        if source not in self.others:
+            beside = None if self.folder is None else self.folder / source
+            try:
+                mechanism = load(source if beside is None or not beside.is_file() else beside)
+                self.others[source] = mechanism, columns_of(mechanism, self.headers)
+            except InputError as error:
+                place = f"{where}: {error.where}" if error.where else where
+                raise InputError(place, error.what, error.repair) from None
+            if mechanism.space != self.topology.space:
+                what = _("{source} is a mechanism of another space").format(source=value_text(source))
+                raise InputError(
+                    where, what, _("keep mechanisms of the plane and of the sphere in two tables")
+                )
+        return self.others[source]
+
+
+def _variant(bases: _Bases, row: list[object], where: str) -> Variant:
     name = ""
     values: dict[str, float] = {}
-    for column, cell in zip(columns, row, strict=True):
+    source = bases.source(row)
+    mechanism, columns = bases.of(source, where)
+    has_own = any(_is_one_of(header, TOPOLOGIES) for header in bases.headers)
+    for header, column, cell in zip(bases.headers, columns, row, strict=True):
         if column is None:
-            name = _name(cell, where)
+            name = _name(cell, where) if _is_one_of(header, NAMES) else name
             continue
+        if has_own and (cell is None or not str(cell).strip()):
+            continue  # the row's description has it, or has nothing of the kind
+        if isinstance(column, InputError):
+            raise InputError(f"{where}, {column.where}", column.what, column.repair)
         place = _("{row}, column {header}").format(row=where, header=value_text(column.header))
-        number = _number(column, cell, place)
-        values |= dict.fromkeys(column.paths, number)
-    return Variant(name, values)
+        values |= {path: _number(column, cell, place, mechanism, path) for path in column.paths}
+    return Variant(name, values, mechanism if source else None, source)
 
 
 def _name(cell: object, where: str) -> str:
@@ -298,13 +398,69 @@ def _name(cell: object, where: str) -> str:
         raise InputError(where, problem.what, problem.repair) from None
 
 
-def _number(column: VariantColumn, cell: object, where: str) -> float:
-    """Value in SI of a cell: a number in the header's unit, or where it has none a text with a unit."""
+def _number(column: VariantColumn, cell: object, where: str, mechanism: Mechanism, path: str) -> float:
+    """Value in SI of a cell: a value, or a change of the number that the description has at the path."""
     given = cell.strip() if isinstance(cell, str) else cell
     if given == "" or given is None:
         raise InputError(where, _("the cell is empty"), _("give every variant a value"))
+    if isinstance(given, str):
+        changed = _changed(column, given, where, mechanism, path)
+        if changed is not None:
+            return changed
+    return _value(column, given, where)
+
+
+def _value(column: VariantColumn, given: object, where: str) -> float:
+    """Value in SI: a number in the header's unit, or where it has none a text with a unit."""
     if column.factor is None:
         # a cell of a workbook may be a number: its text is what is written there
         text = repr(given) if isinstance(given, int | float) and not isinstance(given, bool) else given
         return read_quantity(text, column.kind, where, refuses_bare=column.refuses_bare)
-    return read_quantity(given, "ratio", where) * column.factor
+    return scaled(read_quantity(given, "ratio", where), column.factor)
+
+
+def _changed(column: VariantColumn, text: str, where: str, mechanism: Mechanism, path: str) -> float | None:
+    """The number of the description changed as a cell says; None where the cell is a value.
+
+    Shares and sums are those of the decimals that are written: 0.7 m and 10 % make 0.77 m to the last bit.
+    """
+    share, times, step = _SHARE.fullmatch(text), _TIMES.fullmatch(text), _STEP.fullmatch(text)
+    if share is None and times is None and step is None:
+        _refuse_unclear(column, text, where)
+        return None
+    if share is not None and column.kind == "ratio":
+        what = _("{text} may be a share or a change of it: the number has no unit").format(
+            text=value_text(text)
+        )
+        raise InputError(where, what, _('write "x1.1" for a tenth more, "0.1" for the number itself'))
+    try:
+        before = value_at(mechanism, path)
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None
+    base = Decimal(repr(before))
+    if step is not None:
+        more = Decimal(repr(_value(column, step.group(2), where)))
+        return float(base - more if step.group(1) != "+" else base + more)
+    if not before:
+        what = _("the description has 0 there, and a share of it is 0")
+        raise InputError(
+            where, what, _("write the value, or a difference such as {text}").format(text='"+=1"')
+        )
+    if times is not None:
+        return float(base * Decimal(times.group(1)))
+    assert share is not None
+    part = Decimal(share.group(2)) / 100
+    return float(base * (1 + part if share.group(1) == "+" else 1 - part))
+
+
+def _refuse_unclear(column: VariantColumn, text: str, where: str) -> None:
+    """Raise InputError for what may be a value or a change of one."""
+    if text.startswith("+"):
+        plain = text[1:].strip()
+        what = _("{text} may be a value or a change of it").format(text=value_text(text))
+        repair = _("write {value} for the value, {change} for a change")
+        raise InputError(where, what, repair.format(value=value_text(plain), change=value_text(f"+={plain}")))
+    if _PERCENT.fullmatch(text) and column.kind != "ratio":
+        what = _("{text} is a share without a sign").format(text=value_text(text))
+        repair = _("write {more} or {less} for a change")
+        raise InputError(where, what, repair.format(more=value_text(f"+{text}"), less=value_text(f"-{text}")))

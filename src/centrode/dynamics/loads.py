@@ -49,6 +49,7 @@ from centrode.model.loads import (
     PointWeight,
     SliderFriction,
     Torque,
+    numbered_names,
 )
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.arrays import ARRAYS
@@ -556,16 +557,8 @@ def _masses_with_weight(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Ma
 
 
 def _labels(loads: Sequence[AnyLoad], mechanism: Mechanism, masses: Iterable[Mass]) -> list[str]:
-    names = [load.label for load in loads]
-    names += [f"weight {mass.link}" for mass in _masses_with_weight(mechanism, masses)]
-    found: list[str] = []
-    for name in names:
-        number, label = 1, name
-        while label in found:
-            number += 1
-            label = f"{name} {number}"
-        found.append(label)
-    return found
+    weights = [f"weight {mass.link}" for mass in _masses_with_weight(mechanism, masses)]
+    return numbered_names([*(load.label for load in loads), *weights])
 
 
 def _terms_of_load(

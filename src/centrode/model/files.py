@@ -18,7 +18,7 @@ from centrode.model.cam import Cam, vary_cam
 from centrode.model.description import Description
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
-from centrode.model.loads import read_load
+from centrode.model.load_paths import ROOMS, kind_of_place, place_of_number, with_number
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
 from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
@@ -182,7 +182,7 @@ def _in_one_line(match: re.Match[str]) -> str:
 
 
 # Values of a mechanism by their paths: links.AC.length, frame.points.D.x, guides.C.through.y,
-# drives.OA.speed.
+# drives.OA.speed; those of loads, machine and simulation are in load_paths.
 
 _AXES = {"plane": ("x", "y"), "sphere": ("longitude", "latitude")}
 Spot = tuple[Any, Any]
@@ -201,6 +201,9 @@ def value_at(mechanism: Mechanism, path: str) -> float:
     >>> ct.value_at(ct.example("crank-rocker"), "links.AB.length")
     3.5
     """
+    if _is_dynamic(path):
+        place = place_of_number(mechanism, document(mechanism), path)
+        return _number_at(place.container, place.key, path)
     words = _words(mechanism, path)
     if words[0] == "guides" and words[2:] == ["direction"]:
         return mechanism.guide(words[1]).direction_angle
@@ -208,14 +211,30 @@ def value_at(mechanism: Mechanism, path: str) -> float:
         return mechanism.guide(words[1]).arc
     if words[0] == "rolling" and words[2:] == ["along", "direction"]:
         return _direction_of_track(mechanism, words[1], path)
-    container, key = _spot(document(mechanism), words, path)
+    return _number_at(*_spot(document(mechanism), words, path), path)
+
+
+def _is_dynamic(path: str) -> bool:
+    """Whether a path names a number of the loads, the machine, the simulation or gravity."""
+    return path.partition(".")[0] in ROOMS
+
+
+def _number_at(container: Any, key: Any, path: str) -> float:
     value = container.get(key) if isinstance(container, dict) else container[key]
-    if key in _FORMULAS and isinstance(value, str):
+    if isinstance(value, str):
         value = _plain_number(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         what = _("{path} is not a number here").format(path=path)
         raise InputError("", what, _("give it a value first"))
     return float(value)
+
+
+def _plain_number(text: str) -> float | None:
+    """The number that a formula is, where it is one alone ("1")."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def with_value(description: AnyDescription, path: str, value: float | str) -> AnyDescription:
@@ -241,42 +260,31 @@ def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mech
     """The same with several numbers at once: only all of them together have to fit."""
     tables = document(mechanism)
     for path, value in values.items():
+        if _is_dynamic(path):
+            place = place_of_number(mechanism, tables, path)
+            place.container[place.key] = with_number(place, value)
+            continue
         container, key = _spot(tables, _words(mechanism, path), path)
-        # a formula stays one
-        formula = key in _FORMULAS and not isinstance(value, str)
-        container[key] = repr(float(value)) if formula else value
+        container[key] = value
     return mechanism_from(tables)
 
 
 def kind_at(mechanism: Mechanism, path: str) -> str:
     """Kind of quantity that a path names ("length", "angle", ...); raises InputError where there is no such path."""
+    if _is_dynamic(path):
+        return kind_of_place(mechanism, place_of_number(mechanism, document(mechanism), path), path)
     words = _words(mechanism, path)
     _spot(document(mechanism), words, path)
     key, on_sphere = words[-1], mechanism.space == "sphere"
     if words[0] == "drives":
         coordinate = mechanism.motion_parameter.drive(words[1])
         return {"start": coordinate.kind, "speed": coordinate.speed_kind}.get(key, key)
-    if words[0] == "simulation":
-        coordinate = mechanism.motion_parameter.drives[0]
-        effort = "torque" if coordinate.kind == "angle" else "force"
-        kinds = {"start": coordinate.kind, "speed": coordinate.speed_kind, "driving": effort}
-        return {**kinds, "duration": "time", "turns": "ratio"}[key]
-    if words[0] == "loads":
-        return "ratio"
     if words[0] == "links" and key in ("radius", "centre_radius"):
         return "length"
     if key in ("length", "radius"):
         return "arc" if on_sphere else "length"
     coordinates = {"x": "length", "y": "length", "longitude": "angle", "latitude": "angle"}
     return {**coordinates, "direction": "angle"}.get(key, key)
-
-
-def _plain_number(text: str) -> float | None:
-    """The number that a formula is; None where it is not one number."""
-    try:
-        return float(text)
-    except ValueError:
-        return None
 
 
 def _direction_of_track(mechanism: Mechanism, identity: str, path: str) -> float:
@@ -297,11 +305,9 @@ def _words(mechanism: Mechanism, path: str) -> list[str]:
         "gears": [gear.id for gear in mechanism.gears],
         "rolling": [wheel.id for wheel in mechanism.rolling],
         "drives": [drive.id for drive in mechanism.drives],
-        "loads": [load.label for load in mechanism.loads],
-        "simulation": list(_NUMBERS["simulation"]),
     }
     if room not in names:
-        raise _unknown(path, room, list(names))
+        raise _unknown(path, room, [*names, *ROOMS])
     name, tail = _first(rest, names[room], path)
     if tail.startswith("points.") or name == "points":
         inner = tail.removeprefix("points.")
@@ -330,11 +336,7 @@ _NUMBERS = {
     "rolling": ("radius",),
     "along": ("direction", "radius"),
     "drives": ("start", "speed"),
-    "loads": ("value", "viscous", "quadratic", "coefficient", "stiffness", "damping"),
-    "simulation": ("start", "speed", "driving", "duration", "turns"),
 }
-_FORMULAS = ("driving",)
-"""Keys whose number is written as a formula."""
 
 
 def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
@@ -342,8 +344,6 @@ def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
     axes = _AXES[tables.get("space", "plane")]
     if room == "frame":
         return _coordinate(tables["frame"]["points"], rest, path, axes)
-    if room == "simulation":
-        return _number(tables.get(room) or {}, room, [name, *rest], path)
     if room == "links":
         return _in_link(tables["links"][name], words, path, axes)
     entry = next(entry for entry in tables[room] if _identity(room, entry) == name)
@@ -375,8 +375,6 @@ def _identity(room: str, entry: dict[str, Any]) -> str:
         return str(entry.get("name") or "-".join(entry["links"]))
     if room == "rolling":
         return str(entry.get("name") or entry["link"])
-    if room == "loads":
-        return read_load(entry).label
     return str(entry.get("link") or entry.get("guide") or "-".join(entry.get("distance", ())))
 
 

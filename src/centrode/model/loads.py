@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from math import pi
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, assert_never, get_args
@@ -637,3 +637,15 @@ def read_load(value: object) -> AnyLoad:
         return load.model_validate(own)
     except ValidationError as error:
         raise Problems(problems_within(error)) from None
+
+
+def numbered_names(names: Iterable[str]) -> list[str]:
+    """Names of loads in results and in paths: those that occur again are numbered ("weight AB 2")."""
+    found: list[str] = []
+    for name in names:
+        number, label = 1, name
+        while label in found:
+            number += 1
+            label = f"{name} {number}"
+        found.append(label)
+    return found

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.render.document.blocks import ChapterBlocks
+from centrode.report import repaired
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -48,5 +49,15 @@ def chapters_of_topics() -> dict[str, Kind]:
     return kinds
 
 
-CHAPTERS: Mapping[str, Kind] = in_order(chapters_of_topics(), order.CHAPTERS)
+def all_chapters() -> dict[str, Kind]:
+    """Those of the topics, and that of a mechanism that turns in place of one that locks, which consists of them."""
+    kinds = chapters_of_topics()
+    makers = {name: kind.make for name, kind in kinds.items()}
+    return {
+        **kinds,
+        repaired.NAME: Kind(repaired.TITLE, functools.partial(repaired.repaired_chapter, makers)),
+    }
+
+
+CHAPTERS: Mapping[str, Kind] = in_order(all_chapters(), order.CHAPTERS)
 """All chapters."""

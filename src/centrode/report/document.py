@@ -82,23 +82,27 @@ def report(
         options = replace(options, instants=at)
     with nullcontext() if language is None else speaking(language):
         study = ReportStudy(description, settle_options(description, options, CHAPTERS))
-        study.assemble()
-        note = description.report
-        standard = study.wishes.standard
-        is_note = note.is_note or standard in ("gost", "dstu")
-        wanted = {key: kind for key, kind in CHAPTERS.items() if _is_wanted(key, study, is_note)}
-        chapters = tuple(_chapters(wanted, study, said))
-        opening = opening_of(study, chapters)
-        if not study.wishes.full:
-            opening, chapters = move_players(opening, gather_checks(chapters))
-        title = _(description.title) or name or _("Mechanism")
-        subtitle = _("Computed by centrode {version}").format(version=__version__)
-        language = chosen_language()
-        made = Report(title, subtitle, language, caption_blocks(chapters), opening, _description_text(study))
-        made = refer_to_figures(number_blocks(made))
-        if is_note:
-            made = as_note(made, note, functools.partial(_prose_sections, place="before"))
-        return replace(made, standard=standard_of(standard, is_note, language))
+        return report_of_study(study, name, said)
+
+
+def report_of_study(study: ReportStudy, name: str = "", said: Said | None = None) -> Report:
+    """The report of a study, in the language that is spoken; what the study has computed is not computed again."""
+    study.assemble()
+    note, standard = study.description.report, study.wishes.standard
+    is_note = note.is_note or standard in ("gost", "dstu")
+    wanted = {key: kind for key, kind in CHAPTERS.items() if _is_wanted(key, study, is_note)}
+    chapters = tuple(_chapters(wanted, study, said))
+    opening = opening_of(study, chapters)
+    if not study.wishes.full:
+        opening, chapters = move_players(opening, gather_checks(chapters))
+    title = _(study.description.title) or name or _("Mechanism")
+    subtitle = _("Computed by centrode {version}").format(version=__version__)
+    language = chosen_language()
+    made = Report(title, subtitle, language, caption_blocks(chapters), opening, _description_text(study))
+    made = refer_to_figures(number_blocks(made))
+    if is_note:
+        made = as_note(made, note, functools.partial(_prose_sections, place="before"))
+    return replace(made, standard=standard_of(standard, is_note, language))
 
 
 def _is_wanted(key: str, study: ReportStudy, is_note: bool) -> bool:

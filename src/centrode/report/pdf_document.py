@@ -36,6 +36,7 @@ from centrode.render.document.outline import Heading, OutlinedChapter, outline_o
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
 from centrode.report.page_styles import page_style
+from centrode.report.pdf_objects import packed_pdf
 from centrode.report.spoken_formulas import spoken_formula, spoken_picture, spoken_relations, spoken_system
 from centrode.report.texts import parts_of
 
@@ -353,4 +354,4 @@ def _compiled(compiler: typst.Compiler, files: Any, standards: list[Any]) -> byt
         input=files, format="pdf", timestamp=EPOCH, pdf_standards=standards
     )
     assert isinstance(document, bytes)
-    return document
+    return packed_pdf(document)

@@ -238,6 +238,10 @@ class ReportStudy:
             raise made.failure
         return cast(Made, made)
 
+    def keep(self, key: Hashable, made: Any) -> None:
+        """Keep what is known already: `once` gives it at the first call with this key."""
+        self._made[key] = made
+
     def wants(self, chapter: str) -> bool:
         """Whether a chapter is asked for: by its name, or because nobody chose."""
         return self.wishes.chapters is None or chapter in self.wishes.chapters

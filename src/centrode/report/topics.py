@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from centrode.errors import CentrodeError, InputError, MotionError, NotComputedYet
 from centrode.locale import _
@@ -42,9 +42,14 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
-    """The sheet of a topic at the instants of the report, computed once."""
+    """The sheet of a topic at the instants of the report, made once."""
+    return study.once(("sheet", topic.name), lambda: cast("Sheet", topic.view(result_of(topic, study))))
 
-    def compute() -> Sheet:
+
+def result_of(topic: Topic, study: ReportStudy) -> Any:
+    """The result of a topic at the instants of the report, computed once."""
+
+    def compute() -> Any:
         document = topic.document
         arguments = dict(document.arguments)
         if any(chapter.name in (study.wishes.chapters or ()) for chapter in document.chapters):
@@ -61,12 +66,12 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
         done = None if document.add_instants is None else study.results.get(topic.name)
         if document.add_instants is not None and done is not None:
             # it is at the motion of the forces already
-            return cast("Sheet", topic.view(document.add_instants(done, **arguments)))
+            return document.add_instants(done, **arguments)
         if document.motion:
             arguments["motion"] = study.motion_of_forces
-        return cast("Sheet", topic.view(topic.compute(study.description, **arguments)))
+        return topic.compute(study.description, **arguments)
 
-    return study.once(("sheet", topic.name), compute)
+    return study.once(("result", topic.name), compute)
 
 
 def left_out(name: str, title: str, reason: CentrodeError) -> ChapterBlocks:

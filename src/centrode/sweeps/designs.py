@@ -19,9 +19,10 @@ import numpy.typing as npt
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.files import kind_at, value_at
+from centrode.model.load_paths import ROOMS
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
-from centrode.model.units import read_quantity
+from centrode.model.units import KINDS, read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 
@@ -82,8 +83,6 @@ _METRES = frozenset({"radius", "centre_radius"})
 """Of links: lengths on the sphere too."""
 _MASSES = frozenset({"mass", "inertia"})
 _ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
-_OF_MACHINES = frozenset({"drives", "loads", "machine", "simulation"})
-"""Rooms of numbers that are no dimensions of the mechanism."""
 
 
 def kind_of(mechanism: Mechanism, path: str) -> str:
@@ -93,7 +92,7 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
     except InputError as error:
         raise InputError("vary", error.what, error.repair) from None
     room, word = path.partition(".")[0], path.rpartition(".")[2]
-    if room in _OF_MACHINES:
+    if room in ROOMS or room == "drives":
         return kind_at(mechanism, path)
     if word in _METRES and room == "links":
         return "length"
@@ -107,9 +106,10 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
 
 def unit_of(mechanism: Mechanism, path: str) -> str:
     """SI unit of the number at a path; "1" where it has none."""
-    return {"length": "m", "ratio": "1", "mass": "kg", "inertia": "kg m^2"}.get(
-        kind_of(mechanism, path), "rad"
-    )
+    kind = kind_of(mechanism, path)
+    if path.partition(".")[0] in (*ROOMS, "drives"):
+        return KINDS[kind].unit.replace("*", " ") or "1"
+    return {"length": "m", "ratio": "1", "mass": "kg", "inertia": "kg m^2"}.get(kind, "rad")
 
 
 def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:

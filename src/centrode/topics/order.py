@@ -56,6 +56,7 @@ CHAPTERS = (
     "centres",
     "integration",
     "rotatability",
+    "repaired-mechanism",
     "axes",
     "masses-and-loads",
     "reduction",

@@ -490,7 +490,9 @@ ROTATABILITY = Topic(
             ValueOption(
                 "least_transmission_angle",
                 mark("ANGLE"),
-                mark("Least transmission angle of every dyad over the turn; 1 deg by default."),
+                mark(
+                    "Least transmission angle of every dyad; by default 20 deg, or less where that is out of reach."
+                ),
             ),
         ),
         progress=mark("seeking a repair, %"),

@@ -28,7 +28,6 @@ from centrode.sheets.sheet import (
     Fact,
     FactTable,
     Failure,
-    Illustration,
     Paragraph,
     Section,
     Sheet,
@@ -48,7 +47,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views import transmission
 from centrode.views.instants import place_number
-from centrode.views.single_changes import pair_of_schemes, single_blocks, single_facts
+from centrode.views.single_changes import proposal_blocks, single_facts
 from centrode.views.structure import GROUP_KINDS
 
 if TYPE_CHECKING:
@@ -452,9 +451,12 @@ def _repair_facts(repair: Repair) -> Iterator[Fact]:
             angle=_degrees(repair.least_transmission_angle),
         ),
     )
-    if repair.impossible is not None:
+    if repair.least_transmission_angle < repair.wanted:
+        yield from _out_of_reach(repair)
+    elif repair.impossible is not None:
         reason = impossibility_text(repair.impossible)
         yield Fact(Sentence("found"), Sentence("impossible: {reason}", reason=reason))
+        yield from _within_reach(repair)
         return
     if repair.found and not repair.changes:
         yield Fact(Sentence("found"), Sentence("the requirement is already satisfied"))
@@ -468,6 +470,7 @@ def _repair_facts(repair: Repair) -> Iterator[Fact]:
     else:
         none = Sentence("none found within the bounds; this does not prove that none exists")
         yield Fact(Sentence("found"), none)
+        yield from _within_reach(repair)
     yield Fact(
         Sentence("tried"),
         Sentence(
@@ -477,6 +480,25 @@ def _repair_facts(repair: Repair) -> Iterator[Fact]:
             turning=Number(repair.turning, digits="d"),
         ),
     )
+
+
+def _out_of_reach(repair: Repair) -> Iterator[Fact]:
+    """Why less is required than was wanted."""
+    wanted = Sentence("transmission angles of {angle} or more", angle=_degrees(repair.wanted))
+    if repair.impossible is not None:
+        reason = impossibility_text(repair.impossible)
+        wanted = Sentence("{wanted}, impossible: {reason}", wanted=wanted, reason=reason)
+    yield Fact(Sentence("out of reach"), wanted)
+    yield from _within_reach(repair)
+
+
+def _within_reach(repair: Repair) -> Iterator[Fact]:
+    """The greatest transmission angle of any candidate, where the one wanted is out of reach."""
+    if repair.greatest is not None:
+        greatest = Number(degrees(repair.greatest), "deg", ".4g")
+        yield Fact(
+            Sentence("within reach"), Sentence("transmission angles of {angle} at most", angle=greatest)
+        )
 
 
 def _reached_angle(repair: Repair) -> Fact:
@@ -534,9 +556,8 @@ def _chapter(found: RotatabilityResults) -> Chapter:
     if found.single is not None or found.refusal is not None:
         sections.append(Section(Sentence("Repair"), tuple(_repair_blocks(found))))
     if found.repair is not None:
-        several = tuple(_blocks_of_several(found, found.repair))
-        enough = found.single is not None and bool(found.single.changes)
-        sections.append(Section(Sentence("Change of several dimensions"), several, detail=enough))
+        several = tuple(_blocks_of_several(found.repair))
+        sections.append(Section(Sentence("Change of several dimensions"), several, detail=True))
     return Chapter(Sentence("Rotatability"), tuple(sections))
 
 
@@ -546,17 +567,14 @@ def _repair_blocks(found: RotatabilityResults) -> Iterator[Block]:
         yield Paragraph(Sentence("No repair was sought: {reason}", reason=Name(str(found.refusal))))
         return
     cause = NOTHING if found.dead is None else cause_text(found.dead.limit.cause)
-    yield from single_blocks(found.single, found.dead, cause)
+    yield from proposal_blocks(found.single, found.proposed, found.dead, cause)
 
 
-def _blocks_of_several(found: RotatabilityResults, repair: Repair) -> Iterator[Block]:
-    """The smallest change of several dimensions after which the drive turns fully."""
+def _blocks_of_several(repair: Repair) -> Iterator[Block]:
+    """How the change of several dimensions was sought, in exact numbers."""
     yield Paragraph(Sentence("A change of the dimensions was sought after which the drive turns fully."))
     yield FactTable(tuple(_repair_facts(repair)))
     if repair.repaired is not None:
-        if found.dead is not None and found.single is not None and not found.single.changes:
-            words = Sentence("with the changed dimensions")
-            yield Illustration(pair_of_schemes(found.mechanism, repair.repaired, found.dead, words))
         turns = repair.after is not None and repair.after.turns_fully is True
         statement = Sentence("The changed mechanism was analysed again: its drive turns fully.")
         yield Check(statement, 0.0 if turns else 1.0, 1.0, 0.0)
@@ -564,7 +582,7 @@ def _blocks_of_several(found: RotatabilityResults, repair: Repair) -> Iterator[B
 
 # Records
 
-LEFT_OUT = ("mechanism", "repaired", "repair", "refusal", "angles", "dead")
+LEFT_OUT = ("mechanism", "repaired", "repair", "refusal", "angles", "dead", "proposed", "several")
 """Of a result, what its record does not hold."""
 REASONS = ("circuits_missing", "impossible")
 """What a record holds as an empty text where there is none."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import degrees
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,8 @@ from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Slant
 from centrode.views.instants import instant_title
 
 if TYPE_CHECKING:
+    from centrode.analysis.redesign.proposal import ProposedRepair
+    from centrode.analysis.redesign.repair import Change
     from centrode.analysis.redesign.single_changes import (
         DeadPosition,
         Dimension,
@@ -50,6 +52,12 @@ def single_facts(found: SingleChanges) -> Iterator[Fact]:
         yield Fact(label, _no_change(found))
         return
     yield Fact(label, Sentence("one of these dimensions, for {motion}:", motion=_motion(found)))
+    if found.greatest is not None:
+        text = Sentence(
+            "one dimension alone brings about {greatest} at most; several: --repair",
+            greatest=_angle(found.greatest),
+        )
+        yield Fact(NOTHING, text)
     for change in found.changes[:SHOWN]:
         yield Fact(
             NOTHING,
@@ -62,28 +70,48 @@ def single_facts(found: SingleChanges) -> Iterator[Fact]:
         )
 
 
-def single_blocks(found: SingleChanges, dead: DeadPosition | None, cause: Text) -> Iterator[Block]:
-    """What locks, what to change, the mechanism before and after, and every dimension that would do."""
+def proposal_blocks(
+    found: SingleChanges, proposed: ProposedRepair | None, dead: DeadPosition | None, cause: Text
+) -> Iterator[Block]:
+    """What locks, what to change, the mechanism before and after, and every dimension that would do alone."""
     if dead is not None:
         place = instant_title(found.mechanism, dead.locked, 0)
         yield Paragraph(Sentence("The mechanism locks at {place}: {cause}.", place=place, cause=cause))
-    yield Paragraph(Sentence("Required: {motion}.", motion=_motion(found)))
-    if not found.changes:
+    wanted = found.margin if proposed is None else proposed.wanted
+    yield Paragraph(Sentence("Required: {motion}.", motion=_motion(found, wanted)))
+    if proposed is None:
         yield Paragraph(Sentence("No change of one dimension alone was found that is sufficient."))
         return
-    best = found.changes[0]
-    yield Paragraph(
-        Sentence(
-            "The smallest change of one dimension that repairs it: {change}. The limiting value is {bound}. The "
-            "difference is a margin: the transmission angle of every group stays at {angle} or more.",
-            change=change_text(found.mechanism, best),
-            bound=Number(best.bound, best.unit, ""),
-            angle=_angle(best.least_angle),
+    if proposed.greatest is not None:
+        yield Paragraph(
+            Sentence(
+                "{wanted} are out of reach: the greatest transmission angle that was found is {greatest}. The repair "
+                "keeps {angle} or more.",
+                wanted=_angle(proposed.wanted),
+                greatest=_angle(proposed.greatest),
+                angle=_angle(proposed.angle),
+            )
         )
-    )
+    changes = proposed_changes(proposed)
+    least = _angle(proposed.least_angle)
+    if proposed.several is None:
+        text = Sentence(
+            "Proposed repair: {change}. The limiting value is {bound}. The difference is a margin: the transmission "
+            "angle of every group stays at {angle} or more.",
+            change=changes,
+            bound=Number(found.changes[0].bound, found.changes[0].unit, ""),
+            angle=least,
+        )
+    else:
+        text = Sentence(
+            "Proposed repair: {changes}. The transmission angle of every group stays at {angle} or more.",
+            changes=changes,
+            angle=least,
+        )
+    yield Paragraph(text)
     if dead is not None:
-        yield Illustration(scheme_pair(found, best, dead))
-    if len(found.changes) > 1:
+        yield Illustration(scheme_pair(proposed, dead))
+    if len(found.changes) > (proposed.several is None):
         yield _table(found)
     if found.without:
         names = Joined([_dimension(found.mechanism, one) for one in found.without])
@@ -94,16 +122,46 @@ def single_blocks(found: SingleChanges, dead: DeadPosition | None, cause: Text) 
         "The repaired mechanism was assembled at all samples of the motion; the worst residual is {share} of its "
         "greatest length."
     )
-    yield Check(statement, best.residual, 1.0, CLOSED)
+    yield Check(statement, proposed.residual, 1.0, CLOSED)
+
+
+def proposed_changes(proposed: ProposedRepair) -> Text:
+    """The changes of a proposed repair in words."""
+    return changes_text(proposed.mechanism, proposed.dimensions, proposed.changes)
+
+
+def changes_text(mechanism: Mechanism, dimensions: Sequence[Dimension], changes: Sequence[Change]) -> Text:
+    """Changes of dimensions in words, one after the other."""
+    pairs = zip(dimensions, changes, strict=True)
+    return Joined(
+        [_changed(mechanism, one, change.before, change.after, change.unit) for one, change in pairs]
+    )
+
+
+def repaired_blocks(proposed: ProposedRepair) -> Iterator[Block]:
+    """What the repaired mechanism differs in, and the transmission angle that it keeps."""
+    yield Paragraph(
+        Sentence(
+            "This chapter computes the repaired mechanism: {changes}. Its drive makes the required motion; the least "
+            "transmission angle is {angle}.",
+            changes=proposed_changes(proposed),
+            angle=_angle(proposed.least_angle),
+        )
+    )
 
 
 def change_text(mechanism: Mechanism, change: SingleChange, digits: str = "") -> Text:
     """A change in words: "link AB 92 mm long instead of 80 mm"."""
-    dimension = change.dimension
+    return _changed(mechanism, change.dimension, change.before, change.after, change.unit, digits)
+
+
+def _changed(
+    mechanism: Mechanism, dimension: Dimension, before: float, after: float, unit: str, digits: str = ""
+) -> Text:
     return CHANGES[_kind(mechanism, dimension)].fill(
         name=Name(dimension.name),
-        after=Number(change.after, change.unit, digits, degrees_too=True),
-        before=Number(change.before, change.unit, digits, degrees_too=True),
+        after=Number(after, unit, digits, degrees_too=True),
+        before=Number(before, unit, digits, degrees_too=True),
         **_axis(dimension),
     )
 
@@ -120,9 +178,9 @@ def _axis(dimension: Dimension) -> dict[str, Text]:
     return {"axis": Slanted(dimension.axis)} if dimension.axis else {}
 
 
-def _motion(found: SingleChanges) -> Text:
+def _motion(found: SingleChanges, margin_angle: float | None = None) -> Text:
     """What is required: a full turn, or a range of the drive, and a transmission angle."""
-    required, margin = found.required, _angle(found.margin)
+    required, margin = found.required, _angle(found.margin if margin_angle is None else margin_angle)
     if required.turn:
         return Sentence("a full turn of the drive with transmission angles of {angle} or more", angle=margin)
     drive = found.mechanism.motion_parameter.drives[0]
@@ -150,11 +208,12 @@ def _angle(angle: float) -> Number:
     return Number(degrees(angle), "deg", ".3g")
 
 
-def scheme_pair(found: SingleChanges, change: SingleChange, dead: DeadPosition) -> SchemePair:
+def scheme_pair(proposed: ProposedRepair, dead: DeadPosition) -> SchemePair:
     """The mechanism in its dead position, and repaired at the same value of the drive."""
-    changed = change.dimension.name if change.dimension.kind == "length" else FRAME
-    words = Sentence("repaired: {change}", change=change_text(found.mechanism, change))
-    return pair_of_schemes(found.mechanism, change.repaired, dead, words, changed)
+    lengths = [one.name for one in proposed.dimensions if one.kind == "length"]
+    changed = lengths[0] if len(lengths) == 1 and len(proposed.dimensions) == 1 else FRAME
+    words = Sentence("repaired: {change}", change=proposed_changes(proposed))
+    return pair_of_schemes(proposed.mechanism, proposed.repaired, dead, words, changed)
 
 
 def pair_of_schemes(
@@ -201,5 +260,8 @@ def _table(found: SingleChanges) -> Table:
             numbers(Sentence("proposed value"), [Number(one.after, one.unit, "") for one in changes]),
             numbers(Sentence("least transmission angle"), [_angle(one.least_angle) for one in changes]),
         ),
-        Sentence("Dimensions of which each alone repairs the mechanism"),
+        Sentence(
+            "Dimensions of which each alone repairs the mechanism, with transmission angles of {angle} or more",
+            angle=_angle(found.margin),
+        ),
     )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from math import nan
-from typing import TYPE_CHECKING
+from math import degrees, nan
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -28,12 +28,14 @@ from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Nu
 from centrode.views.instants import place_title
 from centrode.views.parameter_studies import number_title
 from centrode.views.rotatability import cause_text
+from centrode.views.single_changes import changes_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from centrode.assignments.answers import InstantAnswers
+    from centrode.assignments.answers import InstantAnswers, RepairedAnswers
     from centrode.assignments.results import VariantRow, Variants
+    from centrode.model.motion_parameter import DriveCoordinate
 
 STATUS_WORDS = {
     "ok": Sentence("ok"),
@@ -66,10 +68,8 @@ def sheet(variants: Variants) -> Sheet:
             {
                 "variants": lambda: _data_chapter(variants),
                 "turning": lambda: _rotatability_chapter(variants),
-                **{
-                    f"instant-{instant.number + 1}": partial(_instant_chapter, variants, instant)
-                    for instant in _instants(variants)
-                },
+                **_instant_chapters(variants, {name: one.instants for name, one in variants.answers.items()}),
+                **_repaired_chapters(variants),
             }
         ),
         failure=_failure(variants),
@@ -165,10 +165,14 @@ def _summary(variants: Variants) -> Table:
 
 def _data_chapter(variants: Variants) -> Chapter:
     """The numbers of the table; those that are the same throughout, as of a link and its drive, stand once."""
-    columns: dict[tuple[float, ...], Column] = {}
+    columns: dict[tuple[object, ...], Column] = {}
+    if any(variant.source for variant in variants.given):
+        sources = tuple(Name(variant.source) for variant in variants.given)
+        columns[sources] = Column("topology", sources, head=Sentence("topology"))
     for path in dict.fromkeys(path for variant in variants.given for path in variant.values):
         values = tuple(variant.values.get(path, nan) for variant in variants.given)
-        unit = KINDS[kind_at(variants.mechanism, path)].unit
+        base = next(one for one in variants.given if path in one.values).base(variants.mechanism)
+        unit = KINDS[kind_at(base, path)].unit.replace("*", " ") or "1"
         columns.setdefault(values, Column(path, np.array(values), unit, Name(path)))
     names = [variant.name for variant in variants.given]
     return Chapter(
@@ -233,20 +237,64 @@ class _InstantOfAll:
     answers: Mapping[str, InstantAnswers]
 
 
-def _instants(variants: Variants) -> Iterator[_InstantOfAll]:
+Instants: TypeAlias = "Mapping[str, tuple[InstantAnswers, ...]]"
+"""Instants of each variant, by its name."""
+
+
+def _instant_chapters(
+    variants: Variants, found: Instants, repaired: bool = False
+) -> dict[str, Callable[[], Chapter]]:
+    """A chapter for each instant at which some variant has numbers."""
+    prefix = "repaired-instant" if repaired else "instant"
+    return {
+        f"{prefix}-{instant.number + 1}": partial(_instant_chapter, variants, instant, repaired)
+        for instant in _instants(variants, found)
+    }
+
+
+def _instants(variants: Variants, found: Instants) -> Iterator[_InstantOfAll]:
     """Every instant at which some variant has numbers."""
-    names = [row.variant for row in variants.rows if row.variant in variants.answers]
-    for number in range(max((len(variants.answers[name].instants) for name in names), default=0)):
-        answers = {
-            name: variants.answers[name].instants[number]
-            for name in names
-            if number < len(variants.answers[name].instants)
-        }
+    names = [row.variant for row in variants.rows if row.variant in found]
+    for number in range(max((len(found[name]) for name in names), default=0)):
+        answers = {name: found[name][number] for name in names if number < len(found[name])}
         if any(answer.links or answer.points or answer.drives for answer in answers.values()):
             yield _InstantOfAll(number, answers)
 
 
-def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
+def _repaired_chapters(variants: Variants) -> dict[str, Callable[[], Chapter]]:
+    """What is changed in variants that lock, and the numbers of the repaired mechanisms at each instant."""
+    found = {name: one.repaired for name, one in variants.answers.items() if one.repaired is not None}
+    if not found:
+        return {}
+    instants = {name: one.instants for name, one in found.items()}
+    return {
+        "repaired": lambda: _repairs_chapter(variants, found),
+        **_instant_chapters(variants, instants, repaired=True),
+    }
+
+
+def _repairs_chapter(variants: Variants, found: Mapping[str, RepairedAnswers]) -> Chapter:
+    """The repair of each variant that locks, and the least transmission angle that it leaves."""
+    names = [row.variant for row in variants.rows if row.variant in found]
+    bases = {variant.name: variant.base(variants.mechanism) for variant in variants.given}
+    repairs = tuple(changes_text(bases[name], found[name].dimensions, found[name].changes) for name in names)
+    angles = tuple(Number(degrees(found[name].least_angle), "deg", ".3g") for name in names)
+    table = Table(
+        (
+            Column("variant", tuple(map(Name, names)), head=Sentence("variant")),
+            Column("repair", repairs, head=Sentence("repair")),
+            Column("least_angle", angles, head=Sentence("least transmission angle")),
+        )
+    )
+    asked = Sentence(
+        "Mechanisms that lock are repaired by their initial angles where this is sufficient. Every group keeps a "
+        "transmission angle of {angle} or more.",
+        angle=Number(degrees(min(one.angle for one in found.values())), "deg", ".3g"),
+    )
+    return Chapter(Sentence("Repaired mechanisms"), (Section(NOTHING, (Paragraph(asked), table)),))
+
+
+def _instant_chapter(variants: Variants, instant: _InstantOfAll, repaired: bool = False) -> Chapter:
     """Links, points and drives at one instant."""
     mechanism, answers = variants.mechanism, instant.answers
     flat = mechanism.space == "plane"
@@ -255,7 +303,7 @@ def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
     speeds = (("v", "m/s"), ("a", "m/s^2")) if flat else (("v", "1/s"), ("a", "1/s^2"))
     drives = [
         table
-        for drive in mechanism.motion_parameter.drives
+        for drive in _drives(variants)
         for table in _quantity(
             {
                 name: {drive.name: answer.drives[drive.name]} if drive.name in answer.drives else {}
@@ -273,7 +321,16 @@ def _instant_chapter(variants: Variants, instant: _InstantOfAll) -> Chapter:
         Section(Sentence("Points"), tuple(_orders(points, speeds))),
         Section(Sentence("Balancing moments and forces of the drives"), tuple(drives)),
     )
-    return Chapter(_title(variants, instant), tuple(section for section in sections if section.blocks))
+    title = _title(variants, instant)
+    title = Sentence("{place}, repaired mechanisms", place=title) if repaired else title
+    return Chapter(title, tuple(section for section in sections if section.blocks))
+
+
+def _drives(variants: Variants) -> list[DriveCoordinate]:
+    """The drives of all topologies, each name once."""
+    topologies = [variant.base(variants.mechanism) for variant in variants.given]
+    found = {drive.name: drive for one in topologies for drive in one.motion_parameter.drives}
+    return list(found.values())
 
 
 def _title(variants: Variants, instant: _InstantOfAll) -> Text:

@@ -6,7 +6,7 @@ import functools
 import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import pi, sin, tau
+from math import asin, pi, radians, sin, sqrt, tau
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -167,6 +167,8 @@ SLACK = 1e-5
 """By which part of it the quadratic programming aims above the target, so that its rounding does not fall short."""
 CORRECTIONS, ACTIVE = 4, 0.02
 """Small steps back to where all conditions hold, and how near to the target a condition counts for them."""
+RAISED = 3
+"""Candidates from which the greatest transmission angle is sought."""
 ITERATIONS = 60
 CONTRACTIONS = 40
 # Tuned on the thirty variants of the course assignment. Of five of them, repaired to 10 degrees, the sizes are the
@@ -230,6 +232,37 @@ class RepairSearch:
         if self.progress is not None:
             self.progress(self.total, self.total)
         return sorted(reached, key=lambda change: float(np.linalg.norm(change)))
+
+    def greatest(self, spread: int) -> float | None:
+        """The greatest transmission angle [rad] that a candidate or one near the best keeps; None where none turns."""
+        changes = self._spread(spread)
+        margins = self.margins(changes)
+        starts = self._apart(changes, -margins)
+        raised = [self._raise(start) for start in starts[:RAISED]]
+        most = float(self.margins(np.array([*starts, *raised]), FINE).max())
+        return asin(sqrt(min(most, 1.0))) if most > 0.0 else None
+
+    def _raise(self, start: Array) -> Array:
+        """A candidate near a start whose lowest sector is as high as it gets, by sequential quadratic programming."""
+        first = np.append(start, float(self.margins(start[None, :], FINE)[0]))
+        box = [*zip(self._low, self._high, strict=True), (None, 1.0)]
+        result: Any = _optimize().minimize(
+            lambda x: -float(x[-1]),
+            first,
+            jac=lambda x: np.append(np.zeros(len(start)), -1.0),
+            bounds=box,
+            constraints={
+                "type": "ineq",
+                "fun": lambda x: self._sectors(x[None, :-1])[0] - x[-1],
+                "jac": lambda x: np.column_stack(
+                    [(slopes := self._slopes(x[:-1]) * self.target), -np.ones(len(slopes))]
+                ),
+            },
+            method="SLSQP",
+            options={"maxiter": ITERATIONS, "ftol": 1e-12},
+        )
+        raised = np.clip(np.asarray(result.x[:-1], dtype=np.float64), self._low, self._high)
+        return raised if np.isfinite(raised).all() else start
 
     def _count(self, more: int) -> None:
         """Count candidates, and say how far it is now and then."""
@@ -334,8 +367,9 @@ class RepairSearch:
         return np.asarray((sines[:size] - sines[size:]).T / (2.0 * STEP * self.target))
 
 
-DEFAULT_ANGLE = pi / 180
-"""Least transmission angle that is requested where none is given: 0 would be a mechanism at the brink of locking."""
+ANGLES = tuple(map(radians, (20.0, 10.0, 5.0, 2.0, 1.0)))
+"""Least transmission angles [rad] that are requested one after the other where none is given: the first one within
+reach. Less than 20 degrees jams by the friction of ordinary hinges; 0 would be a mechanism at the brink of locking."""
 CANDIDATES = 3072
 """Candidates of the first spread."""
 TIGHTENINGS = 4
@@ -371,10 +405,12 @@ class Repair(PrintsSummary):
     repaired : the one found; the one given if that turns already; None if none was found
     found : whether a mechanism was found that turns fully with the transmission angle requested
     size : root of the sum of the squares of the changes' sizes
-    least_transmission_angle, reached : as requested, and that of the mechanism found (exact) [rad]
+    least_transmission_angle, reached : as required, and that of the mechanism found (exact) [rad]
+    wanted : as requested; greater than the one required where it is out of reach and none was named [rad]
+    greatest : the greatest that any candidate keeps, where the one requested is out of reach; else None [rad]
     tried : candidates evaluated
     spread, turning : candidates of the first spread over the bounds, and how many of these turn
-    impossible : the inequality that excludes any; None where nothing says so
+    impossible : the inequality that excludes the angle requested; None where nothing says so
     changes : of every number that may vary
     varying : what could change, with its bounds
     before, after : Rotatability of the mechanism given and of the one found
@@ -394,6 +430,8 @@ class Repair(PrintsSummary):
     varying: tuple[Varying, ...]
     before: Rotatability
     after: Rotatability | None
+    wanted: float = 0.0
+    greatest: float | None = None
 
 
 def repair(
@@ -414,7 +452,8 @@ def repair(
         Left out: half a turn to both sides, half to double of a length, half the greatest length to both sides of
         a coordinate.
     least_transmission_angle : float [rad] or text
-        What every dyad keeps all over the turn; 1 degree by default.
+        What every dyad keeps all over the turn. Left out: 20 degrees, or where these are out of reach the first of
+        10, 5, 2 and 1 degrees that is not.
     progress : called with (candidates evaluated, candidates in all at most)
 
     Returns
@@ -435,24 +474,43 @@ def repair(
     --------
     >>> import centrode as ct
     >>> found = ct.repair(ct.four_bar(2, 3, 2.5, 2.5), ["links.crank.length"])
-    >>> print(ct.summary(found).splitlines()[3])
-    verified            turns fully, least transmission angle 1 deg
+    >>> found.found, round(found.reached, 3)
+    (True, 0.349)
     """
     mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     check_repairable(prepared)
-    least_angle = _angle(least_transmission_angle, mechanism.display)
+    named = _angle(least_transmission_angle, mechanism.display)
+    wanted = ANGLES[0] if named is None else named
     varying = varyings(prepared, vary, bounds)
     before = rotatability(mechanism)
-    asked = Repair(mechanism, None, False, 0.0, least_angle, None, 0, 0, 0, None, (), varying, before, None)
-    if turns_well(before, least_angle):
-        return replace(asked, found=True, repaired=mechanism, reached=_least_angle(before), after=before)
+    asked = Repair(
+        mechanism, None, False, 0.0, wanted, None, 0, 0, 0, None, (), varying, before, None, wanted
+    )
+    if turns_well(before, wanted):
+        return replace(asked, found=True, repaired=mechanism, reached=least_angle_of(before), after=before)
     candidates = Candidates(prepared, varying)
     # a proof that nothing helps is cheaper than a search that finds nothing, and says why
-    reason = impossible(candidates, least_angle)
-    if reason is not None:
-        return replace(asked, impossible=reason)
-    return _search_repair(candidates, asked, progress)
+    reason = impossible(candidates, wanted)
+    found = asked if reason is not None else _search_repair(candidates, asked, progress)
+    if found.found:
+        return found
+    found = replace(found, impossible=reason)
+    greatest = RepairSearch(candidates, 1.0).greatest(CANDIDATES)
+    if greatest is None:
+        return found
+    found = replace(found, greatest=greatest)
+    for angle in ANGLES if named is None else ():
+        if angle > min(greatest, wanted - ENOUGH):
+            continue
+        lower = replace(found, least_transmission_angle=angle)
+        if turns_well(before, angle):
+            least_before = least_angle_of(before)
+            return replace(lower, found=True, repaired=mechanism, reached=least_before, after=before)
+        lower = _search_repair(candidates, lower, progress)
+        if lower.found:
+            return lower
+    return found
 
 
 def needs_repair(mechanism: Mechanism) -> bool:
@@ -466,16 +524,17 @@ def needs_repair(mechanism: Mechanism) -> bool:
 
 def turns_well(found: Rotatability, least_angle: float) -> bool:
     """Whether a mechanism turns fully with at least a transmission angle in every dyad."""
-    return found.turns_fully is True and _least_angle(found) >= least_angle - ENOUGH
+    return found.turns_fully is True and least_angle_of(found) >= least_angle - ENOUGH
 
 
-def _least_angle(found: Rotatability) -> float:
+def least_angle_of(found: Rotatability) -> float:
+    """The least transmission angle [rad] of all dyads over the turn."""
     return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
 
 
-def _angle(given: Value | None, display: Display) -> float:
+def _angle(given: Value | None, display: Display) -> float | None:
     if given is None:
-        return DEFAULT_ANGLE
+        return None
     value = read_quantity(
         given, "angle", "least_transmission_angle", refuses_bare=display.refuses_bare_angles
     )
@@ -534,7 +593,7 @@ def _search_repair(candidates: Candidates, asked: Repair, progress: Progress | N
                 repaired=mechanism,
                 changes=_changes(candidates.varying, change),
                 size=float(np.linalg.norm(change)),
-                reached=_least_angle(after),
+                reached=least_angle_of(after),
                 tried=search.tried,
                 after=after,
             )
@@ -554,7 +613,7 @@ def _confirm_change(
         if turns_well(after, least_angle):
             return change, mechanism, after
         # not turning by the exact test but by the nodes: the lack is between nodes, and unknown
-        lack = search.target - sin(_least_angle(after)) ** 2 if after.turns_fully else 0.1 * search.target
+        lack = search.target - sin(least_angle_of(after)) ** 2 if after.turns_fully else 0.1 * search.target
         change = search.raise_sines(change, max(lack, 0.0) + 1e-9 * search.target)
     return None
 

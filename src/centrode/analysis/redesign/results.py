@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from centrode.analysis.redesign.proposal import ProposedRepair, propose
 from centrode.analysis.redesign.repair import Repair
 from centrode.analysis.redesign.repair import repair as find_repair
 from centrode.analysis.redesign.single_changes import (
@@ -32,13 +33,15 @@ class RotatabilityResults(Rotatability):
     ----------
     repair : the smallest change after which the drive turns fully; None where none was sought
     single : the dimensions of which each alone repairs the mechanism; None where it makes the motion asked for
-    dead : the dead position, and the mechanism with the smallest of these changes there, for documents
+    proposed : the repair that documents propose; None where none was found, or none is needed
+    dead : the dead position, and the repaired mechanism there, for documents
     refusal : why no change could be sought
     angles : transmission angles over the motion, for documents; None where no group has one
     """
 
     repair: Repair | None = None
     single: SingleChanges | None = None
+    proposed: ProposedRepair | None = None
     dead: DeadPosition | None = None
     refusal: CentrodeError | None = None
     angles: TransmissionResults | None = None
@@ -74,7 +77,7 @@ def rotatability_results(
         As `repair` has it.
     complete : bool
         As documents have it: with the transmission angles over the motion, and of a mechanism that locks with its
-        dead position and with the change of several dimensions.
+        dead position and with the repair that is proposed.
     progress : function of the share that is done
 
     Raises
@@ -100,10 +103,12 @@ def rotatability_results(
     angles = _angles(mechanism, samples)
     if single is None:
         return RotatabilityResults.of(turning, refusal=refusal, angles=angles)
-    mended = _repair_or_none(mechanism) if single.required.turn else None
-    repaired = single.changes[0].repaired if single.changes else mended and mended.repaired
-    dead = dead_position(turning, single.required, repaired) if repaired else None
-    return RotatabilityResults.of(turning, repair=mended, single=single, dead=dead, angles=angles)
+    proposed = propose(single)
+    dead = None if proposed is None else dead_position(turning, single.required, proposed.repaired)
+    several = proposed and proposed.several
+    return RotatabilityResults.of(
+        turning, repair=several, single=single, proposed=proposed, dead=dead, angles=angles
+    )
 
 
 def repair_results(mechanism: Mechanism, samples: int | None = None) -> Repair:
@@ -133,14 +138,6 @@ def _single_or_refusal(turning: Rotatability) -> tuple[SingleChanges | None, Cen
         return single_changes(turning.mechanism, turning), None
     except CentrodeError as refusal:
         return None, refusal
-
-
-def _repair_or_none(mechanism: Mechanism) -> Repair | None:
-    """The change of several dimensions; None where there is nothing to vary."""
-    try:
-        return find_repair(mechanism)
-    except CentrodeError:
-        return None
 
 
 def _angles(mechanism: Mechanism, samples: int | None) -> TransmissionResults | None:

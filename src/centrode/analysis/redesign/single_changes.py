@@ -8,9 +8,10 @@ of the motion.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import floor, inf, log10, pi, radians, sin, tau
+from math import asin, floor, inf, log10, pi, radians, sin, sqrt, tau
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -44,14 +45,16 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-MARGINS = (radians(10.0), radians(5.0), radians(2.0))
-"""Transmission angles [rad] that a repair keeps: the first one for which any dimension is found. They leave room for
-clearances and tolerances beside the dead position; a good transmission of forces needs more, some 30 to 40 degrees."""
+MARGINS = tuple(map(radians, (20.0, 10.0, 5.0, 2.0)))
+"""Transmission angles [rad] that a repair keeps: the first one for which any dimension is found. 20 degrees keep off
+the friction of ordinary hinges; a good transmission of forces needs more, some 30 to 40 degrees."""
 SHORTEST, LONGEST = 0.2, 3.0
 """Between which shares of itself a length, or a distance in the frame, is varied."""
 STEPS = 160
 """Values of a dimension that are tried below its present one, and above."""
 HALVINGS = 40
+FINER_VALUES = 65
+"""Values about the best of a dimension, among which the greatest transmission angle is sought."""
 ROUNDED = 0.03
 """Share of a value up to which it is rounded."""
 DIGITS = 12
@@ -125,8 +128,11 @@ class SingleChanges:
     mechanism : the one given
     required : the motion that is asked for
     margin : transmission angle that every dyad keeps [rad]
-    changes : the best of each dimension that repairs the mechanism, the smallest first
+    changes : the best of each dimension that repairs the mechanism: initial angles first, which a source calls initial
+        data, then lengths and distances; of either the smallest first
     without : dimensions that do not
+    greatest : the greatest transmission angle [rad] that any one dimension brings about between its bounds, where this
+        is less than the first one wanted; else None
     """
 
     mechanism: Mechanism
@@ -134,6 +140,7 @@ class SingleChanges:
     margin: float
     changes: tuple[SingleChange, ...]
     without: tuple[Dimension, ...]
+    greatest: float | None = None
 
 
 def required_range(prepared: Ready) -> DrivenRange:
@@ -154,12 +161,15 @@ def is_reached(found: Rotatability, required: DrivenRange) -> bool:
     return bounds.get("low", -inf) <= required.low and required.high <= bounds.get("high", inf)
 
 
-def single_changes(mechanism: MechanismSource, found: Rotatability | None = None) -> SingleChanges | None:
+def single_changes(
+    mechanism: MechanismSource, found: Rotatability | None = None, margins: Sequence[float] = MARGINS
+) -> SingleChanges | None:
     """The dimensions of which each alone repairs a mechanism that locks; None where it makes the motion asked for.
 
     Parameters
     ----------
     found : Rotatability of the mechanism, where it is known
+    margins : transmission angles [rad] that every dyad keeps; the first for which any dimension is found
 
     Raises
     ------
@@ -174,7 +184,7 @@ def single_changes(mechanism: MechanismSource, found: Rotatability | None = None
     >>> from centrode.analysis.redesign.single_changes import single_changes
     >>> found = single_changes(ct.slider_crank(crank=2, coupler=3, offset=2))
     >>> [(change.dimension.path, round(change.bound, 6), change.after) for change in found.changes]
-    [('guides.B.through.y', 1.0, 0.95), ('links.coupler.length', 4.0, 4.1), ('links.crank.length', 1.0, 0.95)]
+    [('guides.B.through.y', 1.0, 0.81), ('links.coupler.length', 4.0, 4.3), ('links.crank.length', 1.0, 0.81)]
     """
     mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
@@ -184,15 +194,22 @@ def single_changes(mechanism: MechanismSource, found: Rotatability | None = None
             return None
     check_repairable(prepared, turning=False)
     searches = [DimensionSearch(prepared, one, required) for one in dimensions_of_design(mechanism)]
-    for margin in MARGINS:
+    greatest = None
+    for margin in margins:
         changes = {search.dimension: search.change(margin) for search in searches}
-        good = sorted(
-            (change for change in changes.values() if change is not None), key=lambda change: change.size
-        )
+        good = sorted((change for change in changes.values() if change is not None), key=_rank)
         if good:
             without = tuple(one for one, change in changes.items() if change is None)
-            return SingleChanges(mechanism, required, margin, tuple(good), without)
-    return SingleChanges(mechanism, required, MARGINS[-1], (), tuple(changes))
+            return SingleChanges(mechanism, required, margin, tuple(good), without, greatest)
+        if greatest is None:
+            most = max((search.greatest() for search in searches), default=0.0)
+            greatest = asin(sqrt(min(most, 1.0))) if most > 0.0 else None
+    return SingleChanges(mechanism, required, margins[-1], (), tuple(changes), greatest)
+
+
+def _rank(change: SingleChange) -> tuple[bool, float]:
+    """Initial data before dimensions, small changes before great ones."""
+    return change.dimension.kind != "angle", change.size
 
 
 @dataclass(frozen=True)
@@ -306,14 +323,16 @@ class DimensionSearch:
         low, high = (float(end[0]) for end in self.candidates.box())
         outwards = np.linspace(0.0, 1.0, STEPS + 1)[1:]
         self._sides = (low * outwards, high * outwards**2)
-        self._margins: tuple[Array, ...] | None = None
+
+    @functools.cached_property
+    def margins(self) -> tuple[Array, ...]:
+        """The least squared sines of the values that are tried, on the coarse nodes."""
+        return tuple(self._least(side, COARSE) for side in self._sides)
 
     def change(self, margin: float) -> SingleChange | None:
         """The smallest change with which the mechanism makes the motion with a transmission angle, verified."""
-        if self._margins is None:
-            self._margins = tuple(self._least(side, COARSE) for side in self._sides)
         found = []
-        for side, margins in zip(self._sides, self._margins, strict=True):
+        for side, margins in zip(self._sides, self.margins, strict=True):
             bound = self._first(side, margins, 0.0)
             edge = self._first(side, margins, sin(margin + ENOUGH) ** 2)
             if bound is not None and edge is not None:
@@ -323,6 +342,15 @@ class DimensionSearch:
             if change is not None:
                 return change
         return None
+
+    def greatest(self) -> float:
+        """The greatest least squared sine between the bounds; negative where no value makes the motion."""
+        sides, margins = np.concatenate(self._sides), np.concatenate(self.margins)
+        ascending = np.argsort(sides)
+        best = int(np.argmax(margins[ascending]))
+        near = sides[ascending][[max(best - 1, 0), min(best + 1, len(sides) - 1)]]
+        fine = np.linspace(float(near[0]), float(near[1]), FINER_VALUES)
+        return float(self._least(fine, FINE).max())
 
     def _least(self, changes: Array, nodes: int) -> Array:
         """The least squared sine of all dyads over the motion at scaled changes."""

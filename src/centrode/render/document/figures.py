@@ -9,14 +9,16 @@ import unicodedata
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 from centrode.locale import _
 from centrode.render.document.blocks import Picture, shown
 from centrode.render.document.numbers import spelled_number
 from centrode.render.document.typst import quote
 from centrode.render.drawing.style import house_style
+from centrode.render.figures.document_canvas import DocumentCanvas
 from centrode.render.figures.files import METADATA, spell_decimals
 
 FLAT = {1: 0.36, 2: 0.44, 3: 0.52}
@@ -31,6 +33,17 @@ PAPER_WIDTH = 8.268
 _SIZE = re.compile(
     rb'<svg[^>]*?\bheight="([\d.]+)pt"[^>]*?\bwidth="([\d.]+)pt"|<svg[^>]*?\bviewBox="0 0 ([\d.]+) ([\d.]+)"'
 )
+EDGED = "edged-"
+EDGE = 2.0
+"""Width of the edge about letters, in points: as wide as `style.halo` draws it."""
+OUTLINES = 64
+"""Units of the outline of a letter in one of its text."""
+_EDGED = re.compile(rb'<g id="edged-\d+">(?:\s|<!--.*?-->|<g[^>]*>.*?</g>)*</g>', re.DOTALL)
+_LETTERS = re.compile(rb'<g(?: style="[^"]*")?( transform="[^"]*")>(.*?)</g>', re.DOTALL)
+_DEFINITIONS = re.compile(rb"<defs>.*?</defs>\s*", re.DOTALL)
+_SCALE = re.compile(rb"scale\(([-\d.]+)")
+_PLACES = re.compile(rb' (?:d|x|y)="[^"]*"|translate\([^)]*\)')
+_DECIMALS = re.compile(rb"-?\d+\.\d{3,}(?!\d*e)")
 NOISE = 1e-9
 """Of the greatest value of curves: what is below it is zero."""
 LETTER, EDGES, GAP = 0.078, 1.3, 0.12
@@ -49,12 +62,53 @@ def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
     spell_decimals(figure)
     if not to_scale:
         _flatten(figure)
-    with house_style():
-        stream = io.BytesIO()
-        canvas: Any = FigureCanvasSVG(figure)
-        canvas.print_svg(stream, metadata=METADATA["svg"])
-    words = describe_curves(figure)
-    return Picture(stream.getvalue(), caption, float(figure.get_figwidth()), to_scale, description=words)
+    return Picture(
+        svg_of(figure), caption, float(figure.get_figwidth()), to_scale, description=describe_curves(figure)
+    )
+
+
+def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
+    """A figure, or a box [inch] of it, as SVG for documents: places to hundredths of a point, edges of outlines.
+
+    Edges about letters are left to SVG: a path for each such text would hold the outlines of its letters anew.
+    """
+    found: list[Any] = figure.findobj(Text)
+    texts = [one for one in found if one.get_path_effects()]
+    effects = [one.get_path_effects() for one in texts]
+    names = [one.get_gid() for one in texts]
+    try:
+        for number, text in enumerate(texts):
+            text.set_path_effects([])
+            text.set_gid(f"{EDGED}{number}")
+        with house_style():
+            stream = io.BytesIO()
+            canvas: Any = DocumentCanvas(figure)
+            if box is None:
+                canvas.print_svg(stream, metadata=METADATA["svg"])
+            else:
+                how = {"bbox_inches": box, "metadata": METADATA["svg"], "facecolor": "white"}
+                canvas.print_figure(stream, format="svg", **how)
+    finally:
+        for text, effect, name in zip(texts, effects, names, strict=True):
+            text.set_path_effects(effect)
+            text.set_gid(name)
+    svg = _EDGED.sub(lambda found: _LETTERS.sub(_with_edge, found[0]), stream.getvalue())
+    return _PLACES.sub(lambda found: _DECIMALS.sub(_rounded, found[0]), svg)
+
+
+def _with_edge(found: re.Match[bytes]) -> bytes:
+    """Letters behind themselves in white, stroked as wide as the edge is; outlines of letters are finer than places."""
+    transform, letters = found[1], _DEFINITIONS.sub(b"", found[2])
+    scale = _SCALE.search(transform)
+    width = EDGE / (abs(float(scale[1])) if scale else 1.0)
+    fine = b'<use style="stroke-width: %.5g" ' % (width * OUTLINES)
+    edge = b'<g style="fill: #ffffff; stroke: #ffffff; stroke-width: %.5g; stroke-linejoin: round"%b>%b</g>'
+    behind = edge % (width, transform, letters.replace(b"<use ", fine))
+    return b"".join(_DEFINITIONS.findall(found[2])) + behind + _DEFINITIONS.sub(b"", found[0])
+
+
+def _rounded(found: re.Match[bytes]) -> bytes:
+    return f"{float(found[0]):.2f}".rstrip("0").rstrip(".").encode()
 
 
 def describe_curves(figure: Figure) -> str:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from centrode.render.document.blocks import Picture
+from centrode.render.document.figures import svg_of
 from centrode.render.drawing.style import house_style
-from centrode.render.figures.files import METADATA, spell_decimals
+from centrode.render.figures.document_canvas import MeasuringCanvas
+from centrode.render.figures.files import spell_decimals
 
 INCH = 25.4
 ROOM = 2.0
@@ -31,7 +30,7 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
     right, top : where the page's column and its head begin [mm]
     """
     spell_decimals(figure)
-    canvas: Any = FigureCanvasAgg(figure)
+    canvas: Any = MeasuringCanvas(figure)
     renderer = canvas.get_renderer()
     kept: list[Any] = []
     for axes in figure.axes:
@@ -46,13 +45,8 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
     page = np.array([right, top]) / INCH
     low = np.clip(np.array([inches.x0, inches.y0]) - ROOM / INCH, 0.0, page)
     high = np.clip(np.array([inches.x1, inches.y1]) + ROOM / INCH, 0.0, page)
-    with house_style():
-        stream = io.BytesIO()
-        vectors: Any = FigureCanvasSVG(figure)
-        vectors.print_figure(
-            stream, format="svg", bbox_inches=Bbox([low, high]), metadata=METADATA["svg"], facecolor="white"
-        )
-    return Picture(stream.getvalue(), caption, float(high[0] - low[0]), to_scale=True)
+    svg = svg_of(figure, Bbox([low, high]))
+    return Picture(svg, caption, float(high[0] - low[0]), to_scale=True)
 
 
 def _is_overlay(axes: Any, figure: Figure) -> bool:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from centrode.render.drawing import signs
 from centrode.render.drawing.style import INK, MUTED, halo
+from centrode.render.figures.document_canvas import MeasuringCanvas
 from centrode.scenes.linkage import Disc, cylinders, round_track, straight_track, wheel_at
 from centrode.scenes.places import Array, LinkageScene, corners
 
@@ -75,7 +75,7 @@ def write_tags(
 def _extent(figure: Figure, text: str, size: float) -> Array:
     """Width and height of a text [pixel]."""
     written = figure.text(0.5, 0.5, text, fontsize=size, linespacing=1.05)
-    canvas: Any = FigureCanvasAgg(figure)
+    canvas: Any = MeasuringCanvas(figure)
     box = written.get_window_extent(canvas.get_renderer())
     written.remove()
     return np.array([float(box.width), float(box.height)])

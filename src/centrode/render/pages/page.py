@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from matplotlib.text import Text
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from centrode.locale import _
 from centrode.render.drawing.style import INK, LEAST_POINTS, MUTED, NAME, SMALL, TITLE, halo
 from centrode.render.drawing.texts import plain
+from centrode.render.figures.document_canvas import MeasuringCanvas
 from centrode.render.figures.files import AS_WRITTEN
 
 if TYPE_CHECKING:
@@ -198,7 +198,7 @@ def new_page(size: tuple[float, float] = (WIDE, HIGH)) -> Page:
     """An empty page of a size [mm]; made inside `house_style`."""
     wide, high = size
     figure = Figure(figsize=(wide / INCH, high / INCH), dpi=150)
-    FigureCanvasAgg(figure)
+    MeasuringCanvas(figure)
     overlay = figure.add_axes((0.0, 0.0, 1.0, 1.0), zorder=2)
     overlay.set_axis_off()
     overlay.set_xlim(0.0, wide)

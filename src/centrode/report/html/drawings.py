@@ -1,4 +1,4 @@
-"""Figures inside of a page: safe whatever their texts, no two with the same name inside, letters drawn once."""
+"""Figures inside of a page: safe whatever their texts, no two with the same name inside, letters and pens once."""
 
 from __future__ import annotations
 
@@ -31,11 +31,27 @@ DECIMALS = 2
 """Of coordinates in a figure, in 1/72 inch."""
 
 
+TRANSLATION = re.compile(r"translate\([^)]*\)")
+PEN = re.compile(r"[\w\s:;#%.,()-]+")
+"""Declarations that cannot end the rule that they stand in."""
+STEP = re.compile(r"[A-Za-z]|-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?")
+PAIRS = {"M": 1, "L": 1, "Q": 2, "C": 3}
+"""Points that each step of a path takes."""
+
+
 @dataclass
 class Drawings:
-    """The figures of a page; `letters` are outlines that they share, each with its name."""
+    """The figures of a page.
+
+    Attributes
+    ----------
+    letters : outlines that they share -> the name of each
+    pens : strokes and fills that they share -> the class of each
+    count : of figures
+    """
 
     letters: dict[str, str] = field(default_factory=dict)
+    pens: dict[str, str] = field(default_factory=dict)
     count: int = 0
 
     def embedded(self, svg: bytes, label: str) -> str:
@@ -55,9 +71,9 @@ class Drawings:
         names = self._names(root, used)
         whole = Xml.Element("svg", {"viewBox": view, "role": "img", "aria-label": label})
         for child in root:
-            kept = _kept(child, names)
-            if kept is not None:
-                whole.append(kept)
+            whole.extend(_kept(child, names))
+        _join_edges(whole)
+        self._share_pens(whole)
         return Xml.tostring(whole, encoding="unicode")
 
     def shared(self) -> str:
@@ -68,6 +84,18 @@ class Drawings:
             drawn.replace("<path", f'<path id="{name}"', 1) for drawn, name in self.letters.items()
         )
         return f'<svg class="letters" width="0" height="0" aria-hidden="true"><defs>{outlines}</defs></svg>'
+
+    def style(self) -> str:
+        """The rules of the pens that figures share."""
+        return "".join(f"svg .{name} {{ {pen} }}\n" for pen, name in self.pens.items())
+
+    def _share_pens(self, whole: Xml.Element) -> None:
+        """A class in place of each style."""
+        for element in whole.iter():
+            pen = element.get("style", "")
+            if PEN.fullmatch(pen):
+                del element.attrib["style"]
+                element.set("class", self.pens.setdefault(pen, f"p{len(self.pens)}"))
 
     def _names(self, root: Xml.Element, used: set[str]) -> dict[str, str]:
         """New names of what is referred to; outlines of letters are taken out and shared."""
@@ -107,24 +135,47 @@ def _references(root: Xml.Element) -> set[str]:
     return found
 
 
-def _kept(element: Xml.Element, names: dict[str, str]) -> Xml.Element | None:
-    """An element without anything that could act or load, with new names; nothing of what is not drawn."""
+def _kept(element: Xml.Element, names: dict[str, str]) -> list[Xml.Element]:
+    """An element without anything that could act or load, with new names; nothing of what is not drawn.
+
+    Of a group that changes nothing, what is in it.
+    """
     if not str(element.tag).startswith(NAMESPACE):
-        return None
+        return []
     tag = element.tag.removeprefix(NAMESPACE)
     if tag not in ELEMENTS:
-        return None
+        return []
     made = Xml.Element(tag)
     for key, value in element.attrib.items():
         _keep(made, key, value, names)
     if tag in ("text", "tspan", "title", "desc"):
         made.text = element.text
     for child in element:
-        kept = _kept(child, names)
-        if kept is not None:
+        for kept in _kept(child, names):
             kept.tail = child.tail if tag in ("text", "tspan") else None
             made.append(kept)
-    return None if tag in ("g", "defs") and not len(made) else made
+    if tag in ("g", "defs") and not len(made):
+        return []
+    return list(made) if tag == "g" and not made.attrib else [made]
+
+
+def _join_edges(whole: Xml.Element) -> None:
+    """A name with an edge about its letters, drawn twice with the same outline, as one path: the edge below."""
+    for parent in whole.iter():
+        for one, other in reversed(list(zip(parent, list(parent)[1:], strict=False))):
+            edge, letters = _pen(one), _pen(other)
+            if one.tag == other.tag == "path" and one.get("d") == other.get("d") and "stroke" in edge:
+                own = {key: value for key, value in one.attrib.items() if key not in ("d", "style")}
+                same = own == {key: value for key, value in other.attrib.items() if key not in ("d", "style")}
+                if same and set(letters) == {"fill"} and edge.get("fill") == letters["fill"]:
+                    one.set("style", f"{one.get('style')}; paint-order: stroke")
+                    parent.remove(other)
+
+
+def _pen(element: Xml.Element) -> dict[str, str]:
+    """The declarations of an element's style."""
+    pairs = (rule.partition(":") for rule in element.get("style", "").split(";") if rule.strip())
+    return {key.strip(): value.strip() for key, _colon, value in pairs}
 
 
 def _keep(made: Xml.Element, key: str, value: str, names: dict[str, str]) -> None:
@@ -138,10 +189,62 @@ def _keep(made: Xml.Element, key: str, value: str, names: dict[str, str]) -> Non
             made.set("id", names[value])
     elif key in ATTRIBUTES and not FOREIGN.search(value):
         value = REFERENCE.sub(lambda found: f"url(#{names.get(found[1], '')})", value)
-        made.set(key, _round(value) if key in ("d", "points", "x", "y") else value)
+        if key == "d":
+            value = _short_path(value)
+        elif key in ("points", "x", "y"):
+            value = _round(value)
+        elif key == "transform":
+            value = TRANSLATION.sub(lambda found: _round(found[0]), value)
+        made.set(key, value)
 
 
 def _round(value: str) -> str:
     """Coordinates to hundredths of a point: less than what is seen or printed."""
     rounded = NUMBER.sub(lambda found: f"{float(found[0]):.{DECIMALS}f}".rstrip("0").rstrip("."), value)
     return " ".join(rounded.split())
+
+
+def _short_path(value: str) -> str:
+    """A path to hundredths of a point, from point to point, in as few letters as SVG allows.
+
+    Steps are differences of rounded places, so that nothing adds up.
+    """
+    steps: list[str] = STEP.findall(value)
+    written, before, letter = "", "", ""
+    start = here = (0, 0)
+    k = 0
+    while k < len(steps):
+        if steps[k].isalpha():
+            letter = steps[k]
+            k += 1
+        if letter in "zZ":
+            written, before, here = written + "z", "z", start
+            continue
+        count = PAIRS.get(letter, 0)
+        numbers = steps[k : k + 2 * count]
+        if not count or len(numbers) < 2 * count or any(one.isalpha() for one in numbers):
+            return _round(value)  # a path that matplotlib does not write
+        k += 2 * count
+        places = [round(float(one) * 10**DECIMALS) for one in numbers]
+        first = letter == "M" and not written
+        told = [place - (0 if first else here[axis % 2]) for axis, place in enumerate(places)]
+        sign = letter if first else letter.lower()
+        here = places[-2], places[-1]
+        if letter == "M":
+            start, letter = here, "L"
+        if sign != before:
+            written += sign
+            before = sign if sign not in "Mm" else ""
+        for one in map(_hundredths, told):
+            tight = not written[-1].isdigit() or one.startswith("-")
+            written += one if tight else f" {one}"
+    return written
+
+
+def _hundredths(value: int) -> str:
+    """A number of hundredths as a decimal, without zeros that say nothing."""
+    if not value:
+        return "0"
+    whole, part = divmod(abs(value), 10**DECIMALS)
+    text = (str(whole) if whole else "") + (f".{part:0{DECIMALS}d}".rstrip("0") if part else "")
+    return f"-{text}" if value < 0 else text

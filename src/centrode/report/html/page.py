@@ -19,7 +19,8 @@ from centrode.report.page_styles import page_style
 from centrode.report.texts import blocks_of
 
 HERE = Path(__file__).parent
-FONT = "math-font.woff2"
+FONT, COMMON_FONT = "math-font.woff2", "math-font-common.woff2"
+"""All letters that formulas can hold, and those of nearly every page."""
 SCRIPTS = (("page.js",), ("space.js", "picture.js", "animation.js"))
 STYLE = "page.css"
 NOTE_STYLE = """
@@ -57,13 +58,15 @@ def html_page(report: Report) -> bytes:
 def _page(report: Report) -> str:
     report = number_blocks(report)
     formulas = formulas_of(one for block in blocks_of(report) for one in formulas_in(block))
+    font = COMMON_FONT if formulas.has_common_letters else FONT
     elements = Elements(formulas, separator=page_style(report.standard).separator)
     outline = list(outline_of(report))
     opening = "" if report.is_note else _opening(report, elements)
     chapters = [_chapter(one, k, elements, report) for k, one in enumerate(outline, start=1)]
     scripts = [_script(names) for names in SCRIPTS]
     contents = _contents(outline)
-    style = f"{_style()}{NOTE_STYLE if report.is_note else ''}{formulas.style}"
+    note_style = NOTE_STYLE if report.is_note else ""
+    style = f"{_style(font)}{note_style}{formulas.style}{elements.drawings.style()}"
     title, heading = html.escape(report.title), html.escape(_("Contents"))
     return (
         f'<!DOCTYPE html>\n<html lang="{html.escape(report.language)}">\n<head>\n<meta charset="utf-8">\n'
@@ -183,6 +186,6 @@ def _data(name: str) -> str:
 
 
 @cache
-def _style() -> str:
-    font = base64.b64encode((HERE / FONT).read_bytes()).decode()
-    return _data(STYLE).replace("@FONT@", font)
+def _style(font: str) -> str:
+    letters = base64.b64encode((HERE / font).read_bytes()).decode()
+    return _data(STYLE).replace("@FONT@", letters)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode import render
-from centrode.assignments.answers import InstantAnswers, VariantAnswers
+from centrode.assignments.answers import InstantAnswers, RepairedAnswers, VariantAnswers
 from centrode.assignments.results import rotation_of
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.errors import CentrodeError
@@ -17,6 +17,7 @@ from centrode.model.settings import DIGITS
 from centrode.render.document.blocks import Report
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
+from centrode.report.repaired import proposed_repair, repaired_study
 from centrode.report.study import Moment, moments_of
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
@@ -55,6 +56,19 @@ def answers_of(study: ReportStudy) -> VariantAnswers:
         study.check.formula,
         "" if failure is None else render.plain_text(failure.what, study.mechanism.display),
         tuple(_at(study, moment) for moment in moments_of(study)),
+        _repaired_answers(study),
+    )
+
+
+def _repaired_answers(study: ReportStudy) -> RepairedAnswers | None:
+    """The answers of the mechanism that the report proposes; None where there is none."""
+    proposed = proposed_repair(study)
+    if proposed is None:
+        return None
+    own = repaired_study(study, proposed)
+    instants = tuple(_at(own, moment) for moment in moments_of(own))
+    return RepairedAnswers(
+        proposed.dimensions, proposed.changes, proposed.angle, proposed.least_angle, instants
     )
 
 

@@ -15,7 +15,7 @@ from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
-from centrode.report.document import report
+from centrode.report.document import report_of_study
 from centrode.report.files import DEFAULT_FORMATS, check_formats, document, write_report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answers import answer_sheet, answers_of
@@ -48,12 +48,19 @@ class VariantReport:
             title = _("{title}, variant {name}").format(
                 title=_(mechanism.title) or _("Mechanism"), name=results.row.variant
             )
-            made = report(mechanism, ReportOptions(), language=self.language)
-            named = replace(made, title=title)
+            study = _study_of(mechanism, results)
+            named = replace(report_of_study(study), title=title)
             write_report(named, folder, self.formats)
-            study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
             text = answers_of(study).json_text()
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")
+
+
+def _study_of(mechanism: Mechanism, results: VariantResults) -> ReportStudy:
+    """The study of a report, with what is known of the variant already."""
+    study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
+    if results.study is not None:
+        study.keep("study", results.study)
+    return study
 
 
 def write_variant_reports(

@@ -10,7 +10,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
@@ -222,10 +222,17 @@ def write_variants(
     spelling.check()
     if compute is not None:
         check_analysis(compute)
-    text = mechanism_text(topology)
     given = read_variants(topology, table)
     tasks = [
-        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling, compute)
+        Task(
+            mechanism_text(variant.base(topology)),
+            replace(variant, topology=None),
+            folder / f"variant-{variant.name}",
+            figures,
+            more,
+            spelling,
+            compute,
+        )
         for variant in given
     ]
     keep_inputs(folder / SUMMARY)
