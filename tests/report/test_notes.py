@@ -171,6 +171,39 @@ def test_figures_and_tables_are_called_as_the_standards_call_them(pdf: PdfFile, 
     assert "Рис. 1" not in pdf.text
 
 
+def test_heads_of_columns_and_rows_begin_with_capitals(note: Report) -> None:
+    tables = [
+        block
+        for chapter in note.chapters
+        for section in chapter.sections
+        for block in section.blocks
+        if isinstance(block, TableBlock)
+    ]
+    heads = [head for table in tables for head in (*table.head, *(row[0] for row in table.rows))]
+    words = [head for head in heads if re.match(r"[а-яіїєґ]{2}", head, re.IGNORECASE)]
+    assert len(words) > 30
+    assert all(word[0].isupper() for word in words)
+
+
+def test_an_appendix_has_its_letter_above_its_title(pdf: PdfFile, note: Report) -> None:
+    letter, title = {"ru": ("ПРИЛОЖЕНИЕ А", "Проверки"), "uk": ("ДОДАТОК А", "Перевірки")}[note.language]
+    assert re.search(rf"^{letter}\s*\n{title}\s*$", pdf.text, re.MULTILINE)
+
+
+def test_enumerations_have_brackets_and_sources_full_stops(pdf: PdfFile, note: Report) -> None:
+    assert re.search(r"^1\) ", pdf.pages[1], re.MULTILINE)
+    sources = {"ru": "СПИСОК ИСПОЛЬЗОВАННЫХ ИСТОЧНИКОВ", "uk": "ПЕРЕЛІК ДЖЕРЕЛ ПОСИЛАННЯ"}[note.language]
+    page = next(page for page in pdf.pages if sources in page)
+    assert re.search(r"^1\. ", page, re.MULTILINE)
+
+
+def test_units_of_the_conclusions_are_whole(pdf: PdfFile, note: Report) -> None:
+    title = {"ru": "ЗАКЛЮЧЕНИЕ", "uk": "ВИСНОВКИ"}[note.language]
+    page = next(page for page in pdf.pages if title in page).replace("\r", "")
+    assert re.search(r"\d\u00a0м/\u2060с", page)
+    assert not re.search(r"/\s*\n|\d\s*\n\s*(м|Н|кг|рад|Дж)\b", page)
+
+
 def test_a_note_is_accessible_and_kept(pdf: PdfFile, note: Report) -> None:
     assert pdf.standards == "ua-1 a-2a"
     assert pdf.is_tagged

@@ -22,7 +22,7 @@ from centrode.render.document.numbering import caption_blocks, number_blocks, re
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
-from centrode.report.note import CONCLUSIONS, as_note, standard_of
+from centrode.report.note import CONCLUSIONS, as_note, standard_of, with_capital_heads
 from centrode.report.opening import move_players, opening_of
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.version import __version__
@@ -102,7 +102,8 @@ def report_of_study(study: ReportStudy, name: str = "", said: Said | None = None
     made = refer_to_figures(number_blocks(made))
     if is_note:
         made = as_note(made, note, functools.partial(_prose_sections, place="before"))
-    return replace(made, standard=standard_of(standard, is_note, language))
+    settled = standard_of(standard, is_note, language)
+    return replace(made if settled == "plain" else with_capital_heads(made), standard=settled)
 
 
 def _is_wanted(key: str, study: ReportStudy, is_note: bool) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -18,14 +19,18 @@ from centrode.render.document.blocks import (
     Report,
     SectionBlocks,
     Span,
+    TableBlock,
     TitlePageBlocks,
 )
 from centrode.topics.order import PARTS
 
-CONCLUSIONS, CHECKS = "conclusions", "checks"
+CONCLUSIONS, CHECKS, SOURCES = "conclusions", "checks", "sources"
 """Names of chapters that have places of their own."""
 STANDARD_OF_LANGUAGE: Mapping[str, Standard] = {"ru": "gost", "uk": "dstu"}
 """Of a note that names none."""
+
+WORD = re.compile("[а-яёєіїґ]{2}")
+"""How a head begins that is a word of Russian or Ukrainian, no letter of a quantity and no name in Latin letters."""
 
 Sections = Callable[[str], tuple[SectionBlocks, ...]]
 """What makes sections of a text in Markdown."""
@@ -64,6 +69,32 @@ def as_note(report: Report, note: ExplanatoryNote, sections: Sections) -> Report
     )
 
 
+def with_capital_heads(report: Report) -> Report:
+    """A report whose heads of columns and rows begin with capital letters (ГОСТ 2.105-2019; ДСТУ 3008:2015)."""
+    chapters = tuple(
+        replace(
+            chapter,
+            sections=tuple(
+                replace(section, blocks=tuple(map(_with_capitals, section.blocks)))
+                for section in chapter.sections
+            ),
+        )
+        for chapter in report.chapters
+    )
+    return replace(report, chapters=chapters)
+
+
+def _with_capitals(block: Block) -> Block:
+    if not isinstance(block, TableBlock):
+        return block
+    rows = tuple((*map(_capital, row[:1]), *row[1:]) for row in block.rows)
+    return replace(block, head=tuple(map(_capital, block.head)), rows=rows)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:] if WORD.match(text) else text
+
+
 def _element(
     name: str, title: str, text: str, sections: Sections, *, front: bool = False
 ) -> tuple[ChapterBlocks, ...]:
@@ -98,7 +129,7 @@ def _sources(entries: Sequence[str]) -> tuple[ChapterBlocks, ...]:
         return ()
     listed = ProseBlock(tuple((Span(entry),) for entry in entries), "numbers")
     made = ChapterBlocks(
-        "sources", _("List of sources"), (SectionBlocks("", (listed,), "before"),), computed=False
+        SOURCES, _("List of sources"), (SectionBlocks("", (listed,), "before"),), computed=False
     )
     return (replace(made, role="element"),)
 

@@ -35,6 +35,7 @@ from centrode.render.document.numbering import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
+from centrode.report.note import CONCLUSIONS, SOURCES
 from centrode.report.page_styles import page_style
 from centrode.report.pdf_objects import packed_pdf
 from centrode.report.spoken_formulas import spoken_formula, spoken_picture, spoken_relations, spoken_system
@@ -102,6 +103,9 @@ class Source:
 
     def _chapter(self, outlined: OutlinedChapter, report: Report) -> Iterator[str]:
         chapter = outlined.chapter
+        sentences = chapter.name in (CONCLUSIONS, SOURCES)
+        if sentences:
+            yield "#sentences["
         for heading in outlined.headings:
             yield _heading(heading, chapter.role)
         if chapter.missing:
@@ -111,6 +115,8 @@ class Source:
             yield f"#{self._opening(report.opening)}" if report.opening else ""
         for title, section in outlined.sections:
             yield from self._section(title, section, chapter.role)
+        if sentences:
+            yield "]"
 
     def _section(self, title: Heading | None, section: SectionBlocks, role: str) -> Iterator[str]:
         if title is not None:
@@ -191,6 +197,9 @@ def _heading(heading: Heading, role: str) -> str:
     """A heading, which typst numbers; of elements and appendices without, and their sections in no contents."""
     if role == "chapter":
         return f"#heading(level: {heading.level}, {quote(heading.title)})"
+    if role == "appendix" and heading.level == 1:
+        letter, _dot, title = heading.title.partition(". ")
+        return f"#appendix({quote(letter)}, {quote(title)})"
     listed = "true" if heading.level == 1 and role != "front" else "false"
     kind = "element" if heading.level == 1 else "heading.with(numbering: none)"
     return f"#{kind}(level: {heading.level}, outlined: {listed}, {quote(heading.title)})"
