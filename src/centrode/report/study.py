@@ -282,7 +282,10 @@ class ReportStudy:
     @property
     def motion_of_forces(self) -> MotionOfDrive:
         """The motion at which forces are computed: as wished, else the real one of a machine that has one."""
-        return self.wishes.motion or self.once("motion of forces", lambda: motion_of_forces(self.mechanism))
+        wished = self.wishes.motion
+        if wished is not None:
+            return wished
+        return self.once("motion of forces", lambda: motion_of_forces(self.mechanism))
 
     @property
     def results(self) -> Mapping[str, Any]:
