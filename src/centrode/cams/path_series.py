@@ -168,7 +168,7 @@ def series_path(
     """
     check_start(rho0, gamma0, start, stop)
     check_span(law, start, stop)
-    if isinstance(terms, bool) or not 2 <= terms <= MOST_TERMS:
+    if isinstance(terms, bool) or not isinstance(terms, int) or not 2 <= terms <= MOST_TERMS:
         what = _("{terms} terms are given").format(terms=terms)
         raise InputError("terms", what, _("give 2 to {most}").format(most=MOST_TERMS))
     # a few more terms than asked for: they measure what the polynomial leaves out
