@@ -111,6 +111,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {"profile_normal", "face_place", "cutter_centre", "curve_point", "curve_normal"}
     cams |= {"cam_angle", "joint_angle", "joint_before", "joint_after", "lift", "swing"}
     cams |= {"drawn_angle", "drawn_motion"}
+    cams |= {"sine_coefficient", "cosine_coefficient"}
     cams |= {"follower_push", "follower_moment", "contact_force", "cam_torque"}
     ends = ("slope", "second", "third", "fourth", "velocity", "acceleration", "jerk")
     cams |= {f"{front}_{end}" for front in ("lift", "swing") for end in ends}

@@ -116,8 +116,24 @@ def changed(**changes: Any) -> dict[str, Any]:
         (changed(points={**FOUR_BAR["points"], "A": [0]}), "points"),
         (changed(points=[1]), "expected a table"),
         (changed(drives=[{"link": "OA", "speed": 1, "start": "30 deg"}]), 'the points put "OA" at 45 deg'),
+        # what is no name at all
+        (changed(frame={"points": [["O"], "D"]}), "expected a name (text), got a list of 1 value"),
+        (changed(links={**FOUR_BAR["links"], "DB": {"points": [["D"], "B"]}}), "expected a name (text)"),
+        (changed(drives=[{"link": ["OA"], "speed": 1, "start": "45 deg"}]), "expected a name (text)"),
+        (changed(drives=[{"link": "OA", "speed": 1, "relative_to": ["DB"]}]), "expected a name (text)"),
+        (changed(guides=[{"point": "P", "on": ["OA"], "direction": [1, 0]}]), '"through" is missing'),
     ],
 )
 def test_points_that_cannot_be(parts: dict[str, Any], message: str) -> None:
-    with pytest.raises(ct.InputError, match=message):
+    with pytest.raises(ct.InputError) as refused:
         ct.Mechanism(**parts)
+    assert message in str(refused.value)
+
+
+def test_names_are_one_name_in_every_form_of_unicode() -> None:
+    composed, apart = "\N{CYRILLIC SMALL LETTER SHORT I}", "\N{CYRILLIC SMALL LETTER I}\N{COMBINING BREVE}"
+    tables = changed(
+        points={**{key: at for key, at in FOUR_BAR["points"].items() if key != "P"}, composed: [3, 4]},
+        links={**FOUR_BAR["links"], "coupler": {"points": ["A", "B", apart]}},
+    )
+    assert ct.Mechanism(**tables).links["coupler"].coordinates.keys() == {"A", "B", composed}

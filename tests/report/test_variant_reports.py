@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -10,13 +11,14 @@ import pytest
 import centrode as ct
 from centrode.analysis.rotatability.causes import Cause, CauseKind, Tracer
 from centrode.assignments.answers import InstantAnswers, VariantAnswers, read_answers
-from centrode.assignments.results import VariantRow, Variants
+from centrode.assignments.results import VariantRow, Variants, variants
 from centrode.assignments.tables import read_variants
 from centrode.errors import InputError
 from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
+from centrode.report.study import Wishes, settle_options
 from centrode.report.variants import files
 from centrode.report.variants.answers import answer_sheet
-from centrode.report.variants.files import VariantReport, write_variant_reports
+from centrode.report.variants.files import VariantReport, study_of_variant, write_variant_reports
 
 ROWS = [
     {"variant": "first", "l2": 1.0, "l3": 1.2},
@@ -27,12 +29,11 @@ ROWS = [
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reports of one chapter: what variants add to a report is tested here."""
-    whole = files.report
 
-    def short(mechanism: ct.Mechanism, options: ct.ReportOptions, **more: object) -> Report:
-        return whole(mechanism, ct.ReportOptions(chapters=("structure",)), **more)  # type: ignore[arg-type]
+    def short(mechanism: ct.Mechanism, options: ct.ReportOptions, known: Iterable[str]) -> Wishes:
+        return settle_options(mechanism, ct.ReportOptions(chapters=("structure",)), known)
 
-    monkeypatch.setattr(files, "report", short)
+    monkeypatch.setattr(files, "settle_options", short)
 
 
 def test_each_variant_has_its_report_and_the_teacher_the_answers(quick: None, tmp_path: Path) -> None:
@@ -65,7 +66,7 @@ def test_what_is_finished_is_not_made_again(
     def never(*_arguments: object, **_more: object) -> Report:
         raise AssertionError("made again")
 
-    monkeypatch.setattr(files, "report", never)
+    monkeypatch.setattr(files, "report_of_study", never)
     write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
     assert (tmp_path / "variant-first" / "report.html").read_bytes() == before
     assert (tmp_path / "answers.html").read_bytes() == sheet
@@ -108,6 +109,16 @@ def test_the_sheet_tells_every_variant() -> None:
 def test_answers_read_back() -> None:
     answers = answers_at(1 / 3)
     assert read_answers(answers.json_text()) == answers
+
+
+def test_a_variant_of_a_machine_has_the_forces_of_its_real_motion() -> None:
+    press = ct.example("six-bar-press").model_copy(update={"study": ct.Study(samples=19)})
+    [found] = variants(press, [{"variant": "heavy", "links.slider.mass": "5 kg"}]).results
+    assert found.mechanism is not None and found.study is not None and found.study.reactions is not None
+    assert found.study.reactions.reactions.attrs["rate_from"] == "machine"
+    kept = study_of_variant(found.mechanism, found).study
+    assert kept.reactions is not None
+    assert kept.reactions.reactions.identical(ct.reactions(found.mechanism, motion="real"))
 
 
 def test_files_depend_on_formats_and_language() -> None:

@@ -39,7 +39,8 @@ NAMES = (NAME, "вариант", "варіант")
 TOPOLOGIES = ("topology", "file", "топология", "топологія", "файл")
 """Headers of the column that names the description of each row: a file beside the table, or a built-in example."""
 
-_PLAIN = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+# three digits of an exponent are more than a number has, and decimals are bounded too
+_PLAIN = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 _SHARE = re.compile(rf"([+\-−])\s*({_PLAIN})\s*%")
 _TIMES = re.compile(rf"[x×*хX]\s*({_PLAIN})")
 _STEP = re.compile(r"([+\-−])=\s*(\S.*)")

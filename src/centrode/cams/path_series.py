@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
+from numbers import Integral
 from typing import NamedTuple
 
 import numpy as np
@@ -168,7 +169,8 @@ def series_path(
     """
     check_start(rho0, gamma0, start, stop)
     check_span(law, start, stop)
-    if isinstance(terms, bool) or not 2 <= terms <= MOST_TERMS:
+    given: object = terms  # whoever calls without types may give anything
+    if isinstance(given, bool) or not isinstance(given, Integral) or not 2 <= terms <= MOST_TERMS:
         what = _("{terms} terms are given").format(terms=terms)
         raise InputError("terms", what, _("give 2 to {most}").format(most=MOST_TERMS))
     # a few more terms than asked for: they measure what the polynomial leaves out

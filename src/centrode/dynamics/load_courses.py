@@ -147,7 +147,7 @@ def _depends_on(term: LoadTerm) -> str:
 def driving_moments(mechanism: Mechanism, reduction: xr.Dataset) -> Array | None:
     """Driving moment of a machine [N m] at the samples of a dataset of `reduce`, positive as the drive's value grows.
 
-    It is that of the cycle with loads at the mean speed; None where nothing tells it.
+    It is that of the cycle with loads at the mean speed; None where it is not known.
     """
     if not mechanism.runs_at_mean_speed or "reduced_moment" not in reduction:
         return None

@@ -386,7 +386,7 @@ class LoadTable:
         return np.where(inside, np.interp(place, at, force), np.nan)
 
     def refusal(self, place: float) -> InputError:
-        """What is said of a value of the drive, or of a time, beside the table."""
+        """The error at a value of the drive, or at a time, beyond the table."""
         what = _("its table lies between {low:.6g} and {high:.6g}, and its load is needed at {value:.6g}")
         text = what.format(value=place, low=self.rows[0][0], high=self.rows[-1][0])
         return InputError(self.label, text, _("add rows, or choose a shorter range; a whole turn repeats"))

@@ -443,7 +443,7 @@ def _bearings(equations: Equations, values: Mapping[Letter, float]) -> dict[Lett
 
 
 def _measured(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
-    """Coordinates of points as the motion has them, by the letters in which branches are told."""
+    """Coordinates of points as the motion has them, by the letters that the measures of branches have."""
     found: dict[Letter, float] = {}
     if not isinstance(equations.board, SymbolTable):
         return found

@@ -491,7 +491,7 @@ class PlanePositions:
         return Sum.letter(letter)
 
     def _initial_places(self) -> dict[Letter, float]:
-        """Letters by which the signs are told: x_B and y_B of points whose lines are still to come."""
+        """Letters of the measures of signs: x_B and y_B of points whose lines are still to come."""
         found: dict[Letter, float] = {}
         for point in self.board.moving:
             at = self.board.at(point)

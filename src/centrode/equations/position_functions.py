@@ -49,7 +49,7 @@ class Branch:
     Attributes
     ----------
     letter : its sign, 1 or -1
-    measure : a sum with that sign, in letters that the motion gives; None where `places` tell it
+    measure : a sum with that sign, in letters that the motion gives; None where `places` give it
     initial : the sign in the initial position
     places : on the sphere the names of three points, whose triple product has that sign
     """
@@ -69,7 +69,7 @@ class GroupPositions:
     label : as the structural formula has it, "II(CB, BD)"; empty for links that are driven and points of known links
     kind : that of the plan, "RRR"
     lines : in the order in which they are computed
-    names : of what the branch is told: by kind, centres and points of the dyad, letters of its auxiliary vector
+    names : of what describes the branch: by kind, centres and points of the dyad, letters of its auxiliary vector
     branch : of a dyad that has two solutions
     auxiliary : letters of the length of the auxiliary vector and of its angle
     unsolved : letters that have no closed form, which the motion gives

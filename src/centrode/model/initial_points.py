@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import unicodedata
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -52,7 +53,7 @@ class _Expansion:
         entries = (
             [one for one in drives if isinstance(one, Mapping)] if isinstance(drives, list | tuple) else []
         )
-        self.driven = {one.get("link") for one in entries if one.get("start") is not None}
+        self.driven = {_name(one.get("link")) for one in entries if one.get("start") is not None}
         # first point and angle of each link that lies between points
         self.poses: dict[str, tuple[Vector, float]] = {}
 
@@ -77,7 +78,12 @@ class _Expansion:
     def _fixed(self, points: Any) -> Any:
         """Points of the frame: those named, and others with coordinates of their own."""
         if isinstance(points, list | tuple):
-            return self._named(points, ("frame", "points"))
+            names = [_name(point) for point in points]
+            for point, name in zip(points, names, strict=True):
+                if name is None:
+                    what = _("expected a name (text), got {value}").format(value=value_text(point))
+                    self._add(what, "", "frame", "points")
+            return self._named([name for name in names if name is not None], ("frame", "points"))
         if isinstance(points, Mapping):
             for name in points:
                 if name in self.places and not self._agrees(name, points[name]):
@@ -91,24 +97,27 @@ class _Expansion:
         except Problem:
             return True  # what is wrong with these coordinates is said where they are read
 
-    def _named(self, names: Sequence[Any], at: reading.Place) -> dict[str, Vector]:
+    def _named(self, names: Sequence[str], at: reading.Place) -> dict[str, Vector]:
         """Coordinates of points by their names; those that are missing are problems."""
         for name in names:
             if name not in self.places:
                 what = _("the coordinates of point {name} are not given").format(name=value_text(name))
-                self._add(what, reading.nearest(str(name), list(self.places)), *at)
+                self._add(what, reading.nearest(name, list(self.places)), *at)
         return {name: self.places[name] for name in names if name in self.places}
 
     def _link(self, name: str, link: Any) -> Any:
         """A link whose points are named only: its length, or its points in axes of its own, and its angle."""
         if not isinstance(link, Mapping):
             return link
-        names = link.get("points")
-        if not names and link.get("length") is None:
-            names = two_points(str(name))
-        if not isinstance(names, list | tuple) or len(names) < 2:
+        given = link.get("points")
+        if not given and link.get("length") is None:
+            given = two_points(str(name))
+        if not isinstance(given, list | tuple) or len(given) < 2:
             return link
-        at = ("links", name)
+        names = [one for one in map(_name, given) if one is not None]
+        if len(names) < len(given):
+            return link  # what is no name is refused where points are read
+        at, body = ("links", name), _name(name) or ""
         places = self._named(names, (*at, "points"))
         if len(places) < len(names):
             return link
@@ -122,12 +131,12 @@ class _Expansion:
             self._add(what, _("correct their coordinates"), *at, "points")
             return link
         angle = math.atan2(second[1] - first[1], second[0] - first[0])
-        self.poses[str(name)] = first, angle
+        self.poses[body] = first, angle
         # the start of a drive says how the angle of its link is counted
-        turned = {} if name in self.driven else {"angle": _in_radians(angle)}
+        turned = {} if body in self.driven else {"angle": _in_radians(angle)}
         if len(names) == 2:
             return {**link, "points": tuple(names), "length": length, **turned}
-        local = {point: self._local(str(name), place) for point, place in places.items()}
+        local = {point: self._local(body, place) for point, place in places.items()}
         # exactly on the axis that they make
         local |= {names[0]: (0.0, 0.0), names[1]: (length, 0.0)}
         return {**link, "points": local, **turned}
@@ -143,20 +152,19 @@ class _Expansion:
         """A guide without a line of its own passes through its point, where that is in the initial position."""
         if not isinstance(guide, Mapping):
             return guide
-        through, on = guide.get("through"), guide.get("on", FRAME)
-        name = guide.get("point") if through is None else through
-        if not isinstance(name, str) or name not in self.places or (on != FRAME and on not in self.poses):
+        through, on = guide.get("through"), _name(guide.get("on", FRAME))
+        name = _name(guide.get("point") if through is None else through)
+        if name not in self.places or on is None or (on != FRAME and on not in self.poses):
             return guide
         place = self.places[name]
         return {**guide, "through": place if on == FRAME else self._local(on, place)}
 
     def _drive(self, number: int, drive: Any) -> Any:
         """A drive of a link's angle starts where its points are; a start of its own says how the angle is counted."""
-        link = drive.get("link") if isinstance(drive, Mapping) else None
-        if link not in self.poses or any(drive.get(key) for key in ("guide", "distance")):
+        if not isinstance(drive, Mapping) or any(drive.get(key) for key in ("guide", "distance")):
             return drive
-        base = drive.get("relative_to", FRAME)
-        if base != FRAME and base not in self.poses:
+        link, base = _name(drive.get("link")), _name(drive.get("relative_to", FRAME))
+        if link not in self.poses or base is None or (base != FRAME and base not in self.poses):
             return drive
         angle = self.poses[link][1] - (0.0 if base == FRAME else self.poses[base][1])
         start = drive.get("start")
@@ -174,6 +182,11 @@ class _Expansion:
 
     def _add(self, what: str, repair: str, *at: Any) -> None:
         self.wrong.append(Problem(what, repair, at))
+
+
+def _name(value: Any) -> str | None:
+    """A name in composed form, as mechanisms hold it; None of what is no text."""
+    return unicodedata.normalize("NFC", value) if isinstance(value, str) else None
 
 
 def _in_radians(angle: float) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.loads import (
+    AnyLoad,
     BearingFriction,
     GuideForce,
     GuideFriction,
@@ -142,13 +143,21 @@ def _of_load(mechanism: Mechanism, tables: list[dict[str, Any]], rest: str, path
         if isinstance(load, PointForce):
             vector, _dot, axis = key.partition(".")
             if vector != "vector":
-                raise _unknown(path, key, ["vector.x", "vector.y"])
+                raise _unknown(path, key, _keys_of(load))
             return _component(table, "vector", axis, path, "force")
         known = KINDS_OF_LOADS[type(load)]
         if key not in known:
-            raise _unknown(path, key, list(known))
+            raise _unknown(path, key, _keys_of(load))
         return PlaceOfNumber(table, key, known[key])
+    if rest in names:
+        # the load is there, and the path says nothing of it
+        raise _unknown(path, "", _keys_of(mechanism.loads[names.index(rest)]))
     raise _unknown(path, rest.partition(".")[0], names)
+
+
+def _keys_of(load: AnyLoad) -> list[str]:
+    """What may stand behind the name of a load."""
+    return ["vector.x", "vector.y"] if isinstance(load, PointForce) else list(KINDS_OF_LOADS[type(load)])
 
 
 def _of_part(mechanism: Mechanism, tables: dict[str, Any], room: str, rest: str, path: str) -> PlaceOfNumber:
@@ -158,9 +167,12 @@ def _of_part(mechanism: Mechanism, tables: dict[str, Any], room: str, rest: str,
         return _of_shaft(tables["machine"].get("shafts", []), words[1:], path)
     part, key = ".".join([room, *words[:-1]]), words[-1]
     parts = {name: keys for name, keys in _PARTS.items() if name.startswith(room)}
-    if part not in parts:
+    if part not in parts or (part == room and key not in parts[room]):
         inner = [name.removeprefix(f"{room}.") for name in parts if name != room]
-        raise _unknown(path, words[0], [*_PARTS[room], *inner, *(["shafts"] if room == "machine" else [])])
+        # a part that is there is named with the numbers that it has
+        numbers = [f"{key}.{one}" for one in parts.get(f"{room}.{key}", ())] if part == room else []
+        known = [*_PARTS[room], *inner, *(["shafts"] if room == "machine" else [])]
+        raise _unknown(path, "" if numbers else words[0], numbers or known)
     if key not in parts[part]:
         raise _unknown(path, key, list(parts[part]))
     table = tables.get(room)
@@ -182,6 +194,8 @@ def _of_shaft(shafts: list[dict[str, Any]], words: list[str], path: str) -> Plac
     """A shaft by its name, else by its number, counted from 1."""
     names = [str(shaft.get("name") or number) for number, shaft in enumerate(shafts, start=1)]
     shaft, key = ".".join(words[:-1]), words[-1] if words else ""
+    if ".".join(words) in names:
+        shaft, key = ".".join(words), ""
     if shaft not in names:
         raise _unknown(path, shaft or key, names)
     if key not in _SHAFT:

@@ -410,7 +410,7 @@ class ReportWishes(ExplanatoryNote):
     full : bool
         Everything there is to show, or the compact form; compact if left out, chapters that are chosen excepted.
     motion : "real" or "mean"
-        Whose forces are told: at the real speed and acceleration of the machine, or at its mean speed; the real one
+        Of the forces: at the real speed and acceleration of the machine, or at its mean speed; the real one
         where it can be computed if left out.
     rows : int
         Of a table over the motion, at most.

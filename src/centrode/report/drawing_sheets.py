@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from centrode.analysis.graphic.results import graphic_analysis
 from centrode.analysis.position_plan import USUAL, plan_of_positions
 from centrode.dynamics.force_polygons.results import force_polygon_results, has_force_polygons
-from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive
-from centrode.dynamics.kinetostatics.reactions import has_real_motion
+from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.steady_motion.machine import is_machine, machine_results
 from centrode.errors import CentrodeError, NotComputedYet
 from centrode.locale import _
@@ -104,14 +103,9 @@ def _sheets(
         places = mechanism.motion_parameter.instant.read_all(instants, "instants")
         try:
             forces = force_polygon_results(
-                mechanism, motion=_motion_of_forces(mechanism), instants=tuple(places) or None, complete=False
+                mechanism, motion=motion_of_forces(mechanism), instants=tuple(places) or None, complete=False
             )
         except CentrodeError as failure:
             missing.append(str(failure))
         else:
             yield from force_sheets(forces)
-
-
-def _motion_of_forces(mechanism: Mechanism) -> MotionOfDrive:
-    """As the report has it: real where the machine's real motion can be computed, unless it wishes otherwise."""
-    return mechanism.report.motion or ("real" if has_real_motion(mechanism) else "mean")

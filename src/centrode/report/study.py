@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive, check_motion
-from centrode.dynamics.kinetostatics.reactions import has_real_motion
+from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.motion_results import MotionResults, instants_of, study
 from centrode.equations.derivation import Equations, equations
 from centrode.errors import CentrodeError, InputError, Status
@@ -285,8 +285,7 @@ class ReportStudy:
         wished = self.wishes.motion
         if wished is not None:
             return wished
-        real = self.once("has real motion", lambda: has_real_motion(self.mechanism))
-        return "real" if real else "mean"
+        return self.once("motion of forces", lambda: motion_of_forces(self.mechanism))
 
     @property
     def results(self) -> Mapping[str, Any]:

@@ -31,7 +31,7 @@ Array: TypeAlias = NDArray[np.float64]
 STILL = 1e-9
 """Radians, or part of the greatest length, by which what stands still may move."""
 GREATEST = 3
-"""Reactions that are told."""
+"""Reactions that are named."""
 BALANCES = 1e-9
 """Part of the driving moment by which both sides may differ: the works of the cycle bound it."""
 

@@ -74,7 +74,7 @@ def course_text(mechanism: Mechanism, course: LoadCourse) -> Text:
 
 
 def _panels(mechanism: Mechanism, unit: str, courses: list[LoadCourse]) -> Iterator[CurvePanel]:
-    """Panels of the loads of one unit, with as many curves each as can be told apart."""
+    """Panels of the loads of one unit, with as many curves each as can be distinguished."""
     of_unit = [course for course in courses if course.unit == unit]
     for numbers in deal_to_panels(map(str, range(len(of_unit)))):
         curves = tuple(

@@ -218,7 +218,7 @@ def _slopes(motion: PlottedMotion, variable: str, kind: str, name: str, part: st
     """Derivatives of a curve by what it is drawn over; None where the motion does not hold them."""
     rate = DERIVATIVES.get(variable)
     pace = 1.0 if variable.endswith("coefficient") else motion.pace
-    # at rest a curve by the drive is that of many positions: it has slopes, but no speed tells them
+    # at rest a curve by the drive is that of many positions: it has slopes, but there is no speed to find them by
     if rate is None or not pace or rate not in motion.dataset:
         return None
     derivative = motion.dataset[rate].sel({kind: name})

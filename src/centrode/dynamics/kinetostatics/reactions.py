@@ -622,6 +622,14 @@ def has_real_motion(mechanism: Mechanism) -> bool:
     return True
 
 
+def motion_of_forces(mechanism: Mechanism) -> MotionOfDrive:
+    """The motion at which documents have forces: as the description wishes, else the real one of a machine.
+
+    It is the mean one where no real motion can be computed.
+    """
+    return mechanism.report.motion or ("real" if has_real_motion(mechanism) else "mean")
+
+
 def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:
     if contacts:
         what = _("the real speed of a machine with Coulomb friction is not computed yet")

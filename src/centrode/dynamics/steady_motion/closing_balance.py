@@ -8,7 +8,6 @@ import numpy as np
 
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.steady_motion.machine import MachineResults
-from centrode.dynamics.steady_motion.steady import steady_motion
 
 
 @dataclass(frozen=True)
@@ -42,21 +41,20 @@ def closing_balance(results: MachineResults) -> ClosingBalance:
     Raises
     ------
     InputError, MotionError, NotComputedYet
-        As `reactions` and `steady_motion`.
+        As `reactions`.
     """
-    steady, wheel = results.steady, results.flywheel
+    steady = results.steady
     if results.instants is not None:
         at = float(results.instants["drive_value"].values[0, 0])
     else:
         greatest = int(np.nanargmax(np.abs(steady["drive_acceleration"].values)))
         at = float(steady["drive_value"].values[greatest, 0])
-    here = steady_motion(results.mechanism, at=[at], mean=wheel.mean)
-    forces = reactions(results.mechanism, at=[at], motion="real", friction=False)
-    sense = np.sign(forces["drive_rate"].values[0])
+    # of one motion all four: another meaning of the mean speed has another speed here
+    here = reactions(results.mechanism, at=[at], motion="real", friction=False)
     return ClosingBalance(
         at,
-        float(sense * forces["balancing"].values[0, 0]),
-        float(steady.attrs["inertia"]),
+        float(here["moment_of_links"].values[0]),
+        float(here.attrs["inertia"]),
         float(here["drive_acceleration"].values[0]),
         float(here["driving_moment"].values[0]),
     )

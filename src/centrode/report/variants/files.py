@@ -48,17 +48,18 @@ class VariantReport:
             title = _("{title}, variant {name}").format(
                 title=_(mechanism.title) or _("Mechanism"), name=results.row.variant
             )
-            study = _study_of(mechanism, results)
+            study = study_of_variant(mechanism, results)
             named = replace(report_of_study(study), title=title)
             write_report(named, folder, self.formats)
             text = answers_of(study).json_text()
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")
 
 
-def _study_of(mechanism: Mechanism, results: VariantResults) -> ReportStudy:
+def study_of_variant(mechanism: Mechanism, results: VariantResults) -> ReportStudy:
     """The study of a report, with what is known of the variant already."""
     study = ReportStudy(mechanism, settle_options(mechanism, ReportOptions(), CHAPTERS))
-    if results.study is not None:
+    # variants have forces at the mean speed, a report those of the real motion where there is one
+    if results.study is not None and study.motion_of_forces == "mean":
         study.keep("study", results.study)
     return study
 
