@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import centrode as ct
 from centrode.dynamics.motion_results import study
 from centrode.dynamics.steady_motion.closing_balance import closing_balance
 from centrode.errors import InputError
-from centrode.render.document.blocks import ItemsBlock, Picture, Report, TableBlock
+from centrode.render.document.blocks import ItemsBlock, ParagraphBlock, Picture, Report, TableBlock
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 WORKED = "slider-between-cranks"
@@ -154,6 +155,22 @@ def test_a_drawing_read_to_whole_degrees_gives_the_printed_numbers() -> None:
     assert drawn['$ω_(upright("BD"))$'] == pytest.approx(0.024, abs=5e-4)
 
 
+def test_the_repaired_mechanism_keeps_the_angle_that_is_wished() -> None:
+    """A four-bar of 60, 70, 50 and 90 mm: the angle between coupler and rocker by the law of cosines."""
+    locked = ct.four_bar(0.06, 0.07, 0.05, 0.09)
+    for chapters in (("rotatability",), ("repaired-mechanism",)):
+        options = ct.ReportOptions(chapters=chapters, least_transmission_angle="30 deg", digits=9)
+        made = ct.report(locked, options, language="en")
+        texts = [block.text for block in blocks_of(made, ParagraphBlock) if isinstance(block, ParagraphBlock)]
+        changed = re.search(r"link crank ([0-9.]+)\s*m long instead of 0.06\s*m", " ".join(texts))
+        assert changed is not None, texts
+        crank = float(changed[1])
+        cosines = [
+            (0.07**2 + 0.05**2 - reach**2) / (2 * 0.07 * 0.05) for reach in (0.09 - crank, 0.09 + crank)
+        ]
+        assert min(math.sqrt(1 - cosine**2) for cosine in cosines) >= math.sin(math.radians(30)) - 1e-9
+
+
 @pytest.mark.parametrize(
     ("options", "what"),
     [
@@ -162,6 +179,8 @@ def test_a_drawing_read_to_whole_degrees_gives_the_printed_numbers() -> None:
         ({"rk4_steps": 0}, "0 is not a whole number between 1 and 100000"),
         ({"standard": "gots"}, 'there is no standard "gots"'),
         ({"angle_step": "1 kg"}, "expected an angle"),
+        ({"least_transmission_angle": "95 deg"}, "between 0 and 90 deg, got 95 deg"),
+        ({"greatest_change": 1.0}, "between 0 and 1, got 1"),
     ],
 )
 def test_what_cannot_be_wished_is_refused(options: dict[str, object], what: str) -> None:

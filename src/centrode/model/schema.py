@@ -389,6 +389,8 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "positions": {"type": "integer", "minimum": 2, "maximum": MOST_POSITIONS},
         "rk4_steps": {"type": "integer", "minimum": 1, "maximum": MOST_RK4_STEPS},
         "angle_step": above_zero("angle"),
+        "least_transmission_angle": above_zero("angle"),
+        "greatest_change": above_zero("ratio"),
         "full": {"type": "boolean"},
         "motion": {"enum": ["real", "mean"]},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),

@@ -19,6 +19,7 @@ from centrode.analysis.redesign.candidates import (
     Impossibility,
     Value,
     Varying,
+    check_greatest_change,
     impossible,
     varyings,
 )
@@ -440,6 +441,7 @@ def repair(
     bounds: Bounds | None = None,
     least_transmission_angle: Value | None = None,
     progress: Progress | None = None,
+    greatest_change: float | None = None,
 ) -> Repair:
     """The smallest change that was found after which a mechanism turns fully.
 
@@ -455,6 +457,9 @@ def repair(
         What every dyad keeps all over the turn. Left out: 20 degrees, or where these are out of reach the first of
         10, 5, 2 and 1 degrees that is not.
     progress : called with (candidates evaluated, candidates in all at most)
+    greatest_change : float, optional
+        Greatest change of a number without bounds of its own: of a length over itself, of a coordinate over the
+        greatest length, below 1. Initial angles stay free. It only narrows the bounds that hold without it.
 
     Returns
     -------
@@ -466,7 +471,7 @@ def repair(
     Raises
     ------
     InputError
-        A path or bound is wrong, the drive is not an angle or not the only one.
+        A path, a bound or the greatest change is wrong, the drive is not an angle or not the only one.
     NotComputedYet
         Groups of higher class, gears and rolling wheels.
 
@@ -480,9 +485,10 @@ def repair(
     mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     check_repairable(prepared)
-    named = _angle(least_transmission_angle, mechanism.display)
+    named = read_least_angle(least_transmission_angle, mechanism.display)
+    check_greatest_change(greatest_change)
     wanted = ANGLES[0] if named is None else named
-    varying = varyings(prepared, vary, bounds)
+    varying = varyings(prepared, vary, bounds, greatest_change)
     before = rotatability(mechanism)
     asked = Repair(
         mechanism, None, False, 0.0, wanted, None, 0, 0, 0, None, (), varying, before, None, wanted
@@ -532,7 +538,8 @@ def least_angle_of(found: Rotatability) -> float:
     return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
 
 
-def _angle(given: Value | None, display: Display) -> float | None:
+def read_least_angle(given: Value | None, display: Display) -> float | None:
+    """A least transmission angle [rad] as it is given; None where it is not. Raises InputError."""
     if given is None:
         return None
     value = read_quantity(
