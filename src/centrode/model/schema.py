@@ -186,8 +186,9 @@ _PARAGRAPHS: Schema = {
 TITLE_PAGE: dict[str, Schema] = {
     **dict.fromkeys(("ministry", "institution", "faculty", "department", "work", "course", "title"), _LINE),
     "variant": {"anyOf": [{"type": "integer"}, _LINE]},
-    **dict.fromkeys(("author", "group", "teacher", "city", "designation"), _LINE),
+    **dict.fromkeys(("author", "group", "teacher", "city"), _LINE),
     "year": {"type": "integer", "minimum": FIRST_YEAR, "maximum": LAST_YEAR},
+    "designation": _LINE,
 }
 NOTE: dict[str, Schema] = {
     "standard": {"enum": list(STANDARDS)},
