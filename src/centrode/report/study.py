@@ -9,8 +9,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.redesign.candidates import check_greatest_change
-from centrode.analysis.redesign.repair import read_least_angle
+from centrode.analysis.redesign.candidates import check_greatest_change, read_least_angle
 from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive, check_motion
 from centrode.dynamics.kinetostatics.reactions import has_real_motion
 from centrode.dynamics.motion_results import MotionResults, instants_of, study

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import cos, pi, sqrt
+from math import cos, degrees, pi, sqrt
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -105,6 +105,22 @@ def narrowed(one: Varying, greatest_change: float | None) -> Varying:
         return one
     reach = greatest_change * one.scale
     return replace(one, low=max(one.low, one.before - reach), high=min(one.high, one.before + reach))
+
+
+def read_least_angle(given: Value | None, display: Display) -> float | None:
+    """A least transmission angle [rad] as it is given; None where it is not. Raises InputError."""
+    if given is None:
+        return None
+    value = read_quantity(
+        given, "angle", "least_transmission_angle", refuses_bare=display.refuses_bare_angles
+    )
+    if not 0.0 < value < pi / 2:
+        raise InputError(
+            "least_transmission_angle",
+            _("it must lie between 0 and 90 deg, got {value:.6g} deg").format(value=degrees(value)),
+            _('write "20 deg"'),
+        )
+    return value
 
 
 def check_greatest_change(value: float | None) -> None:

@@ -21,6 +21,7 @@ from centrode.analysis.redesign.candidates import (
     Varying,
     check_greatest_change,
     impossible,
+    read_least_angle,
     varyings,
 )
 from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
@@ -32,8 +33,6 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.model.settings import Display
-from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.printing import PrintsSummary
 from centrode.structure.constraints import Positions
@@ -536,22 +535,6 @@ def turns_well(found: Rotatability, least_angle: float) -> bool:
 def least_angle_of(found: Rotatability) -> float:
     """The least transmission angle [rad] of all dyads over the turn."""
     return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
-
-
-def read_least_angle(given: Value | None, display: Display) -> float | None:
-    """A least transmission angle [rad] as it is given; None where it is not. Raises InputError."""
-    if given is None:
-        return None
-    value = read_quantity(
-        given, "angle", "least_transmission_angle", refuses_bare=display.refuses_bare_angles
-    )
-    if not 0.0 < value < pi / 2:
-        raise InputError(
-            "least_transmission_angle",
-            _("it must lie between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
-            _('write "20 deg"'),
-        )
-    return value
 
 
 def check_repairable(prepared: Ready, *, turning: bool = True) -> None:

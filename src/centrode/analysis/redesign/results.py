@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
-from centrode.analysis.redesign.candidates import check_greatest_change
+from centrode.analysis.redesign.candidates import check_greatest_change, read_least_angle
 from centrode.analysis.redesign.proposal import ProposedRepair, propose
-from centrode.analysis.redesign.repair import Repair, read_least_angle
+from centrode.analysis.redesign.repair import Repair
 from centrode.analysis.redesign.repair import repair as find_repair
 from centrode.analysis.redesign.single_changes import (
     MARGINS,
