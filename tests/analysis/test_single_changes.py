@@ -261,6 +261,51 @@ def test_a_report_proposes_initial_angles_before_lengths() -> None:
     assert proposed.least_angle >= MARGINS[0] - 1e-9
 
 
+def test_a_named_angle_and_a_greatest_change_bound_the_proposal() -> None:
+    """The least angle of the proposal by the law of cosines; an angle that is named has no lesser one behind it."""
+    lengths = {"OA": 0.06, "AB": 0.07, "DB": 0.05, "OD": 0.09}
+    mechanism = four_bar(
+        *lengths.values(), drives=[{"link": "OA", "start": 1.0, "speed": 1}], display=DISPLAY
+    )
+    sizes: dict[float, float] = {}
+    for angle in (5.0, 30.0):
+        found = rotatability_results(mechanism, complete=True, least_transmission_angle=f"{angle} deg")
+        proposed = found.proposed
+        assert proposed is not None and proposed.wanted == proposed.angle == math.radians(angle)
+        named = {"OD" if "frame" in one.path else one.path.split(".")[1]: one for one in proposed.changes}
+        kept = least_angle(*(lengths | {name: one.after for name, one in named.items()}).values())
+        assert kept >= math.radians(angle) - 1e-9
+        assert proposed.least_angle == pytest.approx(kept, rel=1e-9)
+        sizes[angle] = max(abs(one.size) for one in proposed.changes)
+    assert sizes[5.0] < sizes[30.0], "a lesser angle needs a smaller change"
+    # Grashof's rule needs DB at 80 mm, or OA at 30 mm: no length within a fifth of itself does alone
+    found = rotatability_results(
+        mechanism, complete=True, least_transmission_angle="5 deg", greatest_change="20 %"
+    )
+    assert found.single is not None and not {c.dimension.kind for c in found.single.changes} & {"length"}
+    assert found.proposed is not None and found.proposed.least_angle >= math.radians(5.0) - 1e-9
+    for change in found.proposed.changes:
+        assert abs(change.after / change.before - 1.0) <= 0.2 + 1e-9
+    out_of_reach = rotatability_results(mechanism, complete=True, least_transmission_angle="85 deg")
+    assert out_of_reach.proposed is None
+
+
+def test_bounds_of_a_change_narrow_what_a_repair_tries() -> None:
+    mechanism = ct.four_bar(2, 3, 2.5, 2.5)
+    found = ct.repair(mechanism, greatest_change=0.3)
+    assert [(one.low, one.high) for one in found.varying] == [
+        pytest.approx((0.7 * one.before, 1.3 * one.before)) for one in found.varying
+    ]
+    given = ct.repair(
+        mechanism, ["links.crank.length"], {"links.crank.length": (0.5, 2.0)}, greatest_change=0.3
+    )
+    assert [(one.low, one.high) for one in given.varying] == [(0.5, 2.0)], (
+        "bounds that are given go before it"
+    )
+    with pytest.raises(ct.InputError, match=r"greatest_change: it must lie between 0 and 1, got 1\.5"):
+        ct.repair(mechanism, greatest_change=1.5)
+
+
 def test_of_a_four_bar_one_length_is_proposed() -> None:
     mechanism = four_bar(
         0.06, 0.07, 0.05, 0.09, drives=[{"link": "OA", "start": 1.0, "speed": 1}], display=DISPLAY

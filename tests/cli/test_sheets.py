@@ -41,12 +41,21 @@ def test_what_cannot_be_put_on_sheets_is_told(centrode: Centrode, tmp_path: Path
         (("crank-rocker", "--link", "Z"), "neither a link nor a guide"),
         (("crank-rocker", "--positions", "1"), "1 positions are given"),
         (("crank-rocker", "--at", "1 kg"), "--at"),
-        (("spherical-crank-rocker",), "sheets of drawings are made of planar mechanisms"),
+        (
+            ("spherical-crank-rocker", "--link", "BC"),
+            "BC neither turns about a hinge of the frame nor is a guide",
+        ),
         (("valve-cam",), "this describes a cam, not a linkage"),
     ):
         done = centrode("sheets", *words, "--out", tmp_path / "a")
         assert (done.code, told in done.err) == (2, True), done.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_of_a_spherical_linkage_its_diagrams_are_drawn(centrode: Centrode, tmp_path: Path) -> None:
+    done = centrode("sheets", "spherical-crank-guide", "--out", tmp_path / "a")
+    assert (done.code, "not drawn on the sphere: plan of positions" in done.err) == (0, True), done.err
+    assert sorted(file.name for file in (tmp_path / "a").iterdir()) == ["sheet-1.dxf", "sheet-1.pdf"]
 
 
 def test_a_sheet_that_cannot_be_made_is_named(centrode: Centrode, tmp_path: Path) -> None:

@@ -25,6 +25,8 @@ rows = 25
 positions = 8
 rk4_steps = 100
 angle_step = "1 deg"
+least_transmission_angle = "30 deg"
+greatest_change = 0.4
 [report.title_page]
 author = "A.  B"
 variant = 7
@@ -44,6 +46,8 @@ def test_a_note_is_read_and_written_back() -> None:
     assert (page.author, page.variant, page.year, page.city) == ("A. B", "7", 2026, "")
     assert found.conclusions == "Done \U0001f600."
     assert found.angle_step == pytest.approx(0.017453292519943295)
+    assert found.least_transmission_angle == pytest.approx(0.5235987755982988)
+    assert found.greatest_change == 0.4
     again = parse_mechanism(mechanism_text(parse_mechanism(FOUR_BAR + NOTE, "note.toml")), "again.toml")
     assert again.report == found
 
@@ -94,6 +98,12 @@ def test_a_report_without_the_keys_of_a_note_is_none() -> None:
         ("[report]\nrk4_steps = 0\n", "rk4_steps must lie between 1 and 100000, got 0"),
         ('[report]\nangle_step = "1 mm"\n', "[report] angle_step: expected an angle"),
         ("[report]\nangle_step = 0\n", "angle_step must be positive"),
+        ('[report]\nleast_transmission_angle = "1 mm"\n', "least_transmission_angle: expected an angle"),
+        (
+            '[report]\nleast_transmission_angle = "90 deg"\n',
+            "least_transmission_angle must be smaller than 90 deg",
+        ),
+        ("[report]\ngreatest_change = 1.5\n", "greatest_change must be smaller than 1, got 1.5"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:

@@ -293,9 +293,26 @@ def test_sheets_speak(press: ct.Mechanism) -> None:
         check_fields(figure, [])
 
 
-def test_sheets_of_the_sphere_are_refused_by_name() -> None:
-    with pytest.raises(ct.NotComputedYet, match="sheets of drawings are made of planar mechanisms"):
-        drawing_sheets(ct.example("spherical-crank-rocker"))
+def test_sheets_of_the_sphere_have_its_diagrams() -> None:
+    """cos CB = cos AB sin psi + sin AB cos psi sin beta, AB = 15 and CB = 45 deg; its derivative gives the rate."""
+    text = ct.mechanism_text(ct.example("spherical-crank-rocker-rigid"))
+    made = drawing_sheets(ct.parse_mechanism(text + "\n[machine]\nmean_speed = 2.94\nfluctuation = 0.05\n"))
+    assert [type(sheet).__name__ for sheet in made.sheets] == ["DiagramSheet", "EnergySheet"]
+    assert made.absent.startswith("not drawn on the sphere: plan of positions") and not made.missing
+    angle, rate, _acceleration = (diagram.curves[0] for diagram in made.sheets[0].diagrams)
+    beta, psi, crank = angle.across, angle.up, math.radians(15)
+    assert beta[-1] == pytest.approx(math.tau, abs=1e-12)
+    left = math.cos(crank) * np.sin(psi) + math.sin(crank) * np.cos(psi) * np.sin(beta)
+    np.testing.assert_allclose(left, math.cos(math.radians(45)), atol=1e-12)
+    slope = math.cos(crank) * np.cos(psi) - math.sin(crank) * np.sin(psi) * np.sin(beta)
+    expected = -2.94 * math.sin(crank) * np.cos(psi) * np.cos(beta) / slope
+    np.testing.assert_allclose(rate.up, expected, atol=1e-11)
+    for figure in drawing_figures(made):
+        check_fields(figure, [])
+    with pytest.raises(
+        ct.InputError, match="BC neither turns about a hinge of the frame nor is a guide of it"
+    ):
+        drawing_sheets(ct.example("spherical-crank-rocker"), link="BC")
 
 
 def test_several_instants_have_a_sheet_of_plans() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import centrode as ct
 from centrode.dynamics.motion_results import study
 from centrode.dynamics.steady_motion.closing_balance import closing_balance
 from centrode.errors import InputError
-from centrode.render.document.blocks import ItemsBlock, Picture, Report, TableBlock
+from centrode.render.document.blocks import ItemsBlock, ParagraphBlock, Picture, Report, TableBlock
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 WORKED = "slider-between-cranks"
@@ -72,6 +73,56 @@ def test_a_mechanism_that_locks_is_told_so() -> None:
     texts = conclusions("slider-between-cranks-locked")
     assert texts[0].startswith("The mechanism does not turn fully: its motion is bounded at 1.79")
     assert not any("velocity" in text for text in texts)
+
+
+def spoken(name: str) -> Sequence[str]:
+    """Conclusions with plain spaces before units."""
+    return [re.sub(r"\s", " ", text) for text in conclusions(name)]
+
+
+def test_the_conclusions_of_a_spherical_linkage_are_its_angles() -> None:
+    """AB = 15, CB = 45 deg: cos CB = sin(psi +- AB) at beta = +-90 deg, sin gamma = sin AB / sin CB at 0 and 180."""
+    texts = spoken("spherical-crank-rocker-rigid")
+    least, greatest = (90 - 45) - 15, (90 - 45) + 15
+    assert f"Link DC swings through {greatest - least}°: its angle is least at 90°, {least}°" in texts[1]
+    assert f"and greatest at 270°, {greatest}°;" in texts[1]
+    gamma = math.degrees(math.asin(math.sin(math.radians(15)) / math.sin(math.radians(45))))
+    assert f"varies by {2 * gamma:.4g}°: it is least at 0°, {90 - gamma:.4g}°" in texts[2]
+    assert f"and greatest at 180°, {90 + gamma:.4g}°" in texts[2]
+    assert texts[3].startswith("The greatest reactions: ") and "balancing moment" in texts[4]
+    # on a circle: C of a crank of 15 deg travels twice its arc
+    assert "Point C on its guide: the stroke is 30°" in spoken("spherical-crank-guide")[1]
+
+
+def test_the_conclusions_of_a_valve_cam_are_those_of_its_law() -> None:
+    """C_v = 15/8 and C_a = 10/sqrt(3) of the 3-4-5 curve; where it ends the spring alone presses the flat tappet."""
+    texts = spoken("valve-cam")
+    lift, angle, speed = 8.0, math.radians(75), 50 * math.pi
+    fastest, steepest = 15 / 8 * lift / angle * speed, 10 / math.sqrt(3) * lift / angle**2 * speed**2
+    assert texts[0].startswith("The greatest lift is 8 mm, at 75°")
+    assert f"at 37.5°, {fastest:.4g}".rstrip("0").rstrip(".") in texts[0]
+    assert f"{steepest / 1e5:.4g}·10⁵ mm/s²" in texts[0]
+    assert texts[1] == f"The base radius is 24 mm; the greatest radius of the profile is {24 + lift:.4g} mm."
+    assert texts[2] == "The profile is not undercut."
+    assert texts[3].startswith(f"The contact force is greatest at 75°, {180 + 25 * lift:.4g} N;")
+    assert texts[4].endswith("; 900 MPa is admissible.")
+
+
+def test_the_conclusions_of_a_path_by_curvature_are_those_that_its_source_prints() -> None:
+    """The working arc of the wheel goes to 45 deg: eta' = 0 between 40 and 45 deg, eta the sine of the angle."""
+    with (REFERENCE / "cam-curvature-table.csv").open() as file:
+        rows = {float(row["phi_deg"]): row for row in csv.DictReader(file)}
+    before, after = (float(rows[at]["eta_d1"]) for at in (40.0, 45.0))
+    place = 40 + 5 * before / (before - after)
+    texts = spoken("walking-wheel-four-legs")
+    assert f"least at 0°, 50 mm, and greatest at ±45°, {float(rows[45.0]['rho_mm']):.2f} mm" in texts[0]
+    found = re.search(r"greatest in magnitude at ±([0-9.]+)°, ([0-9.]+)°", texts[1])
+    assert found is not None
+    assert float(found[1]) == pytest.approx(place, abs=0.1)
+    between = float(rows[45.0]["eta"]), float(rows[45.0]["eta"]) - after * math.radians(45 - place) / 2
+    sine = math.sin(math.radians(float(found[2])))
+    assert between[0] < sine and sine == pytest.approx(between[1], abs=1e-3)
+    assert texts[2].endswith("more than the admissible 600 MPa.")
 
 
 # Fixed steps
@@ -154,6 +205,22 @@ def test_a_drawing_read_to_whole_degrees_gives_the_printed_numbers() -> None:
     assert drawn['$ω_(upright("BD"))$'] == pytest.approx(0.024, abs=5e-4)
 
 
+def test_the_repaired_mechanism_keeps_the_angle_that_is_wished() -> None:
+    """A four-bar of 60, 70, 50 and 90 mm: the angle between coupler and rocker by the law of cosines."""
+    locked = ct.four_bar(0.06, 0.07, 0.05, 0.09)
+    for chapters in (("rotatability",), ("repaired-mechanism",)):
+        options = ct.ReportOptions(chapters=chapters, least_transmission_angle="30 deg", digits=9)
+        made = ct.report(locked, options, language="en")
+        texts = [block.text for block in blocks_of(made, ParagraphBlock) if isinstance(block, ParagraphBlock)]
+        changed = re.search(r"link crank ([0-9.]+)\s*m long instead of 0.06\s*m", " ".join(texts))
+        assert changed is not None, texts
+        crank = float(changed[1])
+        cosines = [
+            (0.07**2 + 0.05**2 - reach**2) / (2 * 0.07 * 0.05) for reach in (0.09 - crank, 0.09 + crank)
+        ]
+        assert min(math.sqrt(1 - cosine**2) for cosine in cosines) >= math.sin(math.radians(30)) - 1e-9
+
+
 @pytest.mark.parametrize(
     ("options", "what"),
     [
@@ -162,6 +229,8 @@ def test_a_drawing_read_to_whole_degrees_gives_the_printed_numbers() -> None:
         ({"rk4_steps": 0}, "0 is not a whole number between 1 and 100000"),
         ({"standard": "gots"}, 'there is no standard "gots"'),
         ({"angle_step": "1 kg"}, "expected an angle"),
+        ({"least_transmission_angle": "95 deg"}, "between 0 and 90 deg, got 95 deg"),
+        ({"greatest_change": 1.0}, "between 0 and 1, got 1"),
     ],
 )
 def test_what_cannot_be_wished_is_refused(options: dict[str, object], what: str) -> None:

@@ -100,6 +100,19 @@ _options, _writing, _outline = (
     metavar=mark("ANGLE"),
     help=mark('Reading step of directions in the graph-analytic check ("1 deg"); exact by default.'),
 )
+@click.option(
+    "--least-transmission-angle",
+    metavar=mark("ANGLE"),
+    help=mark(
+        "Least transmission angle of every dyad; by default 20 deg, or less where that is out of reach."
+    ),
+)
+@click.option(
+    "--greatest-change",
+    type=float,
+    metavar=mark("SHARE"),
+    help=mark("Greatest change of a length over itself, or of a coordinate over the greatest length (0.3)."),
+)
 def report(
     description: str,
     out: Path | None,
@@ -115,6 +128,8 @@ def report(
     positions: int | None,
     rk4_steps: int | None,
     angle_step: str | None,
+    least_transmission_angle: str | None,
+    greatest_change: float | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
     described = library.load_either(description)
@@ -134,6 +149,8 @@ def report(
             positions,
             rk4_steps,
             angle_step,
+            least_transmission_angle,
+            greatest_change,
         )
     if isinstance(described, ct.Mechanism):
         echo_values(described, *(("--at", place) for place in places))

@@ -73,6 +73,8 @@ def sheets(
         library.write_drawing_set(made, draft, kinds, wanted)
         names = output.file_names(draft)
     click.echo(output.files_in(output.folder_of(out, mechanism, "sheets"), names))
+    if made.absent:
+        output.tell(made.absent)
     if made.missing:
         what = ngettext(
             "{n} drawing could not be made: {reasons}",

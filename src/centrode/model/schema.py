@@ -186,8 +186,9 @@ _PARAGRAPHS: Schema = {
 TITLE_PAGE: dict[str, Schema] = {
     **dict.fromkeys(("ministry", "institution", "faculty", "department", "work", "course", "title"), _LINE),
     "variant": {"anyOf": [{"type": "integer"}, _LINE]},
-    **dict.fromkeys(("author", "group", "teacher", "city", "designation"), _LINE),
+    **dict.fromkeys(("author", "group", "teacher", "city"), _LINE),
     "year": {"type": "integer", "minimum": FIRST_YEAR, "maximum": LAST_YEAR},
+    "designation": _LINE,
 }
 NOTE: dict[str, Schema] = {
     "standard": {"enum": list(STANDARDS)},
@@ -389,6 +390,8 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "positions": {"type": "integer", "minimum": 2, "maximum": MOST_POSITIONS},
         "rk4_steps": {"type": "integer", "minimum": 1, "maximum": MOST_RK4_STEPS},
         "angle_step": above_zero("angle"),
+        "least_transmission_angle": above_zero("angle"),
+        "greatest_change": above_zero("ratio"),
         "full": {"type": "boolean"},
         "motion": {"enum": ["real", "mean"]},
         "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any, Literal
@@ -352,6 +353,23 @@ def whole_number(least: int, most: int) -> PlainValidator:
     return PlainValidator(read)
 
 
+def _acute(value: object, kind: str) -> float:
+    number = positive(value, kind)
+    if number >= math.pi / 2:
+        raise Problem(
+            _("{key} must be smaller than 90 deg, got {value}").format(key=KEY, value=value_text(value))
+        )
+    return number
+
+
+def _share(value: object, kind: str) -> float:
+    number = positive(value, kind)
+    if number >= 1:
+        what = _("{key} must be smaller than 1, got {value}").format(key=KEY, value=value_text(value))
+        raise Problem(what, _("write 0.3 for changes of up to 30 %"))
+    return number
+
+
 class ChapterText(DescriptionPart):
     """What the author writes about a chapter of the report, in Markdown.
 
@@ -420,6 +438,10 @@ class ReportWishes(ExplanatoryNote):
         Fixed Runge-Kutta steps, whose rows and errors the chapter on integration has as well.
     angle_step : float [rad]
         To which directions of drawings are read in the graph-analytic check; exactly if left out.
+    least_transmission_angle : float [rad]
+        What every dyad of a repaired mechanism keeps; 20 degrees, or less where that is out of reach, if left out.
+    greatest_change : float
+        Greatest change of a repair: of a length over itself, of a coordinate over the greatest length, below 1.
     text : names of chapters -> ChapterText
         Own text before and after chapters.
     """
@@ -432,6 +454,8 @@ class ReportWishes(ExplanatoryNote):
     positions: Annotated[int, whole_number(2, MOST_POSITIONS)] | None = None
     rk4_steps: Annotated[int, whole_number(1, MOST_RK4_STEPS)] | None = None
     angle_step: Annotated[float, quantity("angle", positive)] | None = None
+    least_transmission_angle: Annotated[float, quantity("angle", _acute)] | None = None
+    greatest_change: Annotated[float, quantity("ratio", _share)] | None = None
     full: Flag | None = None
     motion: Annotated[Literal["real", "mean"], choice("real", "mean")] | None = None
     text: ChapterTexts = FrozenMap({})

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.render.document.blocks import ChapterBlocks
-from centrode.report import repaired
+from centrode.report import cam_conclusions, repaired
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -53,8 +53,11 @@ def all_chapters() -> dict[str, Kind]:
     """Those of the topics, and that of a mechanism that turns in place of one that locks, which consists of them."""
     kinds = chapters_of_topics()
     makers = {name: kind.make for name, kind in kinds.items()}
+    conclusions = kinds[cam_conclusions.NAME]
+    made = either(conclusions.make, cam_conclusions.conclusions_of_cam)
     return {
         **kinds,
+        cam_conclusions.NAME: conclusions._replace(make=made),
         repaired.NAME: Kind(repaired.TITLE, functools.partial(repaired.repaired_chapter, makers)),
     }
 

@@ -6,16 +6,18 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from centrode.analysis.graphic.results import graphic_analysis
-from centrode.analysis.position_plan import USUAL, plan_of_positions
+from centrode.analysis.position_plan import SAMPLES, USUAL, plan_of_positions
 from centrode.dynamics.force_polygons.results import force_polygon_results, has_force_polygons
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.steady_motion.machine import is_machine, machine_results
-from centrode.errors import CentrodeError, NotComputedYet
+from centrode.errors import CentrodeError, InputError
+from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.examples.catalogue import mechanism_of
 from centrode.model.explanatory_note import TitlePage
+from centrode.model.reading import FRAME
 from centrode.sheets.drawing_sheets import DrawingSet, TitleBlock
-from centrode.views.drawing_sheets import energy_sheet, force_sheets, motion_sheets
+from centrode.views.drawing_sheets import diagram_sheet, energy_sheet, force_sheets, motion_sheets
 
 if TYPE_CHECKING:
     from centrode.model.examples.catalogue import MechanismSource
@@ -33,7 +35,10 @@ def drawing_sheets(
     positions: int = USUAL,
     link: str | None = None,
 ) -> DrawingSet:
-    """Sheets A1 of a planar mechanism: its motion; where they are described, its machine and its forces.
+    """Sheets A1 of a mechanism: its motion; where they are described, its machine and its forces.
+
+    Of a mechanism on the sphere they show the diagrams of its output and of its machine; `absent` names the drawings
+    that are of the plane.
 
     Parameters
     ----------
@@ -43,10 +48,8 @@ def drawing_sheets(
 
     Raises
     ------
-    NotComputedYet
-        Spherical linkages.
     InputError, MotionError
-        As `plan_of_positions`.
+        As `plan_of_positions`; on the sphere, a link that does not turn about a hinge of the frame.
 
     Examples
     --------
@@ -57,10 +60,13 @@ def drawing_sheets(
     ['MotionSheet']
     """
     mechanism = mechanism_of(mechanism)
-    if mechanism.space == "sphere":
-        what = _("sheets of drawings are made of planar mechanisms")
-        raise NotComputedYet("space", what, _("use the pictures of centrode run"))
     missing: list[str] = []
+    if mechanism.space == "sphere":
+        drawn = tuple(_sheets_on_sphere(mechanism, link, missing))
+        absent = _(
+            "not drawn on the sphere: plan of positions, plans of velocities and accelerations, force polygons"
+        )
+        return DrawingSet(title_block(mechanism), drawn, tuple(missing), absent)
     sheets = tuple(_sheets(mechanism, instants, positions, link, missing))
     return DrawingSet(title_block(mechanism), sheets, tuple(missing))
 
@@ -109,3 +115,24 @@ def _sheets(
             missing.append(str(failure))
         else:
             yield from force_sheets(forces)
+
+
+def _sheets_on_sphere(mechanism: Mechanism, link: str | None, missing: list[str]) -> Iterator[DrawingSheet]:
+    """Diagrams of the output and of the machine; a reason joins `missing` for each sheet that cannot be made."""
+    driven = {drive.link for drive in mechanism.drives} | {drive.guide for drive in mechanism.drives}
+    course = motion(mechanism, SAMPLES)
+    guides = [guide.id for guide in mechanism.guides if guide.on == FRAME]
+    names = [*reversed(guides), *reversed(course["joint"].values.tolist())]
+    known = [name for name in names if name not in driven]
+    if link is not None and link not in names:
+        what = _("{link} neither turns about a hinge of the frame nor is a guide of it").format(link=link)
+        raise InputError("link", what, _("one of: {names}").format(names=", ".join(names)))
+    if link is None and not known:
+        missing.append(_("no link that is not driven turns about a hinge of the frame"))
+    else:
+        yield diagram_sheet(mechanism, course, link or known[0])
+    if is_machine(mechanism):
+        try:
+            yield energy_sheet(machine_results(mechanism), None)
+        except CentrodeError as failure:
+            missing.append(str(failure))

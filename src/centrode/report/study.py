@@ -9,6 +9,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 import xarray as xr
 
+from centrode.analysis.redesign.candidates import check_greatest_change, read_least_angle
 from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive, check_motion
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.motion_results import MotionResults, instants_of, study
@@ -63,6 +64,8 @@ class ReportOptions:
     positions : in the plan of positions
     rk4_steps : fixed Runge-Kutta steps, whose rows and errors the chapter on integration has as well
     angle_step : to which directions of drawings are read [rad], or a text with a unit
+    least_transmission_angle : what every dyad of a repaired mechanism keeps [rad], or a text with a unit
+    greatest_change : of a repair: of a length over itself, of a coordinate over the greatest length, below 1
 
     Examples
     --------
@@ -82,6 +85,8 @@ class ReportOptions:
     positions: int | None = None
     rk4_steps: int | None = None
     angle_step: float | str | None = None
+    least_transmission_angle: float | str | None = None
+    greatest_change: float | None = None
 
 
 @dataclass(frozen=True)
@@ -152,6 +157,8 @@ def _rows_and_options(
         given = (options.rows, options.positions, options.rk4_steps, options.angle_step)
         if any(one is not None for one in given):
             raise InputError("report", _("rows, positions and steps are those of linkages"))
+        if options.least_transmission_angle is not None or options.greatest_change is not None:
+            raise InputError("report", _("bounds of a repair are those of linkages"))
         return None, {}
     for name, value, least, most in (
         ("rows", options.rows, LEAST_ROWS, MOST_ROWS),
@@ -165,10 +172,14 @@ def _rows_and_options(
     if step is not None:
         refuses = description.display.refuses_bare_angles
         step = read_quantity(step, "angle", "angle_step", refuses_bare=refuses)
+    check_greatest_change(options.greatest_change)
+    least_angle = read_least_angle(options.least_transmission_angle, description.display)
     wished = {
         "positions": _first(options.positions, asked.positions),
         "rk4_steps": _first(options.rk4_steps, asked.rk4_steps),
         "angle_step": _first(step, asked.angle_step),
+        "least_transmission_angle": _first(least_angle, asked.least_transmission_angle),
+        "greatest_change": _first(options.greatest_change, asked.greatest_change),
     }
     chosen = {name: value for name, value in wished.items() if value is not None}
     return _first(options.rows, asked.rows), chosen

@@ -106,6 +106,14 @@ class MotionSheet:
 
 
 @dataclass(frozen=True)
+class DiagramSheet:
+    """Diagrams of the output alone, below each other: of a linkage on the sphere, which has no plan of positions."""
+
+    name: Sentence
+    diagrams: tuple[ScaledDiagram, ...]
+
+
+@dataclass(frozen=True)
 class VectorSheet:
     """Plans of velocities and accelerations at several instants."""
 
@@ -130,7 +138,7 @@ class ForceSheet:
     groups: tuple[GroupPage | LeverPage, ...]
 
 
-DrawingSheet: TypeAlias = MotionSheet | VectorSheet | EnergySheet | ForceSheet
+DrawingSheet: TypeAlias = MotionSheet | DiagramSheet | VectorSheet | EnergySheet | ForceSheet
 
 
 @dataclass(frozen=True)
@@ -142,8 +150,10 @@ class DrawingSet:
     block : of all sheets
     sheets : in their order
     missing : why sheets are missing that the description asks for
+    absent : drawings that there are none of for a mechanism of this kind; empty where it has all
     """
 
     block: TitleBlock
     sheets: tuple[DrawingSheet, ...]
     missing: tuple[str, ...] = ()
+    absent: str = ""

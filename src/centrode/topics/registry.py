@@ -494,6 +494,13 @@ ROTATABILITY = Topic(
                     "Least transmission angle of every dyad; by default 20 deg, or less where that is out of reach."
                 ),
             ),
+            ValueOption(
+                "greatest_change",
+                mark("SHARE"),
+                mark(
+                    "Greatest change of a length over itself, or of a coordinate over the greatest length (0.3)."
+                ),
+            ),
         ),
         progress=mark("seeking a repair, %"),
         kinds=("json", "toml"),
@@ -504,6 +511,7 @@ ROTATABILITY = Topic(
         chapters=(ChapterOfTopic("rotatability", mark("Rotatability"), code="ct.rotatability(mechanism)"),),
         arguments={"complete": True},
         instants=False,
+        options=("least_transmission_angle", "greatest_change"),
     ),
 )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import isfinite, tau
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -41,6 +41,7 @@ def conclusions_chapter(results: MotionResults) -> Chapter:
     machine = results.machine
     data = results.motion if machine is None else machine.steady
     texts = [*_turning(results), *_strokes(results, data), *_swings(results, data)]
+    texts += _angles_on_sphere(results, data)
     checks: list[Block] = []
     if machine is not None:
         texts += _flywheel(machine)
@@ -134,8 +135,7 @@ def _of_unit(values: dict[str, Text], **units: str) -> dict[str, Text]:
 
 def _strokes(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
     """Of each slider on a guide of the frame: stroke, greatest velocity and acceleration with their places."""
-    if results.mechanism.space != "plane":
-        return
+    unit = "m" if results.mechanism.space == "plane" else "rad"
     for guide in results.mechanism.guides:
         if guide.on != FRAME or guide.id not in data["guide"].values:
             continue
@@ -147,15 +147,15 @@ def _strokes(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
             yield Sentence(
                 "Point {name} travels {stroke} along its guide in the part of the motion that is reached.",
                 name=Name(guide.point),
-                stroke=Number(stroke, "m", ".4g"),
+                stroke=Number(stroke, unit, ".4g"),
             )
         elif stroke > STILL and rates is not None:
             yield Sentence(
                 "Point {name} on its guide: the stroke is {stroke}; the velocity is greatest in magnitude at {at},"
                 " {v}, the acceleration at {there}, {a}.",
                 name=Name(guide.point),
-                stroke=Number(stroke, "m", ".4g"),
-                **_of_unit(rates, v="m/s", a="m/s^2"),
+                stroke=Number(stroke, unit, ".4g"),
+                **_of_unit(rates, v=f"{unit}/s", a=f"{unit}/s^2"),
             )
 
 
@@ -182,6 +182,47 @@ def _swings(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
             swing=Number(swing, "rad", ".4g"),
             **_of_unit(rates, v="rad/s", a="rad/s^2"),
         )
+
+
+def _angles_on_sphere(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
+    """Of each link that swings about a hinge of the frame, and of each hinge of moving links: extremes of the angle."""
+    if results.mechanism.space != "sphere" or results.unreached:
+        return
+    driven = {drive.link for drive in results.mechanism.drives}
+    for kind in ("joint", "hinge"):
+        for name in data[kind].values.tolist() if kind in data else ():
+            one = data.sel({kind: name})
+            angle = one[f"{kind}_angle"].values
+            if (kind == "joint" and name in driven) or not np.isfinite(angle).all():
+                continue
+            angle = np.unwrap(angle)
+            low, high = int(np.argmin(angle)), int(np.argmax(angle))
+            rates = _rates(results, data, one[f"{kind}_velocity"].values, one[f"{kind}_acceleration"].values)
+            if not STILL < angle[high] - angle[low] < tau - STILL or rates is None:
+                continue
+            yield _ANGLES[kind].fill(
+                name=Name(name),
+                swing=Number(float(angle[high] - angle[low]), "rad", ".4g"),
+                least=Number(float(angle[low]), "rad", ".4g"),
+                at_least=_place(results, data, low),
+                greatest=Number(float(angle[high]), "rad", ".4g"),
+                at_greatest=_place(results, data, high),
+                **_of_unit(rates, v="rad/s", a="rad/s^2"),
+            )
+
+
+_ANGLES: Mapping[str, Sentence] = {
+    "joint": Sentence(
+        "Link {name} swings through {swing}: its angle is least at {at_least}, {least}, and greatest at {at_greatest},"
+        " {greatest}; its angular velocity is greatest in magnitude at {at}, {v}, its angular acceleration at {there},"
+        " {a}."
+    ),
+    "hinge": Sentence(
+        "The angle between links {name} at their hinge varies by {swing}: it is least at {at_least}, {least}, and"
+        " greatest at {at_greatest}, {greatest}; its rate is greatest in magnitude at {at}, {v}, its second derivative"
+        " at {there}, {a}."
+    ),
+}
 
 
 # The machine

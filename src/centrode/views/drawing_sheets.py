@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.drawing_sheets import (
+    DiagramSheet,
     EnergyMassDiagram,
     EnergySheet,
     ForceSheet,
@@ -25,10 +26,13 @@ from centrode.sheets.texts import NOTHING, Name, Sentence, Symbol, Text
 from centrode.views import force_polygons, graphic, position_plan
 
 if TYPE_CHECKING:
+    import xarray
+
     from centrode.analysis.graphic.results import GraphicResults
     from centrode.analysis.position_plan import PositionPlan
     from centrode.dynamics.force_polygons.results import ForcePolygonResults
     from centrode.dynamics.steady_motion.machine import MachineResults
+    from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -40,6 +44,7 @@ NONE = 1e-9
 """Rates whose product with the time is less than this part of the values are rounding."""
 ON_GUIDES = ("slide", "slide_velocity", "slide_acceleration")
 OF_LINKS = ("angle", "angular_velocity", "angular_acceleration")
+OF_JOINTS = ("joint_angle", "joint_velocity", "joint_acceleration")
 
 
 def motion_sheets(plan: PositionPlan, drawn: GraphicResults) -> Iterator[MotionSheet | VectorSheet]:
@@ -100,6 +105,38 @@ def _titles(kind: str, name: str) -> tuple[Sentence, Sentence, Sentence]:
         Sentence("Velocity of slider {point}", point=Name(name)),
         Sentence("Acceleration of slider {point}", point=Name(name)),
     )
+
+
+def diagram_sheet(mechanism: Mechanism, course: xarray.Dataset, name: str) -> DiagramSheet:
+    """Angle, velocity and acceleration of a link or guide on the sphere over the drive, from the first sample on.
+
+    `course` is the motion of a mechanism that has the joint or guide of this name.
+    """
+    kind, variables = ("guide", ON_GUIDES) if name in course["guide"].values else ("joint", OF_JOINTS)
+    letters = ("s", "v", "a") if kind == "guide" else ("ψ", "ω", "ε")
+    parameter = mechanism.motion_parameter
+    along = parameter.instants(course)
+    known = np.isfinite(course[variables[0]].sel({kind: name}).values)
+    across = np.abs(along - along[0])[known]
+    values = [course[variable].sel({kind: name}).values[known] for variable in variables]
+    values[0] = np.unwrap(values[0])
+    turns = parameter.instant.unit == "rad"
+    label = AxisLabel(
+        symbol=Symbol("φ") if turns else Symbol(parameter.instant.symbol), unit=parameter.instant.unit
+    )
+    titles = _titles("link" if kind == "joint" else kind, name)
+    diagrams = [
+        ScaledDiagram(
+            title,
+            label,
+            AxisLabel(symbol=Symbol(letter), unit=unit),
+            (ScaledCurve(NOTHING, across, curve),),
+        )
+        for title, letter, unit, curve in zip(
+            titles, letters, ("rad", "rad/s", "rad/s^2"), values, strict=True
+        )
+    ]
+    return DiagramSheet(Sentence("Kinematic diagrams"), tuple(diagrams))
 
 
 def _counted(plan: PositionPlan, values: Array) -> Array:
@@ -172,12 +209,15 @@ def _from_zero(values: Array, start: float, kind: str) -> Array:
 # The machine
 
 
-def energy_sheet(machine: MachineResults, plan: PositionPlan) -> EnergySheet:
-    """Moments and works over the cycle, and the energy-mass diagram; the plan's positions are marked along the turn."""
+def energy_sheet(machine: MachineResults, plan: PositionPlan | None) -> EnergySheet:
+    """Moments and works over the cycle, and the energy-mass diagram; the plan's positions are marked along the turn.
+
+    Without a plan, as on the sphere, round numbers are.
+    """
     steady, flywheel = machine.steady, machine.flywheel
     turned = steady["turned"].values
     over = AxisLabel(symbol=Symbol("φ"), unit="rad")
-    ticks = _places_in_cycle(machine, plan)
+    ticks = () if plan is None else _places_in_cycle(machine, plan)
 
     def curve(name: str, label: Text = NOTHING) -> ScaledCurve:
         return ScaledCurve(label, turned, steady[name].values)

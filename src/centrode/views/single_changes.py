@@ -81,6 +81,13 @@ def proposal_blocks(
     yield Paragraph(Sentence("Required: {motion}.", motion=_motion(found, wanted)))
     if proposed is None:
         yield Paragraph(Sentence("No change of one dimension alone was found that is sufficient."))
+        if found.greatest is not None:
+            yield Paragraph(
+                Sentence(
+                    "One dimension alone brings about transmission angles of {greatest} at most.",
+                    greatest=_angle(found.greatest),
+                )
+            )
         return
     if proposed.greatest is not None:
         yield Paragraph(

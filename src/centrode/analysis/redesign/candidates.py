@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import cos, pi, sqrt
+from math import cos, degrees, pi, sqrt
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -65,8 +65,13 @@ class Varying:
         return self.path.startswith("links.") and self.path.endswith(".angle")
 
 
-def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None) -> tuple[Varying, ...]:
-    """The numbers that may change, with their bounds in SI.
+def varyings(
+    prepared: Ready,
+    vary: Sequence[str] | None,
+    bounds: Bounds | None,
+    greatest_change: float | None = None,
+) -> tuple[Varying, ...]:
+    """The numbers that may change, with their bounds in SI; where none are given, within the greatest change.
 
     Without `vary`: the initial angles of links that are not driven, where these place something; otherwise the
     lengths of all links.
@@ -87,7 +92,45 @@ def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None)
             _("{n} numbers were named").format(n=len(paths)),
             _("name {least} to {most}").format(least=1, most=MOST_PATHS),
         )
-    return tuple(_varying_value(prepared, path, (bounds or {}).get(path)) for path in paths)
+    found = tuple(_varying_value(prepared, path, (bounds or {}).get(path)) for path in paths)
+    return tuple(one if one.path in (bounds or {}) else narrowed(one, greatest_change) for one in found)
+
+
+def narrowed(one: Varying, greatest_change: float | None) -> Varying:
+    """The same number between bounds at most so far apart: parts of a length, of the greatest length, of a ratio.
+
+    Angles keep their bounds: they have no size of which a change could be a part.
+    """
+    if greatest_change is None or one.path.endswith((".angle", ".direction")):
+        return one
+    reach = greatest_change * one.scale
+    return replace(one, low=max(one.low, one.before - reach), high=min(one.high, one.before + reach))
+
+
+def read_least_angle(given: Value | None, display: Display) -> float | None:
+    """A least transmission angle [rad] as it is given; None where it is not. Raises InputError."""
+    if given is None:
+        return None
+    value = read_quantity(
+        given, "angle", "least_transmission_angle", refuses_bare=display.refuses_bare_angles
+    )
+    if not 0.0 < value < pi / 2:
+        raise InputError(
+            "least_transmission_angle",
+            _("it must lie between 0 and 90 deg, got {value:.6g} deg").format(value=degrees(value)),
+            _('write "20 deg"'),
+        )
+    return value
+
+
+def check_greatest_change(value: float | None) -> None:
+    """Raise InputError for a greatest change that is not between 0 and 1."""
+    if value is not None and not 0.0 < value < 1.0:
+        raise InputError(
+            "greatest_change",
+            _("it must lie between 0 and 1, got {value:.6g}").format(value=value),
+            _("write 0.3 for changes of up to 30 %"),
+        )
 
 
 def default_paths(mechanism: Mechanism) -> list[str]:

@@ -2,7 +2,7 @@
 
 Initial angles are the data of an assignment whose frame they place, and its source changes these: first one of them is
 sought alone, then several together. Lengths and distances follow in the same order. Every dyad keeps the first of
-`ANGLES` that is within reach.
+`ANGLES` that is within reach, or the angle that is named.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ import numpy.typing as npt
 
 from centrode.analysis.redesign.candidates import Candidates, paths_of_lengths, places_anew, varyings
 from centrode.analysis.redesign.repair import (
-    ANGLES,
     FINE,
     Change,
     Repair,
@@ -53,6 +52,8 @@ FINER = 4
 """How often a step of rounding is divided by ten where the rounded values are not good enough."""
 MOST_ROUNDED = 6
 """Numbers that are rounded up and down in every combination; of more each is rounded to the nearest."""
+WITHIN = 1e-12
+"""By how much a scaled change may exceed its bound: the rounding of the scale."""
 DIGITS = 12
 """Digits of rounded values in SI: no more are meant."""
 
@@ -66,7 +67,7 @@ class ProposedRepair:
     mechanism, repaired : the one given, and the one proposed
     dimensions, changes : what is changed, and its values before and after
     wanted : transmission angle [rad] that every dyad should keep
-    angle : the one that it keeps at least: the first of `ANGLES` within reach [rad]
+    angle : the one that it keeps at least: the first of `ANGLES` within reach, or the one named [rad]
     least_angle : the exact least one of the repaired mechanism [rad]
     greatest : the greatest within reach, where that is less than the one wanted; else None [rad]
     residual : worst residual of the motion of the repaired mechanism, over its greatest length
@@ -101,16 +102,16 @@ def propose(found: SingleChanges) -> ProposedRepair | None:
     kept = found.margin if best is not None else 0.0
     of_data = best is not None and best.dimension.kind == "angle"
     # one initial angle is what the source changes; a length alone stands behind several initial angles
-    enough = kept >= ANGLES[0] and (of_data or not places_anew(found.mechanism))
+    enough = kept >= found.wanted and (of_data or not places_anew(found.mechanism))
     proposed = None if best is None else _single(found)
     if enough or not found.required.turn:
         return proposed
-    several = _several(found.mechanism)
+    several = _several(found)
     if several is None or several.least_transmission_angle <= kept * (1 - 1e-9) or several.repaired is None:
         return proposed
     if best is not None and several.least_transmission_angle == kept and not places_anew(found.mechanism):
         return proposed
-    return _rounded(several)
+    return _rounded(several, found.greatest_change)
 
 
 def _single(found: SingleChanges) -> ProposedRepair:
@@ -121,7 +122,7 @@ def _single(found: SingleChanges) -> ProposedRepair:
         best.repaired,
         (best.dimension,),
         (change,),
-        ANGLES[0],
+        found.wanted,
         found.margin,
         best.least_angle,
         found.greatest,
@@ -129,18 +130,20 @@ def _single(found: SingleChanges) -> ProposedRepair:
     )
 
 
-def _several(mechanism: Mechanism) -> Repair | None:
+def _several(single: SingleChanges) -> Repair | None:
     """The change of all initial angles, or of all lengths; of both where that is not enough."""
+    mechanism = single.mechanism
+    named = single.wanted if single.named else None
     found = []
     paths: list[list[str] | None] = [None]
     if places_anew(mechanism):
         paths.append([*_angles(mechanism), *paths_of_lengths(mechanism).values()])
     for vary in paths:
         try:
-            one = repair(mechanism, vary)
+            one = repair(mechanism, vary, None, named, greatest_change=single.greatest_change)
         except CentrodeError:
             continue
-        if one.found and one.least_transmission_angle >= ANGLES[0]:
+        if one.found and one.least_transmission_angle >= single.wanted:
             return one
         found.append(one)
     good = [one for one in found if one.found]
@@ -151,12 +154,13 @@ def _angles(mechanism: Mechanism) -> list[str]:
     return [one.path for one in dimensions_of_design(mechanism) if one.kind == "angle"]
 
 
-def _rounded(several: Repair) -> ProposedRepair | None:
+def _rounded(several: Repair, greatest_change: float | None) -> ProposedRepair | None:
     """The same change in as few digits as keep the transmission angle."""
     mechanism = several.mechanism
     prepared = ready(mechanism)
-    candidates = Candidates(prepared, varyings(prepared, [change.path for change in several.changes], None))
-    for values in _roundings(several, candidates):
+    paths = [change.path for change in several.changes]
+    candidates = Candidates(prepared, varyings(prepared, paths, None, greatest_change))
+    for values in _roundings(several, candidates, bounded=greatest_change is not None):
         repaired = with_values(
             mechanism, {change.path: value for change, value in zip(several.changes, values, strict=True)}
         )
@@ -168,8 +172,11 @@ def _rounded(several: Repair) -> ProposedRepair | None:
     return _verified(several, several.repaired, [change.after for change in several.changes])
 
 
-def _roundings(several: Repair, candidates: Candidates) -> Iterator[list[float]]:
-    """Rounded values that keep the angle on the nodes of the turn, the coarsest digits first, small changes first."""
+def _roundings(several: Repair, candidates: Candidates, *, bounded: bool) -> Iterator[list[float]]:
+    """Rounded values that keep the angle on the nodes of the turn, the coarsest digits first, small changes first.
+
+    `bounded` ones stay within the greatest change.
+    """
     if not places_anew(several.mechanism):
         return  # sides and angles of the new position belong to the exact numbers
     target = sin(several.least_transmission_angle) ** 2
@@ -186,6 +193,9 @@ def _roundings(several: Repair, candidates: Candidates) -> Iterator[list[float]]
         )
         batch = candidates.batch(scaled)
         good = least(squared_sines(batch, over_turn(batch, FINE))) >= target
+        if bounded:
+            low, high = candidates.box()
+            good &= ((scaled >= low - WITHIN) & (scaled <= high + WITHIN)).all(axis=1)
         order = np.argsort(np.linalg.norm(scaled, axis=1), kind="stable")
         yield from (values[k].tolist() for k in order[good[order]][:1])
 

@@ -19,7 +19,9 @@ from centrode.analysis.redesign.candidates import (
     Impossibility,
     Value,
     Varying,
+    check_greatest_change,
     impossible,
+    read_least_angle,
     varyings,
 )
 from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
@@ -31,8 +33,6 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.model.settings import Display
-from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.printing import PrintsSummary
 from centrode.structure.constraints import Positions
@@ -440,6 +440,7 @@ def repair(
     bounds: Bounds | None = None,
     least_transmission_angle: Value | None = None,
     progress: Progress | None = None,
+    greatest_change: float | None = None,
 ) -> Repair:
     """The smallest change that was found after which a mechanism turns fully.
 
@@ -455,6 +456,9 @@ def repair(
         What every dyad keeps all over the turn. Left out: 20 degrees, or where these are out of reach the first of
         10, 5, 2 and 1 degrees that is not.
     progress : called with (candidates evaluated, candidates in all at most)
+    greatest_change : float, optional
+        Greatest change of a number without bounds of its own: of a length over itself, of a coordinate over the
+        greatest length, below 1. Initial angles stay free. It only narrows the bounds that hold without it.
 
     Returns
     -------
@@ -466,7 +470,7 @@ def repair(
     Raises
     ------
     InputError
-        A path or bound is wrong, the drive is not an angle or not the only one.
+        A path, a bound or the greatest change is wrong, the drive is not an angle or not the only one.
     NotComputedYet
         Groups of higher class, gears and rolling wheels.
 
@@ -480,9 +484,10 @@ def repair(
     mechanism = mechanism_of(mechanism)
     prepared = ready(mechanism)
     check_repairable(prepared)
-    named = _angle(least_transmission_angle, mechanism.display)
+    named = read_least_angle(least_transmission_angle, mechanism.display)
+    check_greatest_change(greatest_change)
     wanted = ANGLES[0] if named is None else named
-    varying = varyings(prepared, vary, bounds)
+    varying = varyings(prepared, vary, bounds, greatest_change)
     before = rotatability(mechanism)
     asked = Repair(
         mechanism, None, False, 0.0, wanted, None, 0, 0, 0, None, (), varying, before, None, wanted
@@ -530,21 +535,6 @@ def turns_well(found: Rotatability, least_angle: float) -> bool:
 def least_angle_of(found: Rotatability) -> float:
     """The least transmission angle [rad] of all dyads over the turn."""
     return min((transmission.least for transmission in found.one.transmissions), default=pi / 2)
-
-
-def _angle(given: Value | None, display: Display) -> float | None:
-    if given is None:
-        return None
-    value = read_quantity(
-        given, "angle", "least_transmission_angle", refuses_bare=display.refuses_bare_angles
-    )
-    if not 0.0 < value < pi / 2:
-        raise InputError(
-            "least_transmission_angle",
-            _("it must lie between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
-            _('write "20 deg"'),
-        )
-    return value
 
 
 def check_repairable(prepared: Ready, *, turning: bool = True) -> None:

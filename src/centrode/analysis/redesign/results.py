@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from centrode.analysis.redesign.candidates import check_greatest_change, read_least_angle
 from centrode.analysis.redesign.proposal import ProposedRepair, propose
 from centrode.analysis.redesign.repair import Repair
 from centrode.analysis.redesign.repair import repair as find_repair
 from centrode.analysis.redesign.single_changes import (
+    MARGINS,
     DeadPosition,
     SingleChanges,
     dead_position,
@@ -19,6 +21,7 @@ from centrode.analysis.rotatability.rotatability import Rotatability, rotatabili
 from centrode.analysis.transmission import TransmissionResults, transmission_results
 from centrode.errors import CentrodeError, InputError
 from centrode.locale import _
+from centrode.model.units import read_quantity
 
 if TYPE_CHECKING:
     from centrode.analysis.redesign.candidates import Value
@@ -60,6 +63,7 @@ def rotatability_results(
     repair: bool = False,
     vary: Mapping[str, tuple[Value, Value] | None] | None = None,
     least_transmission_angle: Value | None = None,
+    greatest_change: Value | None = None,
     complete: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> RotatabilityResults:
@@ -74,7 +78,9 @@ def rotatability_results(
     vary : mapping of path -> bounds or None, optional
         Numbers that may change, as `repair` has them.
     least_transmission_angle : float [rad] or text, optional
-        As `repair` has it.
+        As `repair` has it; of a change of one dimension too.
+    greatest_change : float or text, optional
+        As `repair` has it; of a change of one dimension too.
     complete : bool
         As documents have it: with the transmission angles over the motion, and of a mechanism that locks with its
         dead position and with the repair that is proposed.
@@ -85,6 +91,7 @@ def rotatability_results(
     InputError, NotComputedYet
         As `rotatability` and, with `repair`, `repair` do.
     """
+    change = None if greatest_change is None else read_quantity(greatest_change, "ratio", "greatest_change")
     if repair:
         wanted = vary or {}
         bounds = {path: both for path, both in wanted.items() if both is not None}
@@ -94,10 +101,13 @@ def rotatability_results(
             bounds,
             least_transmission_angle,
             None if progress is None else lambda done, of: progress(done / of),
+            change,
         )
         return RotatabilityResults.of(found.before, repair=found)
     turning = rotatability(mechanism)
-    single, refusal = _single_or_refusal(turning)
+    named = read_least_angle(least_transmission_angle, mechanism.display)
+    check_greatest_change(change)
+    single, refusal = _single_or_refusal(turning, MARGINS if named is None else (named,), change)
     if not complete:
         return RotatabilityResults.of(turning, single=single, refusal=refusal)
     angles = _angles(mechanism, samples)
@@ -122,20 +132,27 @@ def need_repair(
     repair: bool = False,
     vary: Mapping[str, tuple[Value, Value] | None] | None = None,
     least_transmission_angle: Value | None = None,
+    greatest_change: Value | None = None,
 ) -> None:
     """Raise InputError for what belongs to a repair where none is sought."""
-    given = {"--vary": vary, "--least-transmission-angle": least_transmission_angle}
+    given = {
+        "--vary": vary,
+        "--least-transmission-angle": least_transmission_angle,
+        "--greatest-change": greatest_change,
+    }
     for option, value in given.items():
         if value is not None and not repair:
             raise InputError(option, _("this option is used with --repair only"), _("add --repair"))
 
 
-def _single_or_refusal(turning: Rotatability) -> tuple[SingleChanges | None, CentrodeError | None]:
+def _single_or_refusal(
+    turning: Rotatability, margins: Sequence[float], greatest_change: float | None
+) -> tuple[SingleChanges | None, CentrodeError | None]:
     """The changes that repair the one drive of a mechanism that locks, or why none is sought."""
     if len(turning.drives) > 1 or not (turning.limits or turning.turns_fully is False):
         return None, None
     try:
-        return single_changes(turning.mechanism, turning), None
+        return single_changes(turning.mechanism, turning, margins, greatest_change), None
     except CentrodeError as refusal:
         return None, refusal
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.redesign.candidates import Candidates, Varying, paths_of_lengths, places_anew
+from centrode.analysis.redesign.candidates import Candidates, Varying, narrowed, paths_of_lengths, places_anew
 from centrode.analysis.redesign.repair import (
     COARSE,
     ENOUGH,
@@ -131,6 +131,9 @@ class SingleChanges:
     changes : the best of each dimension that repairs the mechanism: initial angles first, which a source calls initial
         data, then lengths and distances; of either the smallest first
     without : dimensions that do not
+    wanted : transmission angle that is sought first [rad]
+    named : whether it was named, so that no lesser one does
+    greatest_change : the greatest that a change of a length or a distance may be, as `repair` has it
     greatest : the greatest transmission angle [rad] that any one dimension brings about between its bounds, where this
         is less than the first one wanted; else None
     """
@@ -141,6 +144,9 @@ class SingleChanges:
     changes: tuple[SingleChange, ...]
     without: tuple[Dimension, ...]
     greatest: float | None = None
+    wanted: float = MARGINS[0]
+    named: bool = False
+    greatest_change: float | None = None
 
 
 def required_range(prepared: Ready) -> DrivenRange:
@@ -162,14 +168,19 @@ def is_reached(found: Rotatability, required: DrivenRange) -> bool:
 
 
 def single_changes(
-    mechanism: MechanismSource, found: Rotatability | None = None, margins: Sequence[float] = MARGINS
+    mechanism: MechanismSource,
+    found: Rotatability | None = None,
+    margins: Sequence[float] = MARGINS,
+    greatest_change: float | None = None,
 ) -> SingleChanges | None:
     """The dimensions of which each alone repairs a mechanism that locks; None where it makes the motion asked for.
 
     Parameters
     ----------
     found : Rotatability of the mechanism, where it is known
-    margins : transmission angles [rad] that every dyad keeps; the first for which any dimension is found
+    margins : transmission angles [rad] that every dyad keeps; the first for which any dimension is found. One alone is
+        named: a repair keeps it, or none is found
+    greatest_change : of a length over itself, of a coordinate over the greatest length; as `repair` has it
 
     Raises
     ------
@@ -193,18 +204,21 @@ def single_changes(
         if is_reached(rotatability(mechanism) if found is None else found, required):
             return None
     check_repairable(prepared, turning=False)
-    searches = [DimensionSearch(prepared, one, required) for one in dimensions_of_design(mechanism)]
+    searches = [
+        DimensionSearch(prepared, one, required, greatest_change) for one in dimensions_of_design(mechanism)
+    ]
     greatest = None
+    sought = margins[0], len(margins) == 1, greatest_change
     for margin in margins:
         changes = {search.dimension: search.change(margin) for search in searches}
         good = sorted((change for change in changes.values() if change is not None), key=_rank)
         if good:
             without = tuple(one for one, change in changes.items() if change is None)
-            return SingleChanges(mechanism, required, margin, tuple(good), without, greatest)
+            return SingleChanges(mechanism, required, margin, tuple(good), without, greatest, *sought)
         if greatest is None:
             most = max((search.greatest() for search in searches), default=0.0)
             greatest = asin(sqrt(min(most, 1.0))) if most > 0.0 else None
-    return SingleChanges(mechanism, required, margins[-1], (), tuple(changes), greatest)
+    return SingleChanges(mechanism, required, margins[-1], (), tuple(changes), greatest, *sought)
 
 
 def _rank(change: SingleChange) -> tuple[bool, float]:
@@ -316,9 +330,15 @@ def _origin(mechanism: Mechanism) -> tuple[float, float]:
 class DimensionSearch:
     """One dimension of a mechanism that is varied alone."""
 
-    def __init__(self, prepared: Ready, dimension: Dimension, required: DrivenRange) -> None:
+    def __init__(
+        self,
+        prepared: Ready,
+        dimension: Dimension,
+        required: DrivenRange,
+        greatest_change: float | None = None,
+    ) -> None:
         self.prepared, self.dimension, self.required = prepared, dimension, required
-        self.varying = _varying(prepared, dimension)
+        self.varying = narrowed(_varying(prepared, dimension), greatest_change)
         self.candidates = Candidates(prepared, (self.varying,))
         low, high = (float(end[0]) for end in self.candidates.box())
         outwards = np.linspace(0.0, 1.0, STEPS + 1)[1:]

@@ -32,7 +32,7 @@ from centrode.render.drafting.title_block import (
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import spell_decimals
 from centrode.render.spelling import DASH, FigureSpelling
-from centrode.sheets.drawing_sheets import EnergySheet, ForceSheet, MotionSheet, VectorSheet
+from centrode.sheets.drawing_sheets import DiagramSheet, EnergySheet, ForceSheet, MotionSheet, VectorSheet
 from centrode.sheets.force_pages import GroupPage
 
 if TYPE_CHECKING:
@@ -83,6 +83,8 @@ def _draw(page: DrawingPage, sheet: DrawingSheet, scale: DrawingScale | None) ->
     match sheet:
         case MotionSheet():
             return _draw_motion(page, sheet, scale)
+        case DiagramSheet():
+            return _draw_diagrams(page, sheet)
         case VectorSheet():
             return _draw_vectors(page, sheet)
         case EnergySheet():
@@ -110,6 +112,14 @@ def _draw_motion(page: DrawingPage, sheet: MotionSheet, scale: DrawingScale | No
     for number, plan in enumerate(sheet.plans):
         draw_plan_plate(page, row.share(len(sheet.plans), number), plan)
     return ratio_text(shown)
+
+
+def _draw_diagrams(page: DrawingPage, sheet: DiagramSheet) -> str:
+    """Diagrams below each other, above the main inscription."""
+    field = _field().part(bottom=HIGH + ASIDE, top=CORNER)
+    for number, diagram in enumerate(reversed(sheet.diagrams)):
+        draw_diagram(page, field.share(1, 0, len(sheet.diagrams), number), diagram)
+    return DASH
 
 
 def _draw_vectors(page: DrawingPage, sheet: VectorSheet) -> str:
