@@ -46,6 +46,10 @@ def test_every_curve_is_the_datasets(press: tuple[Any, dict[str, Figure]]) -> No
             line = lines[QUANTITIES[variable].title]
             np.testing.assert_allclose(line.get_ydata(), factor * data[variable], rtol=1e-15)
             np.testing.assert_allclose(line.get_xdata(), np.degrees(data["turned"]), rtol=1e-15)
+    (total,) = (line for line in figures["moments"].axes[0].get_lines() if line.get_label() == "sum")
+    np.testing.assert_allclose(
+        total.get_ydata(), data["moment_of_loads"] + data["driving_moment"], rtol=1e-15
+    )
     assert figures["drive-speed"].axes[1].get_xlabel() == r"angle turned in the cycle $\varphi$, °"
 
 

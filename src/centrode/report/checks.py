@@ -69,11 +69,13 @@ def _chapter(found: Sequence[tuple[str, CheckBlock]]) -> ChapterBlocks:
         (str(number), shown(title) if title != before else "", check.text, words[check.holds])
         for number, (before, (title, check)) in enumerate(zip(titles, told, strict=False), start=1)
     )
+    head = (_("No."), _("chapter"), _("what was verified"), _("verdict"))
+    columns = 3 if good == len(found) else 4  # the sentence before tells that all hold
     table = TableBlock(
-        (_("No."), _("chapter"), _("what was verified"), _("verdict")),
-        rows,
+        head[:columns],
+        tuple(row[:columns] for row in rows),
         _("What was verified, by which second route, and how far the two are apart"),
-        (True, False, False, False),
+        (True, False, False, False)[:columns],
     )
     often = _("A check made at several instants is given once, with its greatest difference.")
     sentences = [count, verdict, *([often] if len(told) < len(found) else [])]

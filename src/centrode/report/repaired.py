@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, mark
-from centrode.render.document.blocks import ChapterBlocks, SectionBlocks
+from centrode.render.document.blocks import Block, ChapterBlocks, SectionBlocks, shown
 from centrode.render.document.chapters import document_chapter
+from centrode.render.document.numbering import Captioned
 from centrode.report.study import ReportStudy
 from centrode.report.topics import result_of
 from centrode.sheets.sheet import Chapter, Section, Sheet
@@ -62,8 +63,19 @@ def repaired_chapter(
 
 
 def _sections(chapter: ChapterBlocks) -> tuple[SectionBlocks, ...]:
-    """The sections of a chapter, each with the title of the chapter before its own."""
+    """The sections of a chapter, each with the title of the chapter before its own, and captions that tell of which."""
     return tuple(
-        replace(section, title=f"{chapter.title}: {section.title}" if section.title else chapter.title)
+        replace(
+            section,
+            title=f"{chapter.title}: {section.title}" if section.title else chapter.title,
+            blocks=tuple(map(_with_mechanism, section.blocks)),
+        )
         for section in chapter.sections
     )
+
+
+def _with_mechanism(block: Block) -> Block:
+    if not isinstance(block, Captioned) or not block.caption:
+        return block
+    behind = shown(_("repaired mechanism"))
+    return replace(block, caption=f"{block.caption}; {behind}")

@@ -88,8 +88,8 @@ def drive_balance(
     """
     yield Paragraph(
         Sentence(
-            "The balancing moment $M_upright(b)$ of the links and the moment $J_upright(I) epsilon$ that accelerates "
-            "flywheel and shafts add up to the driving moment $M_upright(d)$:"
+            "In the sense in which the drive turns, the balancing moment $M_upright(b)$ of the links and the moment "
+            "$J_upright(I) epsilon$ that accelerates flywheel and shafts add up to the driving moment $M_upright(d)$:"
         )
     )
     yield Formula(driving_lines(links, inertia, acceleration, driving))

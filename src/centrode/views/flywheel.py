@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from math import degrees
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from centrode.dynamics.steady_motion.flywheel import SOURCE_DISC, SOURCE_RIM, Wheel
-from centrode.sheets.plots import AxisLabel, CurveDiagram, Plot, Trace, TraceKind
+from centrode.sheets.plots import (
+    AxisLabel,
+    Curve,
+    CurveDiagram,
+    CurvePanel,
+    CurveRole,
+    Plot,
+    Trace,
+    TraceKind,
+)
 from centrode.sheets.sheet import (
     Block,
     Chapter,
@@ -19,6 +28,7 @@ from centrode.sheets.sheet import (
     Fact,
     FactTable,
     Formula,
+    Illustration,
     Paragraph,
     Reference,
     Scalar,
@@ -269,6 +279,16 @@ def _size(wheel: Wheel) -> Text:
 # Figures
 
 
+def _moments(steady: xr.Dataset) -> CurvePanel:
+    """Moments of the loads and of the drive, and their sum."""
+    parts = ("moment_of_loads", "driving_moment")
+    panel = quantities_panel(steady, parts, Symbol("M"))
+    values = np.sum([steady[name].values for name in parts], axis=0)
+    return replace(
+        panel, curves=(*panel.curves, Curve(Sentence("sum"), values, len(parts), role=CurveRole.SUM))
+    )
+
+
 def _pictures(results: MachineResults) -> Iterator[tuple[str, Picture]]:
     """Figures by name; those without a curve are left out."""
     mechanism, steady = results.mechanism, results.steady
@@ -278,7 +298,7 @@ def _pictures(results: MachineResults) -> Iterator[tuple[str, Picture]]:
         "moments": (
             Sentence("Moments on the drive and inertia of the links"),
             (
-                (quantities_panel(steady, ("moment_of_loads", "driving_moment"), Symbol("M")),),
+                (_moments(steady),),
                 (quantities_panel(steady, ("inertia_of_links",), Symbol("J", "II")),),
                 (quantities_panel(steady, ("inertia_slope_of_links",), Symbol("J′", "II")),),
             ),
@@ -382,7 +402,7 @@ def _touching(steady: xr.Dataset, at: float, slope: float, start: float) -> np.n
 def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapter:
     """Energies of the machine over a cycle, and the flywheel that keeps its speed even enough."""
     flywheel = results.flywheel
-    pictures = ("moments", "works", "energies", "wittenbauer")
+    pictures = ("works", "energies", "wittenbauer")
     captions = {
         "wittenbauer": Sentence(
             "Wittenbauer's diagram: work over the inertia of the links, with both tangents"
@@ -395,14 +415,26 @@ def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapt
         Reference(Sentence("The inertia of the links follows from {reduction}.")),
         Reference(Sentence("Works and energies follow from {works}.")),
     )
+    figures = illustrations(pictures, captions, details=("works",))
     sections = (
         Section(NOTHING, (*_groups(flywheel), Formula(tuple(_work_relations(results)), "works"))),
         Section(Sentence("Over the cycle"), (*formulas, course)),
         Section(Sentence("Inertia and flywheel"), tuple(_needed_inertia(results))),
         Section(Sentence("Summary"), (FactTable(facts),)),
-        illustrations(pictures, captions, details=("works",)),
+        Section(NOTHING, (_moments_alone(results), *figures.blocks)),
     )
     return Chapter(Sentence("Flywheel"), sections)
+
+
+def _moments_alone(results: MachineResults) -> Illustration:
+    """The moments on the drive and their sum; the chapter of the reduction has the inertia of the links."""
+    turned = results.steady["turned"].values
+    abscissa, caption = (
+        over_samples(quantity_label("turned"), turned),
+        Sentence("Moments on the drive and their sum"),
+    )
+    rows = ((_moments(results.steady),),)
+    return Illustration(Plot(caption, Title(results.mechanism.title), abscissa, rows), caption)
 
 
 def _groups(flywheel: Flywheel) -> tuple[Block, ...]:
@@ -536,11 +568,16 @@ def _wheels(results: MachineResults) -> Iterator[Block]:
 
 def _size_relations(wheel: Wheel, density: float) -> Iterator[tuple[Leaf, ...]]:
     """Outer diameter, bore, width and mass, and the inertia that they have; in SI, as they go together."""
-    yield "rho", Number(density, "kg/m^3", unit_fixed=True)
-    yield "D", Number(wheel.outer, "m", unit_fixed=True)
+    sizes = {
+        "rho": Number(density, "kg/m^3", unit_fixed=True),
+        "D": Number(wheel.outer, "m", unit_fixed=True),
+    }
     if wheel.inner:
-        yield "d", Number(wheel.inner, "m", unit_fixed=True)
-    yield "b", Number(wheel.width, "m", unit_fixed=True)
+        sizes["d"] = Number(wheel.inner, "m", unit_fixed=True)
+    sizes["b"] = Number(wheel.width, "m", unit_fixed=True)
+    first, *others = sizes
+    line = ", quad ".join([f"{{{first}}}", *(f"{letter} = {{{letter}}}" for letter in others)])
+    yield first, Expression(line, **sizes)
     four, two = (f"(D^{power} - d^{power})" if wheel.inner else f"D^{power}" for power in (4, 2))
     yield "m", f"frac(pi, 4) rho b {two}", Number(wheel.mass, "kg")
     inertia = Number(wheel.inertia, "kg m^2", unit_fixed=True)

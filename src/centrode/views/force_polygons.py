@@ -44,7 +44,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
-from centrode.views.drive_balance import REAL_MOTION, SENSE, drive_balance, printed_balance
+from centrode.views.drive_balance import REAL_MOTION, drive_balance, printed_balance
 from centrode.views.force_equations import lever_equation, step_equations
 from centrode.views.force_pages import RIGHT_ANGLE, group_page, lever_page
 from centrode.views.instants import body_text, instant_title, place_number
@@ -562,7 +562,6 @@ def _instant(found: ForcePolygons) -> Iterator[Block]:
     if found.group is not None:
         size, error = float(found.group.size[0]), float(found.group.error[0])
         bound = ROUNDINGS * float(np.finfo(float).eps) + error / size
-        yield Paragraph(SENSE)
         yield from drive_balance(*_driving_terms(found, found.group), size, bound)
 
 

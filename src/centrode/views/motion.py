@@ -90,7 +90,7 @@ def sheet(results: MotionResults) -> Sheet:
         pictures=pictures,
         chapters=Deferred(chapters),
         failure=unreached_failure(mechanism, results.motion["status"], results.limits),
-        notes=tuple(_notes(results)),
+        notes=(*_notes(results), *_omissions(results)),
     )
 
 
@@ -191,12 +191,16 @@ def _notes(results: MotionResults) -> Iterator[Text]:
         yield Sentence("after one turn of the drive the mechanism does not return to its initial position")
     if mechanism.loads and mechanism.machine is None:
         yield PRESCRIBED
+    if results.reactions is not None and (locked := self_locking_samples(results.reactions.reactions)):
+        yield self_locking_text(locked)
+
+
+def _omissions(results: MotionResults) -> Iterator[Text]:
+    """Why results of the motion are omitted; in a document their own chapters say it."""
     if (refusal := results.refusals.get("flywheel")) is not None:
         yield Sentence("the machine is omitted: {reason}", reason=_reason(refusal))
     if (refusal := results.refusals.get("reactions")) is not None:
         yield Sentence("reactions are omitted: {reason}", reason=_reason(refusal))
-    if results.reactions is not None and (locked := self_locking_samples(results.reactions.reactions)):
-        yield self_locking_text(locked)
 
 
 def _reason(refusal: CentrodeError) -> Name:

@@ -49,9 +49,7 @@ from centrode.sheets.texts import (
 from centrode.views.columns import force_columns, status_column
 from centrode.views.drive_balance import (
     REAL_MOTION,
-    SENSE,
     drive_balance,
-    links_line,
     moment_of_links,
     printed_balance,
     terms_of_links,
@@ -565,6 +563,9 @@ def _load_cells(mechanism: Mechanism, load: BearingLoad) -> tuple[Text, ...]:
 # Chapter
 
 
+BY_VIRTUAL_WORK = Sentence(
+    "The reactions and virtual work give the same balancing moment or force within {share} of its terms."
+)
 DETAILS = (
     "joint-components",
     "frame-force",
@@ -612,7 +613,10 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
         # where friction jams every sample nothing is determined
         Section(Sentence("Greatest reactions"), (*((extremes, note) if loads else ()), *losses)),
         Section(Sentence("Checks"), tuple(_checks(reactions))),
-        illustrations(captions, captions, DETAILS),
+        # in the real motion the balance shows the moment of the links, in the sense of the drive
+        illustrations(
+            captions, captions, (*DETAILS, "balancing") if "driving_moment" in reactions else DETAILS
+        ),
     )
     return Chapter(Sentence("Reactions in the joints"), sections)
 
@@ -740,7 +744,7 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
     balancing = float(reactions["balancing"].values.flat[0])
     if np.isfinite(balancing):
         yield Check(
-            Sentence("The reactions give the same within {share} of its terms."),
+            BY_VIRTUAL_WORK,
             abs(work - balancing),
             abs(0.5 * slope * rate**2) + abs(moment),
             float(reactions["reaction_loss"]),
@@ -749,13 +753,11 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
 
 def _real_balance(here: xarray.Dataset, steady: xarray.Dataset) -> Iterator[Block]:
     """In the real motion: the links' moment by virtual work, and with the flywheel's the driving moment."""
-    yield Paragraph(SENSE)
-    yield Formula((links_line(steady),))
     terms = _driving_terms(here)
     size = terms_of_links(steady) + abs(terms[1] * terms[2]) + abs(terms[3])
     bound = float(here["reaction_loss"]) + float(here.attrs["driving_error"])
     yield Check(
-        Sentence("The reactions give the same within {share} of its terms."),
+        BY_VIRTUAL_WORK,
         abs(moment_of_links(steady) - terms[0]),
         size,
         bound,

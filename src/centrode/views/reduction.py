@@ -296,6 +296,10 @@ def _reach(values: Array) -> float:
 # Chapter
 
 
+DETAILS = ("moment-sum",)
+"""Figures that only the full form of a document shows: the chapter of the flywheel has the sum of moments as well."""
+
+
 def _chapter(results: ReductionResults) -> Chapter:
     """Reduced inertia, its derivative and the reduced moment: formulas, numbers at instants, course, figures."""
     captions: dict[str, Text] = {
@@ -312,7 +316,9 @@ def _chapter(results: ReductionResults) -> Chapter:
         )
         sections += [*_sums(results), Section(Sentence("Over the motion"), (formulas, _course(results)))]
     sections.append(Section(Sentence("Extremes and means"), (_extremes(results),), detail=True))
-    return Chapter(Sentence("Reduction to the drive"), (*sections, illustrations(captions, captions)))
+    return Chapter(
+        Sentence("Reduction to the drive"), (*sections, illustrations(captions, captions, DETAILS))
+    )
 
 
 def _meaning(results: ReductionResults) -> tuple[Block, ...]:

@@ -42,9 +42,15 @@ def section(results: TransmissionResults) -> Section:
     table = extremes_table(
         results, Sentence("Least transmission angle and greatest pressure angle of the groups")
     )
-    figure = Illustration(
-        PICTURE, Sentence("Transmission angle $mu$ and pressure angle $alpha$ of the groups")
+    caption = (
+        Sentence(
+            "Transmission angle $mu$ and pressure angle $alpha$ of the groups, angle $delta$ between links at their "
+            "hinges"
+        )
+        if "hinge_angle" in results.angles
+        else Sentence("Transmission angle $mu$ and pressure angle $alpha$ of the groups")
     )
+    figure = Illustration(PICTURE, caption)
     return Section(Sentence("Transmission angles"), (_of_documents(table), figure))
 
 

@@ -21,12 +21,14 @@ from centrode.render.drawing.style import house_style
 from centrode.render.figures.document_canvas import DocumentCanvas
 from centrode.render.figures.files import METADATA, spell_decimals
 
-FLAT = {1: 0.36, 2: 0.44, 3: 0.52}
+FLAT = {1: 0.33, 2: 0.42, 3: 0.5}
 """Height of curves by their width, by the number of panels above each other: of one panel three figures with their
 captions find room on a page, of three panels two and some text. More panels could not be read at such a height."""
 LETTER_WITH_INDEX = re.compile(
     r"\{?(?P<letter>[A-Za-zΑ-ω]+)(?P<primes>'*)\}?(?:_(?:\{(?P<index>[^{}]+)\}|(?P<short>\w)))?"
 )
+DRAWING_HEIGHT = 4.0
+"""Inches: a drawing of one field is no higher, so that text finds room beside it on a page."""
 TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 """Inches that a picture may fill of a page, its caption left out."""
 PAPER_WIDTH = 8.268
@@ -62,9 +64,10 @@ def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
     spell_decimals(figure)
     if not to_scale:
         _flatten(figure)
-    return Picture(
-        svg_of(figure), caption, float(figure.get_figwidth()), to_scale, description=describe_curves(figure)
-    )
+    width = float(figure.get_figwidth())
+    if not to_scale and len(figure.axes) == 1 and figure.axes[0].get_aspect() != "auto":
+        width *= min(1.0, DRAWING_HEIGHT / float(figure.get_figheight()))
+    return Picture(svg_of(figure), caption, width, to_scale, description=describe_curves(figure))
 
 
 def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
