@@ -16,7 +16,7 @@ import xarray as xr
 from centrode.equations.chain_assembly import assemble_chains
 from centrode.equations.derivation import equations
 from centrode.equations.linear import LinearSystem, Unknown, UnknownPlace, system_of
-from centrode.equations.symbols import Letter, Sum
+from centrode.equations.symbols import Letter, Sum, Wave
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import (
     attributes_of,
@@ -300,13 +300,14 @@ class CauchyForm:
     def rates(self, time: Any, state: npt.ArrayLike) -> Array:
         """Derivatives of the state by time [rad/s, m/s], (..., n); NaN where a group's determinant is zero."""
         values = self._values(time, state)
+        waves: dict[Wave, Any] = {}  # no rate stands in a sine: they are those of all systems
         found: list[Array] = []
         for system in self.systems:
             shape = np.shape(next(iter(values.values())))
             matrix = np.array(
-                [[self._number(entry, values, shape) for entry in row] for row in system.matrix]
+                [[self._number(entry, values, shape, waves) for entry in row] for row in system.matrix]
             )
-            right = np.array([self._number(entry, values, shape) for entry in system.right])
+            right = np.array([self._number(entry, values, shape, waves) for entry in system.right])
             solved = _solve_systems(np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1))
             for i, letter in enumerate(system.unknowns):
                 values[letter] = solved[..., i]
@@ -317,8 +318,9 @@ class CauchyForm:
         """Places of all points by their chains [m]: name -> (..., 2)."""
         values = self._values(time, state)
         shape = np.shape(next(iter(values.values()), 0.0))
+        waves: dict[Wave, Any] = {}
         return {
-            name: np.stack([self._number(at.x, values, shape), self._number(at.y, values, shape)], axis=-1)
+            name: np.stack([self._number(one, values, shape, waves) for one in (at.x, at.y)], axis=-1)
             for name, at in self.places.items()
         }
 
@@ -326,7 +328,8 @@ class CauchyForm:
         """Left sides less right sides [m, rad], (..., n): how far a state has drifted off the constraints."""
         values = self._values(time, state)
         shape = np.shape(next(iter(values.values()), 0.0))
-        found = [self._number(one, values, shape) for one in self.residuals]
+        waves: dict[Wave, Any] = {}
+        found = [self._number(one, values, shape, waves) for one in self.residuals]
         return np.stack(found, axis=-1) if found else np.zeros((*shape, 0))
 
     def _values(self, time: Any, state: npt.ArrayLike) -> dict[Letter, Any]:
@@ -335,16 +338,23 @@ class CauchyForm:
         time = np.asarray(time, dtype=np.float64)
         shape = np.broadcast_shapes(time.shape, state.shape[:-1])
         for i, one in enumerate(self.unknowns):
-            values[one.letter] = np.broadcast_to(state[..., i], shape)
+            values[one.letter] = _spread(state[..., i], shape)
         for letter, rate, driven in self.drives:
             jet = driven.value(JETS, Jet.variable(time, 1))
             value, speed = (jet.value, jet.derivative(1)) if isinstance(jet, Jet) else (jet, 0.0)
-            values[letter], values[rate] = np.broadcast_to(value, shape), np.broadcast_to(speed, shape)
+            values[letter], values[rate] = _spread(value, shape), _spread(speed, shape)
         return values | {letter: np.float64(x) for letter, x in self.constants.items()}
 
     @staticmethod
-    def _number(total: Sum, values: Mapping[Letter, Any], shape: tuple[int, ...]) -> Array:
-        return np.broadcast_to(total.value(np, values.__getitem__), shape).astype(np.float64)
+    def _number(
+        total: Sum, values: Mapping[Letter, Any], shape: tuple[int, ...], waves: dict[Wave, Any]
+    ) -> Any:
+        return _spread(total.value(np, values.__getitem__, waves), shape)
+
+
+def _spread(value: Any, shape: tuple[int, ...]) -> Any:
+    """A number for each state: of one state the number itself, with which NumPy is quicker than with an array of it."""
+    return np.broadcast_to(value, shape).astype(np.float64) if shape else np.float64(value)
 
 
 def _solve_systems(matrix: Array, right: Array) -> Array:
