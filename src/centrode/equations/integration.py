@@ -112,25 +112,28 @@ class CauchySolution:
     steps: int
 
 
-def fixed_steps(equations: CauchyEquations, times: Array) -> CauchySolution:
+def fixed_steps(
+    equations: CauchyEquations, times: Array, judge: CauchySolution | None = None
+) -> CauchySolution:
     """Classical fourth-order Runge-Kutta, one step from each time to the next.
 
-    An adaptive integration goes before it and tells where the determinant is zero; rows behind that are left out,
-    and so are those after a row with another sign of the determinant or with a drift of more than `LOST`.
+    An adaptive integration, `judge` where it is known, goes before it and tells where the determinant is zero; rows
+    behind that are left out, and so are those after a row with another sign of the determinant or with a drift of
+    more than `LOST`.
     """
-    judge = _adaptive_states(equations, times, FINE)
+    stop = _adaptive_states(equations, times, FINE).stop if judge is None else judge.stop
     state = np.full((len(times), len(equations.initial)), np.nan)
     state[0] = equations.initial
     with np.errstate(all="ignore"):
         for row, (time, step) in enumerate(zip(times[:-1], np.diff(times), strict=True)):
             state[row + 1] = _runge_kutta(equations, float(time), float(step), state[row])
-    beyond = _beyond(times, judge.stop)
+    beyond = _beyond(times, stop)
     lost = _lost(equations, times, state, beyond)
     if lost is not None:
         beyond |= np.arange(len(times)) >= lost
     state[beyond] = np.nan
     when = None if lost is None else float(times[lost])
-    return CauchySolution(state, _rates(equations, times, state), judge.stop, when, len(times) - 1)
+    return CauchySolution(state, _rates(equations, times, state), stop, when, len(times) - 1)
 
 
 def adaptive_steps(equations: CauchyEquations, times: Array, tolerance: float) -> CauchySolution:
@@ -308,7 +311,9 @@ class CauchyForm:
                 [[self._number(entry, values, shape, waves) for entry in row] for row in system.matrix]
             )
             right = np.array([self._number(entry, values, shape, waves) for entry in system.right])
-            solved = _solve_systems(np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1))
+            if shape:
+                matrix, right = np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1)
+            solved = _solve_systems(matrix, right)
             for i, letter in enumerate(system.unknowns):
                 values[letter] = solved[..., i]
                 found.append(solved[..., i])
@@ -625,6 +630,43 @@ def integrate(
     """
     mechanism = mechanism_of(mechanism)
     _check(method, steps, tolerance)
+    task = _task(mechanism, steps, stop)
+    if method == "rk4":
+        return task.dataset(fixed_steps(task.scaled, task.times), method, steps)
+    return task.dataset(adaptive_steps(task.scaled, task.times, tolerance), method, steps, tolerance)
+
+
+def integrate_both(mechanism: Mechanism, steps: int = 100) -> tuple[xr.Dataset, xr.Dataset]:
+    """What `integrate` gives by fixed steps, and by the adaptive method, which judges them: integrated once."""
+    task = _task(mechanism, steps, None)
+    judge = adaptive_steps(task.scaled, task.times, FINE)
+    fixed = fixed_steps(task.scaled, task.times, judge)
+    return task.dataset(fixed, "rk4", steps), task.dataset(judge, "adaptive", steps, FINE)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What is integrated, and the motion in closed form at the same times."""
+
+    prepared: Ready
+    solved: Solved
+    scaled: Scaled
+
+    @property
+    def times(self) -> Array:
+        return self.solved.span.time
+
+    def dataset(
+        self, found: CauchySolution, method: str, steps: int, tolerance: float | None = None
+    ) -> xr.Dataset:
+        """The dataset of a solution; `tolerance` is that of the adaptive method."""
+        told: dict[str, Any] = {"method": method, "steps": steps, "steps_taken": found.steps}
+        if tolerance is not None:
+            told["tolerance"] = tolerance
+        return _dataset(self.prepared, self.solved, self.scaled.form, self.scaled, found, told)
+
+
+def _task(mechanism: Mechanism, steps: int, stop: float | str | None) -> _Task:
     prepared = ready(mechanism)
     if prepared.parameter.constant_speed == 0.0:
         where = f"[[drives]] {mechanism.drives[0].id}"
@@ -632,16 +674,7 @@ def integrate(
     form = form_of(prepared)
     start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
     solved = solve(prepared, requested_grid(prepared, steps + 1, start, stop))
-    scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
-    times = solved.span.time
-    if method == "rk4":
-        found = fixed_steps(scaled, times)
-    else:
-        found = adaptive_steps(scaled, times, tolerance)
-    told = {"method": method, "steps": steps, "steps_taken": found.steps}
-    if method == "adaptive":
-        told["tolerance"] = tolerance
-    return _dataset(prepared, solved, form, scaled, found, told)
+    return _Task(prepared, solved, Scaled(form, float(prepared.kinematics.numbers.scale)))
 
 
 @dataclass(frozen=True)
