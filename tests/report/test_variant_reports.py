@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -10,13 +11,16 @@ import pytest
 import centrode as ct
 from centrode.analysis.rotatability.causes import Cause, CauseKind, Tracer
 from centrode.assignments.answers import InstantAnswers, VariantAnswers, read_answers
-from centrode.assignments.results import VariantRow, Variants
+from centrode.assignments.results import VariantRow, Variants, compute_variant
 from centrode.assignments.tables import read_variants
 from centrode.errors import InputError
 from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
+from centrode.report.study import Wishes
+from centrode.report.topics import result_of
 from centrode.report.variants import files
 from centrode.report.variants.answers import answer_sheet
-from centrode.report.variants.files import VariantReport, write_variant_reports
+from centrode.report.variants.files import VariantReport, _study_of, write_variant_reports
+from centrode.topics.registry import INTEGRATE
 
 ROWS = [
     {"variant": "first", "l2": 1.0, "l3": 1.2},
@@ -27,12 +31,12 @@ ROWS = [
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reports of one chapter: what variants add to a report is tested here."""
-    whole = files.report
+    whole = files.settle_options
 
-    def short(mechanism: ct.Mechanism, options: ct.ReportOptions, **more: object) -> Report:
-        return whole(mechanism, ct.ReportOptions(chapters=("structure",)), **more)  # type: ignore[arg-type]
+    def short(mechanism: ct.Mechanism, _options: ct.ReportOptions, known: Iterable[str]) -> Wishes:
+        return whole(mechanism, ct.ReportOptions(chapters=("structure",)), known)
 
-    monkeypatch.setattr(files, "report", short)
+    monkeypatch.setattr(files, "settle_options", short)
 
 
 def test_each_variant_has_its_report_and_the_teacher_the_answers(quick: None, tmp_path: Path) -> None:
@@ -65,7 +69,7 @@ def test_what_is_finished_is_not_made_again(
     def never(*_arguments: object, **_more: object) -> Report:
         raise AssertionError("made again")
 
-    monkeypatch.setattr(files, "report", never)
+    monkeypatch.setattr(files, "report_of_study", never)
     write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
     assert (tmp_path / "variant-first" / "report.html").read_bytes() == before
     assert (tmp_path / "answers.html").read_bytes() == sheet
@@ -125,3 +129,14 @@ def test_wrong_formats_are_refused_before_anything_is_computed(
     with pytest.raises(InputError):
         write_variant_reports(ct.example("crank-rocker"), ROWS, tmp_path / "new", formats=formats)
     assert not (tmp_path / "new").exists()
+
+
+def test_the_integration_of_a_report_is_that_of_its_table() -> None:
+    """What judges the fixed steps of a variant is what `integrate` gives by itself, to the last bit."""
+    topology = ct.example("slider-between-cranks")
+    found = compute_variant(topology, read_variants(topology, ROWS[:1])[0])
+    assert found.mechanism is not None and found.integration is not None and found.adaptive is not None
+    assert found.integration.identical(ct.integrate(found.mechanism))
+    assert found.adaptive.identical(ct.integrate(found.mechanism, "adaptive"))
+    kept = result_of(INTEGRATE, _study_of(found.mechanism, found))
+    assert kept.integration is found.adaptive

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import groupby
 from xml.etree import ElementTree as Xml
 
 from centrode.errors import InputError
@@ -27,11 +28,15 @@ REFERENCE = re.compile(r"url\(\s*['\"]?#([^)'\"]+)['\"]?\s*\)")
 FOREIGN = re.compile(r"url\((?!\s*['\"]?#)|expression|@import|javascript:", re.IGNORECASE)
 PICTURE = re.compile(r"data:image/(png|jpeg);base64,[A-Za-z0-9+/=\s]*")
 NUMBER = re.compile(r"-?\d+\.\d{3,}(?!\d*e)")
+LETTER_DECIMALS = 1
+"""Of places of letters in a text, in hundredths of its size."""
 DECIMALS = 2
 """Of coordinates in a figure, in 1/72 inch."""
 
 
 LETTER_STEP = re.compile(r"\s*([A-Za-z])\s*")
+LEAST_CLIPPED = 2
+"""Elements for which a group is shorter than what they say themselves."""
 PLACE = re.compile(r"translate\(([-\d.]+) ([-\d.]+)\)")
 TRANSLATION = re.compile(r"translate\([^)]*\)")
 PEN = re.compile(r"[\w\s:;#%.,()-]+")
@@ -78,6 +83,7 @@ class Drawings:
             whole.extend(_kept(child, names))
         _join_edges(whole)
         _join_strokes(whole)
+        _group_clipped(whole)
         self._share_pens(whole)
         self._share_texts(whole)
         return _written(whole)
@@ -213,6 +219,29 @@ def _join_strokes(whole: Xml.Element) -> None:
                 last = one
 
 
+def _group_clipped(whole: Xml.Element) -> None:
+    """What stands one behind the other and is clipped alike, clipped together."""
+    for parent in list(whole.iter()):
+        runs = [
+            (clip, list(run))
+            for clip, run in groupby(
+                parent, lambda one: None if one.get("transform") else one.get("clip-path")
+            )
+        ]
+        if all(clip is None or len(run) < LEAST_CLIPPED for clip, run in runs):
+            continue
+        for child in list(parent):
+            parent.remove(child)
+        for clip, run in runs:
+            if clip is None or len(run) < LEAST_CLIPPED:
+                parent.extend(run)
+                continue
+            group = Xml.SubElement(parent, "g", {"clip-path": clip})
+            for one in run:
+                del one.attrib["clip-path"]
+                group.append(one)
+
+
 def _is_plain_stroke(path: Xml.Element) -> bool:
     """Whether a path is a line that hides what is below it, without a name that something refers to."""
     seen_through = any("opacity" in key for key in (*path.attrib, *_pen(path)))
@@ -231,8 +260,9 @@ def _place_letter(letter: Xml.Element) -> None:
     if found is not None and not {"x", "y"} & set(letter.attrib):
         del letter.attrib["transform"]
         for axis, value in zip("xy", found.groups(), strict=True):
-            if float(value):
-                letter.set(axis, value)
+            place = f"{float(value):.{LETTER_DECIMALS}f}".rstrip("0").rstrip(".")
+            if float(place):
+                letter.set(axis, place)
 
 
 def _written(element: Xml.Element) -> str:
