@@ -112,7 +112,8 @@ def house_style() -> Iterator[None]:
     A letter that the font lacks (a title may be in any language) becomes a box, without a warning.
     """
     with matplotlib.rc_context(), warnings.catch_warnings():
-        dict.update(matplotlib.rcParams, _checked_settings())
+        settings: Any = matplotlib.rcParams
+        dict.update(settings, _checked_settings())
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         MATHTEXT.addFilter(_is_no_missing_letter)
         try:
