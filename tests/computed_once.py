@@ -37,7 +37,7 @@ def once(compute: Computes) -> Computes:
 SHARED = [
     (module, name, once(getattr(module, name)))
     for module, name in (
-        (variant_results, "integrate"),
+        (variant_results, "integrate_both"),
         (variant_results, "study"),
         (report_study, "check"),
         (report_study, "equations"),

@@ -66,7 +66,7 @@ def test_all_thirty_on_the_worked_topology(monkeypatch: pytest.MonkeyPatch) -> N
     def refuse(*_anything: object, **_options: object) -> None:
         raise InputError("", "left out")
 
-    monkeypatch.setattr(variant_results, "integrate", refuse)
+    monkeypatch.setattr(variant_results, "integrate_both", refuse)
     with TABLE.open(encoding="utf-8", newline="") as file:
         rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
     expected = [first_limit(row) for row in rows]

@@ -162,8 +162,11 @@ def test_segments_through_a_box() -> None:
     low, high = np.array([0.0, 0.0]), np.array([1.0, 1.0])
     through = [(np.array([-1.0, 0.5]), np.array([2.0, 0.5])), (np.array([0.5, 0.5]), np.array([0.6, 9.0]))]
     beside = [(np.array([-1.0, 1.5]), np.array([2.0, 1.5])), (np.array([2.0, -1.0]), np.array([2.0, 9.0]))]
-    assert count_crossings(low, high, [*through, *beside]) == 2
-    assert count_crossings(low, high, []) == 0
+    lines = np.array([*through, *beside])
+    assert count_crossings(low[None], high[None], lines).tolist() == [2]
+    assert count_crossings(low[None], high[None], np.empty((0, 2, 2))).tolist() == [0]
+    far = np.array([0.0, 100.0])
+    assert count_crossings(np.array([low, low + far]), np.array([high, high + far]), lines).tolist() == [2, 0]
 
 
 def test_names_stand_beside_what_they_name() -> None:

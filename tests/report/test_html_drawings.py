@@ -160,3 +160,33 @@ def test_same_bytes() -> None:
 def test_what_is_no_figure_is_refused(wrong: bytes) -> None:
     with pytest.raises(InputError, match="a figure is not SVG"):
         Drawings().embedded(wrong, "")
+
+
+SQUARES = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><g clip-path="url(#c)">
+ <path d="M 0 0 L 1 0" style="{0}"/><path d="M 2 2 L 3 2" style="{0}"/><path d="M 4 4 L 5 4" style="stroke: red"/></g>
+ </svg>"""
+
+
+@pytest.mark.parametrize(
+    ("pen", "paths"),
+    [("fill: none; stroke: #000", 2), ("fill: none; stroke: #000; stroke-opacity: 0.5", 3), ("fill: red", 3)],
+)
+def test_lines_of_one_opaque_pen_are_one_path(pen: str, paths: int) -> None:
+    """Their strokes cover the same; what is filled, or seen through where it crosses, stays by itself."""
+    found = [
+        one.get("d")
+        for one in Xml.fromstring(Drawings().embedded(SQUARES.format(pen).encode(), "")).iter("path")
+    ]
+    assert len(found) == paths
+    assert "".join(map(str, found)) == "M0 0l1 0M2 2l1 0M4 4l1 0"
+
+
+def test_a_text_is_there_once_however_many_figures_have_it() -> None:
+    drawings = Drawings()
+    for wide in (3.0, 4.0):
+        drawings.embedded(drawn(wide), "")
+    shared = Xml.fromstring(drawings.shared())
+    texts = ["".join(use.get("href", "") for use in group.iter("use")) for group in shared.iter("g")]
+    assert len(texts) == len(set(texts)) >= 2
+    names = {one.get("id") for one in shared.iter()}
+    assert {use.get("href", "").removeprefix("#") for use in shared.iter("use")} <= names

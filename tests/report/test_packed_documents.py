@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from centrode.render.document.figures import svg_of
 from centrode.render.drawing.style import halo, house_style
-from centrode.report.pdf_document import EPOCH, STANDARDS
+from centrode.report.pdf_document import EPOCH, STANDARDS, with_cubic_letters
 from centrode.report.pdf_objects import packed_pdf
 
 PAGE = """#set document(title: "A table")
@@ -84,3 +84,17 @@ def test_edges_about_letters_are_where_matplotlib_draws_them() -> None:
     differs = np.abs(own - plain) > 64
     assert differs.mean() < 5e-4
     assert len(made) < len(stream.getvalue())
+
+
+@pytest.mark.drawn
+def test_cubic_letters_cover_what_parabolas_cover() -> None:
+    """The outline of a letter is that of its parabolas to a unit, far less than a pixel; the document is shorter."""
+    with house_style():
+        figure = Figure(figsize=(4.0, 1.0))
+        figure.text(0.05, 0.3, "Speeds 0.69, $\\varphi_{12}$, Щебёнка", fontsize=20)
+        made = svg_of(figure)
+    cubic = with_cubic_letters(made)
+    assert b"Q" in made and b" C " in cubic and b"Q" not in cubic
+    assert np.abs(rendered(cubic) - rendered(made)).max() <= 16
+    assert with_cubic_letters(cubic) == cubic
+    assert b" C " not in with_cubic_letters(made.replace(b"Q ", b"A "))

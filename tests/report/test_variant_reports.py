@@ -11,14 +11,16 @@ import pytest
 import centrode as ct
 from centrode.analysis.rotatability.causes import Cause, CauseKind, Tracer
 from centrode.assignments.answers import InstantAnswers, VariantAnswers, read_answers
-from centrode.assignments.results import VariantRow, Variants, variants
+from centrode.assignments.results import VariantRow, Variants, compute_variant, variants
 from centrode.assignments.tables import read_variants
 from centrode.errors import InputError
 from centrode.render.document.blocks import ParagraphBlock, Report, TableBlock
 from centrode.report.study import Wishes, settle_options
+from centrode.report.topics import result_of
 from centrode.report.variants import files
 from centrode.report.variants.answers import answer_sheet
 from centrode.report.variants.files import VariantReport, study_of_variant, write_variant_reports
+from centrode.topics.registry import INTEGRATE
 
 ROWS = [
     {"variant": "first", "l2": 1.0, "l3": 1.2},
@@ -136,3 +138,14 @@ def test_wrong_formats_are_refused_before_anything_is_computed(
     with pytest.raises(InputError):
         write_variant_reports(ct.example("crank-rocker"), ROWS, tmp_path / "new", formats=formats)
     assert not (tmp_path / "new").exists()
+
+
+def test_the_integration_of_a_report_is_that_of_its_table() -> None:
+    """What judges the fixed steps of a variant is what `integrate` gives by itself, to the last bit."""
+    topology = ct.example("slider-between-cranks")
+    found = compute_variant(topology, read_variants(topology, ROWS[:1])[0])
+    assert found.mechanism is not None and found.integration is not None and found.adaptive is not None
+    assert found.integration.identical(ct.integrate(found.mechanism))
+    assert found.adaptive.identical(ct.integrate(found.mechanism, "adaptive"))
+    kept = result_of(INTEGRATE, study_of_variant(found.mechanism, found))
+    assert kept.integration is found.adaptive

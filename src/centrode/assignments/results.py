@@ -13,7 +13,7 @@ from centrode.analysis.rotatability.rotatability import rotatability
 from centrode.assignments.answers import VariantAnswers
 from centrode.assignments.tables import Table, Variant, read_variants
 from centrode.dynamics.motion_results import MotionResults, study
-from centrode.equations.integration import integrate
+from centrode.equations.integration import integrate_both
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, speaking
@@ -147,6 +147,7 @@ class VariantResults:
     """A variant with everything that is computed of it; only `row` where it was refused.
 
     `integration` is None as well where the equations of the mechanism cannot be integrated; `note` then says why.
+    `adaptive` is the same by the adaptive method, which judges the fixed steps and which reports show.
     """
 
     row: VariantRow
@@ -154,6 +155,7 @@ class VariantResults:
     study: MotionResults | None = None
     integration: xr.Dataset | None = None
     note: str = ""
+    adaptive: xr.Dataset | None = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -224,13 +226,14 @@ def compute_variant(topology: Mechanism, variant: Variant, compute: str | None =
         except InputError as refusal:
             return VariantResults(VariantRow(variant.name, None, None, "", "", str(refusal), REFUSED))
         try:
-            integration, note = integrate(mechanism, steps=STEPS), ""
+            integration, adaptive = integrate_both(mechanism, STEPS)
+            note = ""
         except InputError as refusal:
-            integration, note = None, str(refusal)
+            integration, adaptive, note = None, None, str(refusal)
         row = _row(variant.name, rotation, results)
         if compute is not None:
             row = _with_numbers(row, mechanism, compute)
-        return VariantResults(row, mechanism, results, integration, note)
+        return VariantResults(row, mechanism, results, integration, note, adaptive)
 
 
 def _with_numbers(row: VariantRow, mechanism: Mechanism, compute: str) -> VariantRow:

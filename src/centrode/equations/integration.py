@@ -16,7 +16,7 @@ import xarray as xr
 from centrode.equations.chain_assembly import assemble_chains
 from centrode.equations.derivation import equations
 from centrode.equations.linear import LinearSystem, Unknown, UnknownPlace, system_of
-from centrode.equations.symbols import Letter, Sum
+from centrode.equations.symbols import Letter, Sum, Wave
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import (
     attributes_of,
@@ -112,25 +112,28 @@ class CauchySolution:
     steps: int
 
 
-def fixed_steps(equations: CauchyEquations, times: Array) -> CauchySolution:
+def fixed_steps(
+    equations: CauchyEquations, times: Array, judge: CauchySolution | None = None
+) -> CauchySolution:
     """Classical fourth-order Runge-Kutta, one step from each time to the next.
 
-    An adaptive integration goes before it and tells where the determinant is zero; rows behind that are left out,
-    and so are those after a row with another sign of the determinant or with a drift of more than `LOST`.
+    An adaptive integration, `judge` where it is known, goes before it and tells where the determinant is zero; rows
+    behind that are left out, and so are those after a row with another sign of the determinant or with a drift of
+    more than `LOST`.
     """
-    judge = _adaptive_states(equations, times, FINE)
+    stop = _adaptive_states(equations, times, FINE).stop if judge is None else judge.stop
     state = np.full((len(times), len(equations.initial)), np.nan)
     state[0] = equations.initial
     with np.errstate(all="ignore"):
         for row, (time, step) in enumerate(zip(times[:-1], np.diff(times), strict=True)):
             state[row + 1] = _runge_kutta(equations, float(time), float(step), state[row])
-    beyond = _beyond(times, judge.stop)
+    beyond = _beyond(times, stop)
     lost = _lost(equations, times, state, beyond)
     if lost is not None:
         beyond |= np.arange(len(times)) >= lost
     state[beyond] = np.nan
     when = None if lost is None else float(times[lost])
-    return CauchySolution(state, _rates(equations, times, state), judge.stop, when, len(times) - 1)
+    return CauchySolution(state, _rates(equations, times, state), stop, when, len(times) - 1)
 
 
 def adaptive_steps(equations: CauchyEquations, times: Array, tolerance: float) -> CauchySolution:
@@ -300,14 +303,17 @@ class CauchyForm:
     def rates(self, time: Any, state: npt.ArrayLike) -> Array:
         """Derivatives of the state by time [rad/s, m/s], (..., n); NaN where a group's determinant is zero."""
         values = self._values(time, state)
+        waves: dict[Wave, Any] = {}  # no rate stands in a sine: they are those of all systems
         found: list[Array] = []
         for system in self.systems:
             shape = np.shape(next(iter(values.values())))
             matrix = np.array(
-                [[self._number(entry, values, shape) for entry in row] for row in system.matrix]
+                [[self._number(entry, values, shape, waves) for entry in row] for row in system.matrix]
             )
-            right = np.array([self._number(entry, values, shape) for entry in system.right])
-            solved = _solve_systems(np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1))
+            right = np.array([self._number(entry, values, shape, waves) for entry in system.right])
+            if shape:
+                matrix, right = np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1)
+            solved = _solve_systems(matrix, right)
             for i, letter in enumerate(system.unknowns):
                 values[letter] = solved[..., i]
                 found.append(solved[..., i])
@@ -317,8 +323,9 @@ class CauchyForm:
         """Places of all points by their chains [m]: name -> (..., 2)."""
         values = self._values(time, state)
         shape = np.shape(next(iter(values.values()), 0.0))
+        waves: dict[Wave, Any] = {}
         return {
-            name: np.stack([self._number(at.x, values, shape), self._number(at.y, values, shape)], axis=-1)
+            name: np.stack([self._number(one, values, shape, waves) for one in (at.x, at.y)], axis=-1)
             for name, at in self.places.items()
         }
 
@@ -326,7 +333,8 @@ class CauchyForm:
         """Left sides less right sides [m, rad], (..., n): how far a state has drifted off the constraints."""
         values = self._values(time, state)
         shape = np.shape(next(iter(values.values()), 0.0))
-        found = [self._number(one, values, shape) for one in self.residuals]
+        waves: dict[Wave, Any] = {}
+        found = [self._number(one, values, shape, waves) for one in self.residuals]
         return np.stack(found, axis=-1) if found else np.zeros((*shape, 0))
 
     def _values(self, time: Any, state: npt.ArrayLike) -> dict[Letter, Any]:
@@ -335,16 +343,23 @@ class CauchyForm:
         time = np.asarray(time, dtype=np.float64)
         shape = np.broadcast_shapes(time.shape, state.shape[:-1])
         for i, one in enumerate(self.unknowns):
-            values[one.letter] = np.broadcast_to(state[..., i], shape)
+            values[one.letter] = _spread(state[..., i], shape)
         for letter, rate, driven in self.drives:
             jet = driven.value(JETS, Jet.variable(time, 1))
             value, speed = (jet.value, jet.derivative(1)) if isinstance(jet, Jet) else (jet, 0.0)
-            values[letter], values[rate] = np.broadcast_to(value, shape), np.broadcast_to(speed, shape)
+            values[letter], values[rate] = _spread(value, shape), _spread(speed, shape)
         return values | {letter: np.float64(x) for letter, x in self.constants.items()}
 
     @staticmethod
-    def _number(total: Sum, values: Mapping[Letter, Any], shape: tuple[int, ...]) -> Array:
-        return np.broadcast_to(total.value(np, values.__getitem__), shape).astype(np.float64)
+    def _number(
+        total: Sum, values: Mapping[Letter, Any], shape: tuple[int, ...], waves: dict[Wave, Any]
+    ) -> Any:
+        return _spread(total.value(np, values.__getitem__, waves), shape)
+
+
+def _spread(value: Any, shape: tuple[int, ...]) -> Any:
+    """A number for each state: of one state the number itself, with which NumPy is quicker than with an array of it."""
+    return np.broadcast_to(value, shape).astype(np.float64) if shape else np.float64(value)
 
 
 def _solve_systems(matrix: Array, right: Array) -> Array:
@@ -615,6 +630,43 @@ def integrate(
     """
     mechanism = mechanism_of(mechanism)
     _check(method, steps, tolerance)
+    task = _task(mechanism, steps, stop)
+    if method == "rk4":
+        return task.dataset(fixed_steps(task.scaled, task.times), method, steps)
+    return task.dataset(adaptive_steps(task.scaled, task.times, tolerance), method, steps, tolerance)
+
+
+def integrate_both(mechanism: Mechanism, steps: int = 100) -> tuple[xr.Dataset, xr.Dataset]:
+    """What `integrate` gives by fixed steps, and by the adaptive method, which judges them: integrated once."""
+    task = _task(mechanism, steps, None)
+    judge = adaptive_steps(task.scaled, task.times, FINE)
+    fixed = fixed_steps(task.scaled, task.times, judge)
+    return task.dataset(fixed, "rk4", steps), task.dataset(judge, "adaptive", steps, FINE)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What is integrated, and the motion in closed form at the same times."""
+
+    prepared: Ready
+    solved: Solved
+    scaled: Scaled
+
+    @property
+    def times(self) -> Array:
+        return self.solved.span.time
+
+    def dataset(
+        self, found: CauchySolution, method: str, steps: int, tolerance: float | None = None
+    ) -> xr.Dataset:
+        """The dataset of a solution; `tolerance` is that of the adaptive method."""
+        told: dict[str, Any] = {"method": method, "steps": steps, "steps_taken": found.steps}
+        if tolerance is not None:
+            told["tolerance"] = tolerance
+        return _dataset(self.prepared, self.solved, self.scaled.form, self.scaled, found, told)
+
+
+def _task(mechanism: Mechanism, steps: int, stop: float | str | None) -> _Task:
     prepared = ready(mechanism)
     if prepared.parameter.constant_speed == 0.0:
         where = f"[[drives]] {mechanism.drives[0].id}"
@@ -622,16 +674,7 @@ def integrate(
     form = form_of(prepared)
     start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
     solved = solve(prepared, requested_grid(prepared, steps + 1, start, stop))
-    scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
-    times = solved.span.time
-    if method == "rk4":
-        found = fixed_steps(scaled, times)
-    else:
-        found = adaptive_steps(scaled, times, tolerance)
-    told = {"method": method, "steps": steps, "steps_taken": found.steps}
-    if method == "adaptive":
-        told["tolerance"] = tolerance
-    return _dataset(prepared, solved, form, scaled, found, told)
+    return _Task(prepared, solved, Scaled(form, float(prepared.kinematics.numbers.scale)))
 
 
 @dataclass(frozen=True)

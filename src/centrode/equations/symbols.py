@@ -234,18 +234,26 @@ class Sum:
             for term, number in self.terms.items()
         )
 
-    def value(self, m: Namespace, value_of: Callable[[Letter], Number]) -> Number:
-        """The number that it is, from those of its letters, over any algebra."""
+    def value(
+        self, m: Namespace, value_of: Callable[[Letter], Number], waves: dict[Wave, Number] | None = None
+    ) -> Number:
+        """The number that it is, from those of its letters, over any algebra.
+
+        Sums of the same letters share `waves`: each sine and cosine is computed once and kept there.
+        """
+        known = {} if waves is None else waves
         total: Number = 0.0
         for term, number in self.terms.items():
             product: Number = float(number)
             for letter, power in term.letters:
                 product = product * _power(value_of(letter), power)
             for one, power in term.waves:
-                angle: Number = 0.0
-                for letter, count in one.parts:
-                    angle = angle + count * value_of(letter)
-                product = product * _power(m.sin(angle) if one.kind == "sin" else m.cos(angle), power)
+                if one not in known:
+                    angle: Number = 0.0
+                    for letter, count in one.parts:
+                        angle = angle + count * value_of(letter)
+                    known[one] = m.sin(angle) if one.kind == "sin" else m.cos(angle)
+                product = product * _power(known[one], power)
             total = total + product
         return total
 

@@ -179,7 +179,7 @@ class Source:
     @_shown.register
     def _picture(self, block: Picture, floats: bool = True) -> str:
         name = f"pictures/{len(self.files) + 1}.svg"
-        self.files[name] = block.svg
+        self.files[name] = with_cubic_letters(block.svg)
         where = f"{block.number}, floats: {'true' if floats else 'false'}"
         words = quote(spoken_picture(block))
         return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {words}, {where})"
@@ -191,6 +191,42 @@ class Source:
     @_shown.register
     def _check(self, block: CheckBlock) -> str:
         return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
+
+
+_OUTLINE = re.compile(rb'(<path id="[^"]*" d=")([^"]*)(" transform="scale\(0\.015625\))')
+_STEP = re.compile(rb"[A-Za-z]|-?\d+")
+
+
+def with_cubic_letters(svg: bytes) -> bytes:
+    """A picture whose letters have cubic curves between whole units: PDF knows no others, and whole numbers are short.
+
+    A unit is less than a two-thousandth of the height of a capital.
+    """
+    return _OUTLINE.sub(lambda found: found[1] + _cubic(found[2]) + found[3], svg)
+
+
+def _cubic(outline: bytes) -> bytes:
+    """The outline of a letter with cubic curves for parabolas; as it is where it is not what matplotlib writes."""
+    steps = _STEP.findall(outline)
+    written: list[str] = []
+    here = (0, 0)
+    k = 0
+    while k < len(steps):
+        letter = steps[k].decode()
+        count = {"M": 2, "L": 2, "Q": 4, "z": 0}.get(letter)
+        if count is None or len(steps) < k + 1 + count or b"." in outline:
+            return outline
+        numbers = [int(one) for one in steps[k + 1 : k + 1 + count]]
+        if letter == "Q":
+            control, end = numbers[:2], numbers[2:]
+            near = [round((one + 2 * c) / 3) for one, c in zip(here, control, strict=True)]
+            far = [round((one + 2 * c) / 3) for one, c in zip(end, control, strict=True)]
+            letter, numbers = "C", [*near, *far, *end]
+        if numbers:
+            here = numbers[-2], numbers[-1]
+        written.append(f"{letter} {' '.join(map(str, numbers))}")
+        k += 1 + count
+    return " ".join(written).encode()
 
 
 def _heading(heading: Heading, role: str) -> str:

@@ -17,6 +17,11 @@ LEVEL = 9
 _START = re.compile(rb"startxref\s+(\d+)\s+%%EOF\s*\Z")
 _SECTION = re.compile(rb"(\d+) (\d+)[ \r]*\n")
 _OBJECT = re.compile(rb"(\d+) 0 obj\s")
+_COMPRESSED = re.compile(
+    rb"<<(?=(?:(?!stream).)*?/Filter\s*/FlateDecode)(?!(?:(?!stream).)*?/DecodeParms)(?:(?!stream).)*?"
+    rb"/Length (?P<length>\d+)\b(?:(?!stream).)*?>>\s*stream\r?\n(?P<data>.*)\r?\nendstream\s*",
+    re.DOTALL,
+)
 _STREAM = re.compile(rb">>\s*stream\r?\n")
 
 
@@ -67,6 +72,7 @@ def _written(head: bytes, objects: Mapping[int, bytes], trailer: bytes) -> bytes
     packed: list[int] = []
     for number, text in objects.items():
         if _STREAM.search(text):
+            text = _tighter(text)
             entries[number] = 1, len(out), 0
             out += b"%d 0 obj\n%b\nendobj\n" % (number, text)
         else:
@@ -83,6 +89,18 @@ def _written(head: bytes, objects: Mapping[int, bytes], trailer: bytes) -> bytes
     start = len(out)
     out += _stream(last, *_table(entries, last + 1, trailer))
     return bytes(out) + b"startxref\n%d\n%%%%EOF" % start
+
+
+def _tighter(text: bytes) -> bytes:
+    """A compressed stream at the best level, which typst does not take; as it is where that does not help."""
+    found = _COMPRESSED.fullmatch(text)
+    if found is None or int(found["length"]) != len(found["data"]):
+        return text
+    data = zlib.compress(zlib.decompress(found["data"]), LEVEL)
+    if len(data) >= len(found["data"]):
+        return text
+    head = text[: found.start("length")] + b"%d" % len(data) + text[found.end("length") : found.start("data")]
+    return head + data + text[found.end("data") :]
 
 
 def _object_stream(objects: list[tuple[int, bytes]]) -> tuple[bytes, bytes]:

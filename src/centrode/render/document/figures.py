@@ -6,9 +6,11 @@ import io
 import re
 import textwrap
 import unicodedata
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
@@ -75,8 +77,7 @@ def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
 
     Edges about letters are left to SVG: a path for each such text would hold the outlines of its letters anew.
     """
-    found: list[Any] = figure.findobj(Text)
-    texts = [one for one in found if one.get_path_effects()]
+    texts = [one for one in _texts_in(figure) if one.get_path_effects()]
     effects = [one.get_path_effects() for one in texts]
     names = [one.get_gid() for one in texts]
     try:
@@ -97,6 +98,15 @@ def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
             text.set_gid(name)
     svg = _EDGED.sub(lambda found: _LETTERS.sub(_with_edge, found[0]), stream.getvalue())
     return _PLACES.sub(lambda found: _DECIMALS.sub(_rounded, found[0]), svg)
+
+
+def _texts_in(artist: Any) -> Iterator[Any]:
+    """Texts of a figure but those of axes: these have no edges, and looking for them makes ticks that nobody draws."""
+    for child in artist.get_children():
+        if isinstance(child, Text):
+            yield child
+        elif not isinstance(child, Axis):
+            yield from _texts_in(child)
 
 
 def _with_edge(found: re.Match[bytes]) -> bytes:

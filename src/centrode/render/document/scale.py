@@ -33,14 +33,14 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
     canvas: Any = MeasuringCanvas(figure)
     renderer = canvas.get_renderer()
     kept: list[Any] = []
-    for axes in figure.axes:
-        for text in list(axes.texts):
-            x, y = (float(value) for value in text.get_position())
-            if _is_overlay(axes, figure) and (x >= right or y >= top):
-                text.remove()
-        with house_style():
+    with house_style():
+        for axes in figure.axes:
+            for text in list(axes.texts):
+                x, y = (float(value) for value in text.get_position())
+                if _is_overlay(axes, figure) and (x >= right or y >= top):
+                    text.remove()
             boxes = [_extent(artist, axes, renderer) for artist in axes.get_children()]
-        kept += [box for box in boxes if box is not None]
+            kept += [box for box in boxes if box is not None]
     inches = Bbox.union(kept).transformed(figure.dpi_scale_trans.inverted()) if kept else figure.bbox_inches
     page = np.array([right, top]) / INCH
     low = np.clip(np.array([inches.x0, inches.y0]) - ROOM / INCH, 0.0, page)

@@ -6,6 +6,7 @@ A figure is drawn at the size that it has on paper, so that a size in points is 
 from __future__ import annotations
 
 import colorsys
+import functools
 import logging
 import re
 import warnings
@@ -95,16 +96,24 @@ def halo() -> list[AbstractPathEffect]:
     return [withStroke(linewidth=2.0, foreground="white")]
 
 
+@functools.cache
+def _checked_settings() -> dict[str, Any]:
+    """All settings of figures, checked by matplotlib once: a report is in this context some 150 times."""
+    settings: Any = matplotlib.rcParamsDefault | SETTINGS
+    # Even to ask for the backend would load pyplot and choose one.
+    with matplotlib.rc_context({name: value for name, value in settings.items() if name not in BACKEND}):
+        return {name: dict.__getitem__(matplotlib.rcParams, name) for name in settings if name not in BACKEND}
+
+
 @contextmanager
 def house_style() -> Iterator[None]:
     """Context in which figures are made: matplotlib's defaults and ours, whatever the user has set.
 
     A letter that the font lacks (a title may be in any language) becomes a box, without a warning.
     """
-    settings: Any = matplotlib.rcParamsDefault | SETTINGS
-    # Even to ask for the backend would load pyplot and choose one.
-    ours = {name: value for name, value in settings.items() if name not in BACKEND}
-    with matplotlib.rc_context(ours), warnings.catch_warnings():
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        settings: Any = matplotlib.rcParams
+        dict.update(settings, _checked_settings())
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         MATHTEXT.addFilter(_is_no_missing_letter)
         try:

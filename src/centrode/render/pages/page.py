@@ -156,6 +156,8 @@ class Page:
         """The centre of the cheapest place for a name."""
         turns = np.pi / 2 + 2 * np.pi * np.arange(SIDES) / SIDES
         around = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+        boxes = np.array(self.boxes).reshape(-1, 2, 2)
+        lines = np.array(self.segments).reshape(-1, 2, 2)
         best, lowest = wish.place, np.inf
         for ring in RINGS:
             if lowest <= ring:
@@ -163,35 +165,35 @@ class Page:
             # so far off that the box stands clear of the place in this direction
             far = np.minimum.reduce(np.divide(half, np.maximum(np.abs(around), 1e-9)), axis=1)
             centres = wish.place + (wish.clear + ring + far)[:, None] * around
-            for centre in centres:
-                cost = ring + self._cost(centre, half, room)
+            for centre, dear in zip(centres, _costs(centres, half, room, boxes, lines), strict=True):
+                cost = ring + float(dear)
                 if cost < lowest - 1e-9:
                     best, lowest = centre, cost
         return best
 
-    def _cost(self, centre: Array, half: Array, room: Array) -> float:
-        """What it costs to stand somewhere: forbidden over another name or outside, dear over lines."""
-        low, high = centre - half, centre + half
-        if (low < room[0]).any() or (high > room[1]).any():
-            return 1e6
-        for box in self.boxes:
-            if (low < box[1]).all() and (high > box[0]).all():
-                return 1e6
-        return CROSSING * count_crossings(low - THICK, high + THICK, self.segments)
+
+def _costs(centres: Array, half: Array, room: Array, boxes: Array, lines: Array) -> Array:
+    """What it costs to stand at places (n, 2): forbidden over another name or outside, dear over lines (k, 2, 2)."""
+    low, high = centres - half, centres + half
+    taken = (low[:, None] < boxes[:, 1]).all(axis=2) & (high[:, None] > boxes[:, 0]).all(axis=2)
+    forbidden = (low < room[0]).any(axis=1) | (high > room[1]).any(axis=1) | taken.any(axis=1)
+    costs = np.full(len(centres), 1e6)
+    free = ~forbidden
+    if free.any():
+        costs[free] = CROSSING * count_crossings(low[free] - THICK, high[free] + THICK, lines)
+    return costs
 
 
-def count_crossings(low: Array, high: Array, segments: Sequence[tuple[Array, Array]]) -> int:
-    """How many segments pass through a box (Liang and Barsky)."""
-    if not segments:
-        return 0
-    start = np.array([first for first, _second in segments])
-    along = np.array([second for _first, second in segments]) - start
+def count_crossings(low: Array, high: Array, segments: Array) -> NDArray[np.int_]:
+    """How many segments (k, 2, 2) pass through each of some boxes, whose corners are (n, 2) (Liang and Barsky)."""
+    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
+    low, high = low[:, None], high[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = (low - start) / along, (high - start) / along
     inside = (start >= low) & (start <= high)
-    enter = np.where(along == 0, np.where(inside, -np.inf, np.inf), np.minimum(one, other)).max(axis=1)
-    leave = np.where(along == 0, np.where(inside, np.inf, -np.inf), np.maximum(one, other)).min(axis=1)
-    return int(np.sum((enter <= leave) & (enter <= 1.0) & (leave >= 0.0)))
+    enter = np.where(along == 0, np.where(inside, -np.inf, np.inf), np.minimum(one, other)).max(axis=2)
+    leave = np.where(along == 0, np.where(inside, np.inf, -np.inf), np.maximum(one, other)).min(axis=2)
+    return np.asarray(np.sum((enter <= leave) & (enter <= 1.0) & (leave >= 0.0), axis=1))
 
 
 def new_page(size: tuple[float, float] = (WIDE, HIGH)) -> Page:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import groupby
 from xml.etree import ElementTree as Xml
 
 from centrode.errors import InputError
@@ -27,10 +28,16 @@ REFERENCE = re.compile(r"url\(\s*['\"]?#([^)'\"]+)['\"]?\s*\)")
 FOREIGN = re.compile(r"url\((?!\s*['\"]?#)|expression|@import|javascript:", re.IGNORECASE)
 PICTURE = re.compile(r"data:image/(png|jpeg);base64,[A-Za-z0-9+/=\s]*")
 NUMBER = re.compile(r"-?\d+\.\d{3,}(?!\d*e)")
+LETTER_DECIMALS = 1
+"""Of places of letters in a text, in hundredths of its size."""
 DECIMALS = 2
 """Of coordinates in a figure, in 1/72 inch."""
 
 
+LETTER_STEP = re.compile(r"\s*([A-Za-z])\s*")
+LEAST_CLIPPED = 2
+"""Elements for which a group is shorter than what they say themselves."""
+PLACE = re.compile(r"translate\(([-\d.]+) ([-\d.]+)\)")
 TRANSLATION = re.compile(r"translate\([^)]*\)")
 PEN = re.compile(r"[\w\s:;#%.,()-]+")
 """Declarations that cannot end the rule that they stand in."""
@@ -46,11 +53,13 @@ class Drawings:
     Attributes
     ----------
     letters : outlines that they share -> the name of each
+    texts : letters of texts that they share -> the name of each
     pens : strokes and fills that they share -> the class of each
     count : of figures
     """
 
     letters: dict[str, str] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)
     pens: dict[str, str] = field(default_factory=dict)
     count: int = 0
 
@@ -73,8 +82,11 @@ class Drawings:
         for child in root:
             whole.extend(_kept(child, names))
         _join_edges(whole)
+        _join_strokes(whole)
+        _group_clipped(whole)
         self._share_pens(whole)
-        return Xml.tostring(whole, encoding="unicode")
+        self._share_texts(whole)
+        return _written(whole)
 
     def shared(self) -> str:
         """The outlines that figures share; it stands before them."""
@@ -83,7 +95,8 @@ class Drawings:
         outlines = "".join(
             drawn.replace("<path", f'<path id="{name}"', 1) for drawn, name in self.letters.items()
         )
-        return f'<svg class="letters" width="0" height="0" aria-hidden="true"><defs>{outlines}</defs></svg>'
+        texts = "".join(f'<g id="{name}">{letters}</g>' for letters, name in self.texts.items())
+        return f'<svg class="letters" width="0" height="0" aria-hidden="true"><defs>{outlines}{texts}</defs></svg>'
 
     def style(self) -> str:
         """The rules of the pens that figures share."""
@@ -96,6 +109,24 @@ class Drawings:
             if PEN.fullmatch(pen):
                 del element.attrib["style"]
                 element.set("class", self.pens.setdefault(pen, f"p{len(self.pens)}"))
+
+    def _share_texts(self, whole: Xml.Element) -> None:
+        """A reference in place of each text, and of the letter of a text of one."""
+        names = set(self.letters.values())
+        for group in list(whole.iter("g")):
+            letters = list(group)
+            if not letters or not all(_is_letter(one, names) for one in letters):
+                continue
+            for one in letters:
+                _place_letter(one)
+            if len(letters) == 1 and set(letters[0].attrib) == {"href"}:
+                name = letters[0].get("href", "").removeprefix("#")
+            else:
+                name = self.texts.setdefault("".join(map(_written, letters)), f"t{len(self.texts)}")
+            for one in letters:
+                group.remove(one)
+            group.tag = "use"
+            group.set("href", f"#{name}")
 
     def _names(self, root: Xml.Element, used: set[str]) -> dict[str, str]:
         """New names of what is referred to; outlines of letters are taken out and shared."""
@@ -116,7 +147,8 @@ class Drawings:
     def _letter(self, path: Xml.Element) -> str:
         """Name of a shared outline; the same letter of two figures is one."""
         own = {key: " ".join(path.get(key, "").split()) for key in ("d", "transform")}
-        drawn = Xml.tostring(Xml.Element("path", {k: v for k, v in own.items() if v}), encoding="unicode")
+        own["d"] = LETTER_STEP.sub(r"\1", own["d"])
+        drawn = _written(Xml.Element("path", {k: v for k, v in own.items() if v}))
         return self.letters.setdefault(drawn, f"g{len(self.letters)}")
 
 
@@ -170,6 +202,72 @@ def _join_edges(whole: Xml.Element) -> None:
                 if same and set(letters) == {"fill"} and edge.get("fill") == letters["fill"]:
                     one.set("style", f"{one.get('style')}; paint-order: stroke")
                     parent.remove(other)
+
+
+def _join_strokes(whole: Xml.Element) -> None:
+    """Lines behind each other of one opaque pen as one path; what is filled or seen through would look different."""
+    for parent in whole.iter():
+        last: Xml.Element | None = None
+        for one in list(parent):
+            own = {key: value for key, value in one.attrib.items() if key != "d"}
+            if one.tag != "path" or not _is_plain_stroke(one):
+                last = None
+            elif last is not None and own == {key: value for key, value in last.attrib.items() if key != "d"}:
+                last.set("d", last.get("d", "") + one.get("d", ""))
+                parent.remove(one)
+            else:
+                last = one
+
+
+def _group_clipped(whole: Xml.Element) -> None:
+    """What stands one behind the other and is clipped alike, clipped together."""
+    for parent in list(whole.iter()):
+        runs = [
+            (clip, list(run))
+            for clip, run in groupby(
+                parent, lambda one: None if one.get("transform") else one.get("clip-path")
+            )
+        ]
+        if all(clip is None or len(run) < LEAST_CLIPPED for clip, run in runs):
+            continue
+        for child in list(parent):
+            parent.remove(child)
+        for clip, run in runs:
+            if clip is None or len(run) < LEAST_CLIPPED:
+                parent.extend(run)
+                continue
+            group = Xml.SubElement(parent, "g", {"clip-path": clip})
+            for one in run:
+                del one.attrib["clip-path"]
+                group.append(one)
+
+
+def _is_plain_stroke(path: Xml.Element) -> bool:
+    """Whether a path is a line that hides what is below it, without a name that something refers to."""
+    seen_through = any("opacity" in key for key in (*path.attrib, *_pen(path)))
+    begins = path.get("d", "").startswith("M")
+    return begins and _pen(path).get("fill") == "none" and not seen_through and "id" not in path.attrib
+
+
+def _is_letter(element: Xml.Element, names: set[str]) -> bool:
+    """Whether an element is a letter of a text, wherever it stands."""
+    return element.tag == "use" and element.get("href", "").removeprefix("#") in names and not len(element)
+
+
+def _place_letter(letter: Xml.Element) -> None:
+    """The place of a letter as coordinates, which are shorter."""
+    found = PLACE.fullmatch(letter.get("transform", ""))
+    if found is not None and not {"x", "y"} & set(letter.attrib):
+        del letter.attrib["transform"]
+        for axis, value in zip("xy", found.groups(), strict=True):
+            place = f"{float(value):.{LETTER_DECIMALS}f}".rstrip("0").rstrip(".")
+            if float(place):
+                letter.set(axis, place)
+
+
+def _written(element: Xml.Element) -> str:
+    """An element without blanks before the ends of empty ones; in texts and labels such ends are escaped."""
+    return Xml.tostring(element, encoding="unicode").replace(" />", "/>")
 
 
 def _pen(element: Xml.Element) -> dict[str, str]:

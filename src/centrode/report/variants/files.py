@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from centrode.assignments.answers import VariantAnswers, read_answers
 from centrode.assignments.results import spoken_variants
 from centrode.assignments.tables import Table
+from centrode.equations.integration import results_of_integration
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import Report
@@ -20,6 +21,7 @@ from centrode.report.files import DEFAULT_FORMATS, check_formats, document, writ
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answers import answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, write_variants
+from centrode.topics.registry import INTEGRATE
 
 if TYPE_CHECKING:
     from centrode.assignments.results import VariantResults, VariantRow, Variants
@@ -61,6 +63,8 @@ def study_of_variant(mechanism: Mechanism, results: VariantResults) -> ReportStu
     # variants have forces at the mean speed, a report those of the real motion where there is one
     if results.study is not None and study.motion_of_forces == "mean":
         study.keep("study", results.study)
+    if results.adaptive is not None and not study.wishes.options:
+        study.keep(("result", INTEGRATE.name), results_of_integration(mechanism, results.adaptive))
     return study
 
 
