@@ -28,6 +28,7 @@ FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "integrate": ("integration.csv", ("--steps", "60", "--no-figures")),
     "reduce": ("reduction.csv", FEW),
     "reactions": ("reactions.csv", FEW),
+    "sheets": ("sheet-1.pdf", ("--format", "pdf")),
     "polygons": ("polygons.csv", ("--at", "1 rad", "--no-figures")),
     "region": ("region.csv", ("--samples", "5", "--no-figures")),
     "flywheel": ("summary.json", ("--samples", "9", "--no-figures")),

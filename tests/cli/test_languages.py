@@ -118,7 +118,7 @@ def test_tables_stay_in_english_for_programs(centrode: Centrode, folder: Path, l
         ("[assembly]", '[[drives]]\nlink = "DB"\nspeed = 1\n[assembly]'),
         ("[assembly]", "[study]\nsamples = 1000000000\n[assembly]"),
         ('sides = { B = "left" }', ""),
-        ("speed = 1", "speed = 0"),
+        ("speed = 1", 'speed = "1 kg"'),
         ("speed = 1", 'law = "1/t"'),
         ("speed = 1", 'law = "sin(t"'),
     ],

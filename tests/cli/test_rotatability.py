@@ -41,14 +41,22 @@ def test_a_repair_is_printed_and_written(centrode: Centrode, folder: Path) -> No
     asked = ("--repair", "--vary", "links.CB.angle", "--vary", "links.BD.angle=5 rad:7 rad")
     done = centrode("rotatability", "slider-between-cranks-locked", *asked, "--out", "turning.toml")
     assert done.code == 0
-    assert done.rows["verified"].startswith("turns fully, least transmission angle 1.00")
+    assert done.rows["verified"].startswith("turns fully, least transmission angle 10.000")
     assert done.rows["links.BD.angle"].startswith("from 5.7 rad (326.586 deg) to ")
     again = centrode("rotatability", "turning.toml")
     assert again.rows["turns fully"] == "yes, it returns after 1 turn"
     run = centrode("run", "turning.toml", "--no-figures", "--samples", "361")
     assert run.code == 0
     assert run.rows["samples"] == "361: ok 361"
-    report = centrode("rotatability", "turning.toml", "--repair", "--out", "report.json")
+    report = centrode(
+        "rotatability",
+        "turning.toml",
+        "--repair",
+        "--least-transmission-angle",
+        "10 deg",
+        "--out",
+        "report.json",
+    )
     assert report.rows["found"] == "the requirement is already satisfied"
     assert json.loads((folder / "report.json").read_text(encoding="utf-8"))["found"] is True
 

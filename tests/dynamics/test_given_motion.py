@@ -97,7 +97,7 @@ def test_a_drive_at_rest(press: ct.Mechanism) -> None:
         ({"speed": "fast"}, "fast"),
         ({"speed": 3, "acceleration": "1 m"}, "rad/s\\^2"),
         ({"acceleration": 3}, "an acceleration is given without a speed"),
-        ({"speed": "steady", "acceleration": 3}, "an acceleration is given without a speed"),
+        ({"speed": 3, "motion": "real"}, "choose one of them"),
     ],
 )
 def test_motions_that_cannot_be(press: ct.Mechanism, given: dict[str, Any], message: str) -> None:

@@ -86,7 +86,7 @@ mean_speed = "65 rpm"
 
 def texts(speed: str) -> tuple[str, str]:
     """How the mechanism works, and the law of its drive in the table of its data."""
-    mechanism = ct.parse_mechanism(FILE.replace("SPEED", speed))
+    mechanism = ct.parse_mechanism(FILE.replace("SPEED", speed).partition("[machine]")[0])
     spelling = PlainSpelling(mechanism.display)
     words = " ".join(spelling.text(one.text) for one in sheet(ct.principle_of_operation(mechanism)).printed)
     tables = [block for part in data_chapter(mechanism).sections for block in part.blocks]

@@ -152,7 +152,8 @@ class _Positions:
             return None
         sentence = self._sentences(group)[self.signs[group.branch.letter] > 0]
         letters: dict[str, Text] = {
-            f"letter{k}": SumFormula(Sum.letter(one)) for k, one in enumerate(group.auxiliary)
+            name: SumFormula(Sum.letter(one))
+            for name, one in zip(("first", "second", "third"), group.auxiliary, strict=False)
         }
         point, centre, other = map(Name, group.names)
         if self.equations.mechanism.space == "sphere":
@@ -167,44 +168,44 @@ class _Positions:
         if self.equations.mechanism.space == "sphere":
             return (
                 Sentence(
-                    "{group}: the closure {closure} = {result}, with the auxiliary angles {letter1} and {letter2}; "
+                    "{group}: the closure {closure} = {result}, with the auxiliary angles {second} and {third}; "
                     "{point} is to the right of the arc from {centre} to {other}."
                 ),
                 Sentence(
-                    "{group}: the closure {closure} = {result}, with the auxiliary angles {letter1} and {letter2}; "
+                    "{group}: the closure {closure} = {result}, with the auxiliary angles {second} and {third}; "
                     "{point} is to the left of the arc from {centre} to {other}."
                 ),
             )
         if group.kind == "RPR":
             return (
                 Sentence(
-                    "{group}: auxiliary vector from {centre} to {point}, its length {letter0}, its angle {letter1}; "
+                    "{group}: auxiliary vector from {centre} to {point}, its length {first}, its angle {second}; "
                     "{point} is behind on guide {other}."
                 ),
                 Sentence(
-                    "{group}: auxiliary vector from {centre} to {point}, its length {letter0}, its angle {letter1}; "
+                    "{group}: auxiliary vector from {centre} to {point}, its length {first}, its angle {second}; "
                     "{point} is ahead on guide {other}."
                 ),
             )
         if group.kind == "RRP":
             return (
                 Sentence(
-                    "{group}: {letter0} is the angle of {centre}-{point} to guide {other}; "
+                    "{group}: {first} is the angle of {centre}-{point} to guide {other}; "
                     "{point} is behind the foot of the perpendicular."
                 ),
                 Sentence(
-                    "{group}: {letter0} is the angle of {centre}-{point} to guide {other}; "
+                    "{group}: {first} is the angle of {centre}-{point} to guide {other}; "
                     "{point} is ahead of the foot of the perpendicular."
                 ),
             )
         return (
             Sentence(
-                "{group}: auxiliary vector from {centre} to {other}, its length {letter0}, its angle {letter1}; "
-                "law of cosines for the angle {letter2} at {centre}; {point} is to the right of the vector."
+                "{group}: auxiliary vector from {centre} to {other}, its length {first}, its angle {second}; "
+                "law of cosines for the angle {third} at {centre}; {point} is to the right of the vector."
             ),
             Sentence(
-                "{group}: auxiliary vector from {centre} to {other}, its length {letter0}, its angle {letter1}; "
-                "law of cosines for the angle {letter2} at {centre}; {point} is to the left of the vector."
+                "{group}: auxiliary vector from {centre} to {other}, its length {first}, its angle {second}; "
+                "law of cosines for the angle {third} at {centre}; {point} is to the left of the vector."
             ),
         )
 

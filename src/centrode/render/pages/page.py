@@ -176,10 +176,10 @@ def _costs(centres: Array, half: Array, room: Array, boxes: Array, lines: Array)
     """What it costs to stand at places (n, 2): forbidden over another name or outside, dear over lines (k, 2, 2)."""
     low, high = centres - half, centres + half
     taken = (low[:, None] < boxes[:, 1]).all(axis=2) & (high[:, None] > boxes[:, 0]).all(axis=2)
-    forbidden = (low < room[0]).any(axis=1) | (high > room[1]).any(axis=1) | taken.any(axis=1)
+    forbidden = np.any(low < room[0], axis=1) | np.any(high > room[1], axis=1) | np.any(taken, axis=1)
     costs = np.full(len(centres), 1e6)
     free = ~forbidden
-    if free.any():
+    if np.any(free):
         costs[free] = CROSSING * count_crossings(low[free] - THICK, high[free] + THICK, lines)
     return costs
 
