@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import colorsys
+import io
 import math
 from pathlib import Path
 
@@ -56,6 +57,12 @@ def pages() -> dict[str, dict[str, Figure]]:
         name: ct.figures(ct.graphic_analysis(ct.example(name), instants=[INSTANTS[name]]))
         for name in LOOKED_AT
     }
+
+
+def test_a_page_can_be_saved_as_any_figure(pages: dict[str, dict[str, Figure]]) -> None:
+    stream = io.BytesIO()
+    pages["slider-between-cranks"]["velocity"].savefig(stream, format="png", dpi=20)
+    assert stream.getvalue().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("name", LOOKED_AT)

@@ -98,13 +98,15 @@ class MeasuringRenderer(RendererAgg):
 
     def __init__(self, width: float, height: float, dpi: float) -> None:
         super().__init__(width, height, dpi)  # type: ignore[no-untyped-call]
-        self.mathtext_parser = kept_pixels()
+        # matplotlib 3.11 draws formulas from their glyphs, earlier versions from pixels
+        own: Any = self.mathtext_parser
+        self.mathtext_parser = kept_formulas("path" if own._output_type == "vector" else "agg")
 
 
 @functools.cache
-def kept_pixels() -> KeptFormulas:
-    """The formulas of this process in pixels."""
-    return KeptFormulas("agg")
+def kept_formulas(output: str) -> KeptFormulas:
+    """The formulas of this process, as renderers of pixels take them."""
+    return KeptFormulas(output)
 
 
 class MeasuringCanvas(FigureCanvasAgg):
