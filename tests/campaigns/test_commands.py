@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 from tools.campaigns.commands import lines
 from tools.campaigns.commands.cases import run
 
+from centrode.locale import choose_language_of_process
+
 CASES = tuple(number for number in range(60) if number != 19)
 """The one that is left out makes a whole report: ten seconds."""
+
+
+@pytest.fixture(autouse=True)
+def english() -> Iterator[None]:
+    """Commands of the sample choose languages; other tests of the process speak English."""
+    yield
+    choose_language_of_process("en")
 
 
 @pytest.mark.parametrize("number", CASES)

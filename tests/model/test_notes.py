@@ -66,7 +66,7 @@ def test_a_report_without_the_keys_of_a_note_is_none() -> None:
             '[report] standard: expected one of "plain", "gost", "dstu", got "gots"',
         ),
         ("[report]\nstandard = 2\n", '[report] standard: expected one of "plain", "gost", "dstu", got 2'),
-        ('[report]\ntask = ""\n', "[report]: task is empty; write a text, or remove the key"),
+        ('[report]\ntask = " "\n', "[report]: task is empty; write a text, or remove the key"),
         ("[report]\ntask = 5\n", "[report] task: expected a text, got 5"),
         ('[report]\ntask = ["a"]\n', "[report] task: expected a text"),
         (f'[report]\ntask = "{"a" * (PROSE_LENGTH + 1)}"\n', f"a text has at most {PROSE_LENGTH} characters"),

@@ -410,7 +410,7 @@ def test_a_linkage_shows_and_tells_its_cam() -> None:
 
 
 def test_chapters_of_linkages_are_none_of_follower_cams(valve: ReportStudy) -> None:
-    others = set(CHAPTERS) - set(NAMES)
+    others = set(CHAPTERS) - {*NAMES, "conclusions"}
     assert [key for key in sorted(others) if CHAPTERS[key].make(valve) is not None] == []
 
 

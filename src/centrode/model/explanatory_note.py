@@ -34,9 +34,9 @@ def read_prose(value: object) -> str:
 
 
 def read_paragraphs(value: object) -> str:
-    """A text of several lines that says something."""
+    """A text of several lines that says something; an empty one is that of a key that is left out."""
     text = read_prose(value)
-    if not text.strip():
+    if text and not text.strip():
         raise Problem(_("{key} is empty").format(key=KEY), _("write a text, or remove the key"))
     return text
 
@@ -44,7 +44,7 @@ def read_paragraphs(value: object) -> str:
 def _line(value: object, most: int) -> str:
     if not isinstance(value, str):
         raise Problem(_("expected a text, got {value}").format(value=value_text(value)))
-    if not value.strip():
+    if value and not value.strip():
         raise Problem(_("{key} is empty").format(key=KEY), _("write a text, or remove the key"))
     if len(value) > most:
         what = _("a text has at most {most} characters, got {count}")
@@ -65,6 +65,8 @@ def _read_variant(value: object) -> str:
 
 
 def _read_source(value: object) -> str:
+    if value == "":
+        raise Problem(_("{key} is empty").format(key=KEY), _("write a text, or remove the key"))
     return _line(value, SOURCE_LENGTH)
 
 
