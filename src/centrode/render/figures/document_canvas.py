@@ -100,13 +100,13 @@ class MeasuringRenderer(RendererAgg):
         super().__init__(width, height, dpi)  # type: ignore[no-untyped-call]
         # matplotlib 3.11 draws formulas from their glyphs, earlier versions from pixels
         own: Any = self.mathtext_parser
-        self.mathtext_parser = kept_formulas("path" if own._output_type == "vector" else "agg")
+        self.mathtext_parser = kept_formulas(vector=own._output_type == "vector")
 
 
 @functools.cache
-def kept_formulas(output: str) -> KeptFormulas:
+def kept_formulas(*, vector: bool) -> KeptFormulas:
     """The formulas of this process, as renderers of pixels take them."""
-    return KeptFormulas(output)
+    return KeptFormulas("path") if vector else KeptFormulas("agg")
 
 
 class MeasuringCanvas(FigureCanvasAgg):
