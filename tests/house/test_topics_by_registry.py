@@ -47,7 +47,7 @@ ALLOWED = {
         "centrode.views.drawing_sheets",
     },
     # the chapter of a repaired mechanism consists of those of other topics, and begins with what was changed
-    "report/repaired.py": {"centrode.views.single_changes"},
+    "report/repaired_mechanism.py": {"centrode.views.single_changes"},
     # conclusions on a cam follow from the results of several topics
     "report/cam_conclusions.py": {"centrode.views.cam_conclusions"},
     # every document opens with the scheme of its mechanism

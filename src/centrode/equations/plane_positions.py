@@ -418,7 +418,7 @@ class PlanePositions:
     def _meet(self, group: Meet, out: _Lines) -> None:
         stop = next((locus for locus in group.loci if isinstance(locus, Stop)), None)
         if stop is not None:
-            self._stopped(group, stop, out)
+            self._write_stop(group, stop, out)
             return
         if group.carriage is not None:
             unknown = self._unknown(self.board.angles[group.carriage])
@@ -573,7 +573,7 @@ class PlanePositions:
         # the known point is at the offset from the line's base, which the carriage has beside the point
         return self._place(track.point).plus(self._arm(group, point, base), -1), -track.offset
 
-    def _stopped(self, group: Meet, stop: Stop, out: _Lines) -> None:
+    def _write_stop(self, group: Meet, stop: Stop, out: _Lines) -> None:
         """A point whose displacement on a guide is driven."""
         line = self.lines[stop.guide]
         letter = next((x for x, name in self.board.driven.items() if name == stop.drive), None)

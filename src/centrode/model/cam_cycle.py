@@ -53,7 +53,7 @@ def with_angles_of_segments(data: Tables) -> Tables:
     for entry, share, time in zip(segments, shares, times, strict=True):
         if time is not None and speed is not None:
             share = time * speed / math.tau
-        rows.append(entry if share is None else _turned(entry, math.tau * share))
+        rows.append(entry if share is None else _with_angle(entry, math.tau * share))
     return {**changed, "segments": rows}
 
 
@@ -61,7 +61,7 @@ def _is_timed(entry: Any) -> bool:
     return isinstance(entry, Mapping) and any(entry.get(key) is not None for key in ("share", "time"))
 
 
-def _turned(entry: Tables, angle: float) -> Tables:
+def _with_angle(entry: Tables, angle: float) -> Tables:
     """A segment with its angle, as a text with its unit, which reads back exactly: a file may refuse bare angles."""
     rest = {key: value for key, value in entry.items() if key not in ("share", "time")}
     return {"angle": f"{angle!r} rad", **rest}

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.render.document.blocks import ChapterBlocks
-from centrode.report import cam_conclusions, repaired
+from centrode.report import cam_conclusions, repaired_mechanism
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics import order
@@ -58,7 +58,9 @@ def all_chapters() -> dict[str, Kind]:
     return {
         **kinds,
         cam_conclusions.NAME: conclusions._replace(make=made),
-        repaired.NAME: Kind(repaired.TITLE, functools.partial(repaired.repaired_chapter, makers)),
+        repaired_mechanism.NAME: Kind(
+            repaired_mechanism.TITLE, functools.partial(repaired_mechanism.repaired_chapter, makers)
+        ),
     }
 
 

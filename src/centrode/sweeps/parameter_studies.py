@@ -51,7 +51,7 @@ _bearings = functools.partial(importlib.import_module, "centrode.dynamics.bearin
 # The numbers of one mechanism.
 
 
-def _simulated(mechanism: Mechanism, _samples: int | None) -> Numbers:
+def _extremes_of_simulation(mechanism: Mechanism, _samples: int | None) -> Numbers:
     """Of the steady regime that a simulation runs up to."""
     regime = _regimes().steady_regime(mechanism)
     return {
@@ -119,7 +119,7 @@ def _reactions(mechanism: Mechanism, samples: int | None) -> Numbers:
 
 
 ANALYSES: Mapping[str, Callable[[Mechanism, int | None], Numbers]] = {
-    "simulate": _simulated,
+    "simulate": _extremes_of_simulation,
     "steady_motion": _steady,
     "flywheel": _flywheel,
     "reactions": _reactions,

@@ -93,10 +93,10 @@ def varyings(
             _("name {least} to {most}").format(least=1, most=MOST_PATHS),
         )
     found = tuple(_varying_value(prepared, path, (bounds or {}).get(path)) for path in paths)
-    return tuple(one if one.path in (bounds or {}) else narrowed(one, greatest_change) for one in found)
+    return tuple(one if one.path in (bounds or {}) else narrow_bounds(one, greatest_change) for one in found)
 
 
-def narrowed(one: Varying, greatest_change: float | None) -> Varying:
+def narrow_bounds(one: Varying, greatest_change: float | None) -> Varying:
     """The same number between bounds at most so far apart: parts of a length, of the greatest length, of a ratio.
 
     Angles keep their bounds: they have no size of which a change could be a part.

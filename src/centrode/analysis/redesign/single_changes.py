@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.redesign.candidates import Candidates, Varying, narrowed, paths_of_lengths, places_anew
+from centrode.analysis.redesign.candidates import (
+    Candidates,
+    Varying,
+    narrow_bounds,
+    paths_of_lengths,
+    places_anew,
+)
 from centrode.analysis.redesign.repair import (
     COARSE,
     ENOUGH,
@@ -338,7 +344,7 @@ class DimensionSearch:
         greatest_change: float | None = None,
     ) -> None:
         self.prepared, self.dimension, self.required = prepared, dimension, required
-        self.varying = narrowed(_varying(prepared, dimension), greatest_change)
+        self.varying = narrow_bounds(_varying(prepared, dimension), greatest_change)
         self.candidates = Candidates(prepared, (self.varying,))
         low, high = (float(end[0]) for end in self.candidates.box())
         outwards = np.linspace(0.0, 1.0, STEPS + 1)[1:]

@@ -167,7 +167,7 @@ def _pieces(glyphs: Any) -> list[tuple[str, float, float, float]]:
     return pieces
 
 
-def recorded(figure: Figure) -> Drawing:
+def drawing_of_figure(figure: Figure) -> Drawing:
     """A figure as a drawing in millimetres from its lower left corner."""
     before = figure.dpi
     figure.dpi = 72.0

@@ -20,7 +20,7 @@ from centrode.render.drafting.plates import (
     draw_positions_plate,
     ratio_text,
 )
-from centrode.render.drafting.recorder import LAYERS, recorded
+from centrode.render.drafting.recorder import LAYERS, drawing_of_figure
 from centrode.render.drafting.scaled_diagrams import EnergyMassFields, draw_diagram, draw_energy_mass
 from centrode.render.drafting.title_block import (
     HIGH,
@@ -196,7 +196,7 @@ def _written(figures: Sequence[Figure], folder: Path, formats: Sequence[str]) ->
             path = folder / f"sheet-{number}.{kind}"
             with house_style():
                 if kind == "dxf":
-                    write_drawing_dxf(recorded(figure), path, LAYERS, 1.0)
+                    write_drawing_dxf(drawing_of_figure(figure), path, LAYERS, 1.0)
                 else:
                     with rc_context({"pdf.fonttype": 42}):
                         canvas: Any = FigureCanvasPdf(figure)

@@ -59,7 +59,7 @@ def word_document(report: Report) -> bytes:
             "png",
             cover=_cover,
             contents=lambda: [raw_block("openxml", _contents(words))],
-            unnumbered=_unnumbered,
+            unnumbered=_heading_without_number,
         )
     with tempfile.TemporaryDirectory() as folder:
         for name, picture in convert_pictures(pictures, "png").items():
@@ -114,7 +114,7 @@ def _styled(style: str, text: str) -> Element:
     return {"t": "Div", "c": [["", [], [["custom-style", style]]], [paragraph([plain_text(text)])]]}
 
 
-def _unnumbered(heading: Heading, role: str) -> Element:
+def _heading_without_number(heading: Heading, role: str) -> Element:
     """A heading without a number: of an element, which contents list unless it stands before them, or in one."""
     level = ELEMENT_SECTION if heading.level > 1 else ELEMENT_FRONT if role == "front" else ELEMENT
     return _styled(level, heading.title)

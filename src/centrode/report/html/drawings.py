@@ -83,7 +83,7 @@ class Drawings:
             whole.extend(_kept(child, names))
         _join_edges(whole)
         _join_strokes(whole)
-        _group_clipped(whole)
+        _group_by_clip(whole)
         self._share_pens(whole)
         self._share_texts(whole)
         return _written(whole)
@@ -219,7 +219,7 @@ def _join_strokes(whole: Xml.Element) -> None:
                 last = one
 
 
-def _group_clipped(whole: Xml.Element) -> None:
+def _group_by_clip(whole: Xml.Element) -> None:
     """What stands one behind the other and is clipped alike, clipped together."""
     for parent in list(whole.iter()):
         runs = [

@@ -17,7 +17,7 @@ from centrode.model.settings import DIGITS
 from centrode.render.document.blocks import Report
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
-from centrode.report.repaired import proposed_repair, repaired_study
+from centrode.report.repaired_mechanism import proposed_repair, repaired_study
 from centrode.report.study import Moment, moments_of
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
