@@ -1,0 +1,275 @@
+"""Kinematic chains with turning joints: all of so many links, their mobility and inversions.
+
+A chain is closed (each link has two joints or more) and movable in all its parts: no links among it form a rigid body
+or a part without freedom. Sliding pairs are turning pairs of another kind here, as sliders are links like others. The
+method is that of contracted graphs (L. W. Tsai, Mechanism Design, 2001, chapters 2 and 4), grown by ears; counts agree
+with T. S. Mruthyunjaya, Kinematic structure of mechanisms revisited, Mechanism and Machine Theory 38 (2003) 279-320.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import TypeAlias
+
+from centrode.chains.contracted_graphs import ContractedGraph, Edge, graphs_of_loops, weighted
+from centrode.errors import InputError
+from centrode.locale import _
+
+Joint: TypeAlias = tuple[int, int]
+
+GREATEST = 12
+"""Links of a chain: of twelve with mobility 1 there are 6856, of fourteen 318 162."""
+MARKED = 1
+
+
+@dataclass(frozen=True)
+class Inversion:
+    """A chain with one of its links as the frame; links that symmetry exchanges give one inversion.
+
+    Attributes
+    ----------
+    frame : number of the link
+    alike : the links that would give the same inversion, itself among them
+    """
+
+    frame: int
+    alike: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class KinematicChain:
+    """A kinematic chain: links are numbered from 0, two chains are equal where they are isomorphic.
+
+    `KinematicChain.of(joints)` puts links in canonical order; polygonal links come first.
+
+    Attributes
+    ----------
+    joints : pairs of links, in ascending order
+    graph : the contracted graph in canonical form
+    """
+
+    graph: ContractedGraph
+
+    @classmethod
+    def of(cls, joints: Sequence[Joint]) -> KinematicChain:
+        """The chain with these joints between links 0, 1, ...; a chain does not depend on how its links are numbered."""
+        return cls(contract(joints)[0])
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Pairs of links that a joint connects, in ascending order."""
+        found, link = list[Joint](), self.graph.vertices
+        for u, v, weight in self.graph.edges:
+            string = [u, *range(link, link + weight), v]
+            found += [(min(pair), max(pair)) for pair in zip(string, string[1:], strict=False)]
+            link += weight
+        return tuple(sorted(found))
+
+    @property
+    def links(self) -> int:
+        """Number of links."""
+        return self.graph.vertices + sum(weight for *_ends, weight in self.graph.edges)
+
+    @property
+    def mobility(self) -> int:
+        """Degrees of freedom of the links against each other, 3 (links - 1) - 2 joints."""
+        return 3 * (self.links - 1) - 2 * len(self.joints)
+
+    @property
+    def loops(self) -> int:
+        """Number of independent loops."""
+        return len(self.joints) - self.links + 1
+
+    @cached_property
+    def degrees(self) -> tuple[int, ...]:
+        """Number of joints of each link."""
+        count = Counter(link for joint in self.joints for link in joint)
+        return tuple(count[link] for link in range(self.links))
+
+    @property
+    def assortment(self) -> tuple[int, ...]:
+        """Numbers of binary, ternary, quaternary links and so on."""
+        count = Counter(self.degrees)
+        return tuple(count[degree] for degree in range(2, max(count) + 1))
+
+    @cached_property
+    def inversions(self) -> tuple[Inversion, ...]:
+        """Links that differ as frames, polygonal ones last, each with those that symmetry exchanges with it."""
+        classes: dict[ContractedGraph, list[int]] = {}
+        for link in range(self.links):
+            classes.setdefault(marked(self.joints, link), []).append(link)
+        ordered = sorted(classes.values(), key=lambda links: (self.degrees[links[0]], links))
+        return tuple(Inversion(links[0], tuple(links)) for links in ordered)
+
+    def inversion_of(self, graph: ContractedGraph) -> int:
+        """Place among the inversions of one that `marked` gives."""
+        return next(k for k, one in enumerate(self.inversions) if marked(self.joints, one.frame) == graph)
+
+    @cached_property
+    def has_cut_link(self) -> bool:
+        """Whether a link alone holds two parts together, which then move each for itself."""
+        return any(not _is_connected(self.joints, self.links, without=link) for link in range(self.links))
+
+
+def contract(joints: Sequence[Joint], mark: int | None = None) -> tuple[ContractedGraph, tuple[tuple[int, ...], ...]]:
+    """The contracted graph of links with joints, a link marked, and the links in the order of the canonical chain.
+
+    The links come in tuples: the polygonal links (and the marked one) one by one, then the string of each edge of the
+    graph. A circle is contracted to its marked link, or to its first.
+    """
+    neighbours: dict[int, list[int]] = {}
+    for u, v in joints:
+        neighbours.setdefault(u, []).append(v)
+        neighbours.setdefault(v, []).append(u)
+    kept = [link for link in sorted(neighbours) if len(neighbours[link]) != 2 or link == mark]
+    kept = kept or [min(neighbours)]
+    place = {link: k for k, link in enumerate(kept)}
+    strings = list(_strings(neighbours, kept))
+    edges = [
+        (min(place[s[0]], place[s[-1]]), max(place[s[0]], place[s[-1]]), len(s) - 2) for s in strings
+    ]
+    colours = [MARKED if link == mark else 0 for link in kept]
+    graph, order = ContractedGraph.with_places(colours, edges)
+    at = {vertex: k for k, vertex in enumerate(order)}
+    turned = [s if at[place[s[0]]] <= at[place[s[-1]]] else s[::-1] for s in strings]
+    turned.sort(key=lambda s: (at[place[s[0]]], at[place[s[-1]]], len(s)))
+    return graph, (*((kept[v],) for v in order), *(tuple(s[1:-1]) for s in turned))
+
+
+def _strings(neighbours: dict[int, list[int]], ends: Sequence[int]) -> Iterator[list[int]]:
+    """Strings of binary links with the links at their ends, each once."""
+    inside = set(ends)
+    direct = Counter((u, v) for u in ends for v in neighbours[u] if v in inside and u < v)
+    for (u, v), times in direct.items():
+        yield from ([u, v] for _time in range(times))
+    walked: set[int] = set()
+    for end in ends:
+        for first in neighbours[end]:
+            if first in inside or first in walked:
+                continue
+            string, before, link = [end], end, first
+            while link not in inside:
+                string.append(link)
+                walked.add(link)
+                one, other = neighbours[link]
+                before, link = link, other if one == before else one
+            yield [*string, link]
+
+
+def marked(joints: Sequence[Joint], link: int) -> ContractedGraph:
+    """The contracted graph of a chain with one link marked: equal for links that symmetry exchanges."""
+    return contract(joints, link)[0]
+
+
+def chains(links: int, mobility: int = 1, *, cut_links: bool = False) -> tuple[KinematicChain, ...]:
+    """All kinematic chains of so many links with turning joints, each once, in an order that never changes.
+
+    Parameters
+    ----------
+    links : 3 to 12
+    mobility : degrees of freedom; with 0 the Baranov trusses, from which Assur groups follow
+    cut_links : also chains whose parts a single link holds together; with mobility 1 there are none
+
+    Returns
+    -------
+    tuple of KinematicChain
+        By their contracted graphs; with mobility 1 there are 1, 2, 16, 230 and 6856 of 4, 6, 8, 10 and 12 links.
+
+    Raises
+    ------
+    InputError
+        There is no chain of so many links, or there are more than 12.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> watt, stephenson = ct.chains(6)
+    >>> watt.assortment, len(watt.inversions), len(stephenson.inversions)
+    ((4, 2), 2, 3)
+    """
+    _check_links(links, mobility)
+    return _enumerated(links, mobility, cut_links)
+
+
+def _check_links(links: int, mobility: int) -> None:
+    if mobility < 0:
+        raise InputError("mobility", _("a chain has no fewer than 0 degrees of freedom"))
+    if not 3 <= links <= GREATEST:
+        raise InputError(
+            "links", _("chains of 3 to {most} links are found, {links} are wished").format(most=GREATEST, links=links)
+        )
+    if (links - 1 - mobility) % 2 or links < 3 + mobility:
+        possible = ", ".join(str(number) for number in range(3 + mobility, GREATEST + 1, 2))
+        raise InputError(
+            "links",
+            _("there is no chain of {links} links with mobility {mobility}").format(links=links, mobility=mobility),
+            _("with this mobility chains have {numbers} links").format(numbers=possible)
+            if possible
+            else _("the mobility is at most {most}").format(most=GREATEST - 3),
+        )
+
+
+@cache
+def _enumerated(links: int, mobility: int, cut_links: bool) -> tuple[KinematicChain, ...]:
+    # joints = links - 1 + loops, put into the formula of mobility
+    loops = (links - 1 - mobility) // 2
+    if loops == 1:
+        return (KinematicChain.of([(k, (k + 1) % links) for k in range(links)]),)
+    found: set[ContractedGraph] = set()
+    for graph in graphs_of_loops(loops, cut_links=cut_links):
+        binary = links - graph.vertices
+        if binary < 0:
+            continue
+        groups = subgraphs(graph)
+        for edges in weighted(graph, binary):
+            if is_movable(graph.vertices, edges, groups):
+                found.add(ContractedGraph.of(graph.colours, edges))
+    return tuple(map(KinematicChain, sorted(found, key=lambda graph: (graph.vertices, graph))))
+
+
+Groups: TypeAlias = Sequence[tuple[int, tuple[int, ...]]]
+"""Sets of two vertices or more: how many they are, and the edges between them."""
+
+
+def subgraphs(graph: ContractedGraph) -> Groups:
+    """All sets of two vertices of a graph or more, with the edges between them."""
+    sets = []
+    for chosen in range(1, 1 << graph.vertices):
+        count = chosen.bit_count()
+        inside = tuple(k for k, (u, v, _weight) in enumerate(graph.edges) if chosen >> u & 1 and chosen >> v & 1)
+        if count > 1 and inside:
+            sets.append((count, inside))
+    return tuple(sets)
+
+
+def is_movable(vertices: int, edges: Sequence[Edge], groups: Groups) -> bool:
+    """Whether every proper part of a chain, and the chain itself but for a truss, has a freedom.
+
+    A part that holds some polygonal links is stiffest with exactly those strings between them that have fewer than two
+    binary links: a string of b links adds b - 2 to its mobility.
+    """
+    # a loop of its own needs four links, one of them polygonal
+    if any(u == v and weight < 3 for u, v, weight in edges):
+        return False
+    for count, inside in groups:
+        freedom = 3 * (count - 1) + sum(min(0, edges[k][2] - 2) for k in inside)
+        # the whole chain, where no string may be left out, is no part of itself: a truss has no freedom
+        is_whole = count == vertices and all(edge[2] < 2 for edge in edges)
+        if freedom < (0 if is_whole else 1):
+            return False
+    return True
+
+
+def _is_connected(joints: Sequence[Joint], links: int, without: int) -> bool:
+    left = set(range(links)) - {without}
+    reached, waiting = set[int](), [next(iter(left))]
+    while waiting:
+        link = waiting.pop()
+        if link in reached:
+            continue
+        reached.add(link)
+        waiting += [v if u == link else u for u, v in joints if link in (u, v) and without not in (u, v)]
+    return reached == left
