@@ -1,9 +1,9 @@
 """Assur groups: what is left of a Baranov truss without one of its links.
 
-A Baranov truss is a chain without freedom that has no part of this kind. To remove a link frees as many joints as it had;
-fixed to links whose motion is known, they leave the group no freedom, and so it is with no smaller part (L. V. Assur, 1914;
-G. G. Baranov, Classification, formation, kinematics and kinetostatics of plane mechanisms with pairs of the first kind,
-1952). Links that symmetry exchanges give one group.
+A Baranov truss is a chain without freedom that has no part of this kind. To remove a link frees as many joints as it
+had; joined to links whose motion is known, they leave the group no freedom, and this holds for no smaller part of it
+(L. V. Assur, 1914; G. G. Baranov, Classification, formation, kinematics and kinetostatics of plane mechanisms with
+pairs of the first kind, 1952). Links that symmetry exchanges give one group.
 """
 
 from __future__ import annotations
@@ -84,8 +84,12 @@ def assur_groups(links: int) -> tuple[AssurScheme, ...]:
         what = _("there is no Assur group of {links} links").format(links=links)
         raise InputError("links", what, _("groups have 2, 4, 6 links and so on, as 3 links = 2 joints"))
     if links + 1 > GREATEST:
-        what = _("groups of 2 to {most} links are found, {links} are wished").format(most=GREATEST - 2, links=links)
+        what = _("groups of 2 to {most} links are found, {links} are wished").format(
+            most=GREATEST - 2, links=links
+        )
         raise InputError("links", what)
     return tuple(
-        AssurScheme(truss, inversion.frame) for truss in chains(links + 1, 0) for inversion in truss.inversions
+        AssurScheme(truss, inversion.frame)
+        for truss in chains(links + 1, 0)
+        for inversion in truss.inversions
     )

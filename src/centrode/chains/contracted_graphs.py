@@ -46,9 +46,7 @@ class ContractedGraph:
         edges = tuple(edges)
         order = canonical_order(tuple(colours), edges)
         place = {vertex: k for k, vertex in enumerate(order)}
-        moved = (
-            (min(place[u], place[v]), max(place[u], place[v]), weight) for u, v, weight in edges
-        )
+        moved = ((min(place[u], place[v]), max(place[u], place[v]), weight) for u, v, weight in edges)
         return cls(tuple(colours[v] for v in order), tuple(sorted(moved))), order
 
     @property
@@ -88,7 +86,11 @@ def _refined(colours: Colours, matrix: Matrix) -> Colours:
     while True:
         # the class itself stands first, so that classes are only split, in an order that names do not change
         signs = [
-            (colours[u], matrix[u][u], sorted((row, colours[v]) for v, row in enumerate(matrix[u]) if row and v != u))
+            (
+                colours[u],
+                matrix[u][u],
+                sorted((row, colours[v]) for v, row in enumerate(matrix[u]) if row and v != u),
+            )
             for u in range(len(colours))
         ]
         classes = sorted({repr(sign): sign for sign in signs}.values())
@@ -115,10 +117,10 @@ def _discrete_orders(classes: Colours, matrix: Matrix) -> Iterator[tuple[int, ..
 
 # Graphs without weights, as many independent loops as are wanted: each grows from one with a loop less by an ear.
 #
-# An ear is a path between two places of a graph, which are vertices or lie on edges. Every graph without cut vertices grows
-# from a circle in this way (H. Whitney, Non-separable and planar graphs, 1932). With cut links a further loop may stand
-# on one place as well, by itself or at the end of a bridge: the last block of the graph, taken away, leaves a smaller
-# one.
+# An ear is a path between two places of a graph, which are vertices or lie on edges. Every graph without cut vertices
+# grows from a circle in this way (H. Whitney, Non-separable and planar graphs, 1932). With cut links a further loop may
+# stand on one place as well, by itself or at the end of a bridge: the last block of the graph, taken away, leaves a
+# smaller one.
 
 Plain: TypeAlias = tuple[int, tuple[tuple[int, int], ...]]
 """Number of vertices, and edges."""

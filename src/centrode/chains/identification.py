@@ -1,7 +1,7 @@
 """The kinematic chain of a mechanism, and which of its inversions the mechanism is.
 
-Sliders and the parts of cylinders are links, sliding pairs are joints. A hinge of k links is k - 1 joints, which may join
-the links in different ways: a mechanism with such hinges is the limit of one inversion or of several.
+Sliders and the parts of cylinders are links, sliding pairs are joints. A hinge of k links is k - 1 joints, which may
+join the links in different ways: a mechanism with such hinges is the limit of one inversion or of several.
 """
 
 from __future__ import annotations
@@ -131,7 +131,14 @@ def chain_of(mechanism: MechanismSource) -> ChainOfMechanism:
 
     def chain(inversions: Sequence[ChainInversion], unnamed: Unnamed) -> ChainOfMechanism:
         return ChainOfMechanism(
-            mechanism, tuple(inversions), len(bodies), len(pairs) - len(higher), sliding, split, unnamed, higher
+            mechanism,
+            tuple(inversions),
+            len(bodies),
+            len(pairs) - len(higher),
+            sliding,
+            split,
+            unnamed,
+            higher,
         )
 
     if higher:

@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from itertools import pairwise
 from typing import TypeAlias
 
 from centrode.chains.contracted_graphs import ContractedGraph, Edge, graphs_of_loops, weighted
@@ -41,21 +42,28 @@ class Inversion:
 
 @dataclass(frozen=True)
 class KinematicChain:
-    """A kinematic chain: links are numbered from 0, two chains are equal where they are isomorphic.
+    """A kinematic chain: two are equal where they are isomorphic.
 
-    `KinematicChain.of(joints)` puts links in canonical order; polygonal links come first.
+    Its links are numbered from 0, polygonal ones first, in an order that follows from its structure.
+    `KinematicChain.of(joints)` makes one of any numbering.
 
     Attributes
     ----------
-    joints : pairs of links, in ascending order
     graph : the contracted graph in canonical form
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> chain = ct.KinematicChain.of([(0, 3), (3, 1), (1, 2), (2, 0)])
+    >>> chain.links, chain.mobility, chain == ct.chains(4)[0]
+    (4, 1, True)
     """
 
     graph: ContractedGraph
 
     @classmethod
     def of(cls, joints: Sequence[Joint]) -> KinematicChain:
-        """The chain with these joints between links 0, 1, ...; a chain does not depend on how its links are numbered."""
+        """The chain with these joints between links 0, 1, ..., however they are numbered."""
         return cls(contract(joints)[0])
 
     @cached_property
@@ -64,7 +72,7 @@ class KinematicChain:
         found, link = list[Joint](), self.graph.vertices
         for u, v, weight in self.graph.edges:
             string = [u, *range(link, link + weight), v]
-            found += [(min(pair), max(pair)) for pair in zip(string, string[1:], strict=False)]
+            found += [(min(pair), max(pair)) for pair in pairwise(string)]
             link += weight
         return tuple(sorted(found))
 
@@ -114,7 +122,9 @@ class KinematicChain:
         return any(not _is_connected(self.joints, self.links, without=link) for link in range(self.links))
 
 
-def contract(joints: Sequence[Joint], mark: int | None = None) -> tuple[ContractedGraph, tuple[tuple[int, ...], ...]]:
+def contract(
+    joints: Sequence[Joint], mark: int | None = None
+) -> tuple[ContractedGraph, tuple[tuple[int, ...], ...]]:
     """The contracted graph of links with joints, a link marked, and the links in the order of the canonical chain.
 
     The links come in tuples: the polygonal links (and the marked one) one by one, then the string of each edge of the
@@ -128,9 +138,7 @@ def contract(joints: Sequence[Joint], mark: int | None = None) -> tuple[Contract
     kept = kept or [min(neighbours)]
     place = {link: k for k, link in enumerate(kept)}
     strings = list(_strings(neighbours, kept))
-    edges = [
-        (min(place[s[0]], place[s[-1]]), max(place[s[0]], place[s[-1]]), len(s) - 2) for s in strings
-    ]
+    edges = [(min(place[s[0]], place[s[-1]]), max(place[s[0]], place[s[-1]]), len(s) - 2) for s in strings]
     colours = [MARKED if link == mark else 0 for link in kept]
     graph, order = ContractedGraph.with_places(colours, edges)
     at = {vertex: k for k, vertex in enumerate(order)}
@@ -199,13 +207,16 @@ def _check_links(links: int, mobility: int) -> None:
         raise InputError("mobility", _("a chain has no fewer than 0 degrees of freedom"))
     if not 3 <= links <= GREATEST:
         raise InputError(
-            "links", _("chains of 3 to {most} links are found, {links} are wished").format(most=GREATEST, links=links)
+            "links",
+            _("chains of 3 to {most} links are found, {links} are wished").format(most=GREATEST, links=links),
         )
     if (links - 1 - mobility) % 2 or links < 3 + mobility:
         possible = ", ".join(str(number) for number in range(3 + mobility, GREATEST + 1, 2))
         raise InputError(
             "links",
-            _("there is no chain of {links} links with mobility {mobility}").format(links=links, mobility=mobility),
+            _("there is no chain of {links} links with mobility {mobility}").format(
+                links=links, mobility=mobility
+            ),
             _("with this mobility chains have {numbers} links").format(numbers=possible)
             if possible
             else _("the mobility is at most {most}").format(most=GREATEST - 3),
@@ -239,7 +250,9 @@ def subgraphs(graph: ContractedGraph) -> Groups:
     sets = []
     for chosen in range(1, 1 << graph.vertices):
         count = chosen.bit_count()
-        inside = tuple(k for k, (u, v, _weight) in enumerate(graph.edges) if chosen >> u & 1 and chosen >> v & 1)
+        inside = tuple(
+            k for k, (u, v, _weight) in enumerate(graph.edges) if chosen >> u & 1 and chosen >> v & 1
+        )
         if count > 1 and inside:
             sets.append((count, inside))
     return tuple(sets)

@@ -1,9 +1,9 @@
 """Sketches of kinematic chains: joints as points of the plane, links as polygons that do not cross.
 
 Joints are the vertices of a plane graph whose edges are the sides of links: a binary link is one side, another link a
-polygon round its joints in the order in which an embedding of the chain's graph has them. Its longest loop goes outside,
-and every other joint stands in the middle of its neighbours (W. T. Tutte, How to draw a graph, 1963), so no two sides
-cross. Then sides are made more alike as long as nothing crosses.
+polygon round its joints in the order in which an embedding of the chain's graph has them. Its longest loop goes
+outside, and every other joint stands in the middle of its neighbours (W. T. Tutte, How to draw a graph, 1963), so no
+two sides cross. Then sides are made more alike as long as nothing crosses.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import lazy_loader
@@ -74,7 +75,9 @@ def chain_sketch(chain: KinematicChain) -> ChainSketch:
     # a bridge is passed twice by the loop outside: there nothing holds both parts of the chain apart
     is_circle = 2 < len(outside) == len(set(outside))
     places = _barycentric(around, loops, outside) if is_circle else _circle(len(chain.joints))
-    places = _evened(places / np.linalg.norm(places[sides[:, 0]] - places[sides[:, 1]], axis=1).mean(), around)
+    places = _evened(
+        places / np.linalg.norm(places[sides[:, 0]] - places[sides[:, 1]], axis=1).mean(), around
+    )
     return ChainSketch(chain, places, tuple(map(tuple, around)), crossing_pairs(places, sides))
 
 
@@ -119,14 +122,14 @@ def _sides(around: Rings) -> Pairs:
 
 def _round(ring: Sequence[int]) -> list[tuple[int, int]]:
     closing = [(ring[-1], ring[0])] if len(ring) > 2 else []
-    return [*zip(ring, ring[1:], strict=False), *closing]
+    return [*pairwise(ring), *closing]
 
 
 def _barycentric(around: Rings, loops: Rings, outside: Sequence[int]) -> Array:
     """Places of joints in the middle of their neighbours, those of the outer loop on a circle."""
     count = 1 + max(joint for ring in around for joint in ring)
-    # a place of its own inside each loop and each large polygon holds its corners apart: so well connected, no joints of the
-    # graph fall together
+    # a place of its own inside each loop and each large polygon holds its corners apart: so well connected, no
+    # joints fall together
     inner = [loop for loop in loops if loop is not outside] + [ring for ring in around if len(ring) > 3]
     sides = [(int(u), int(v)) for u, v in _sides(around)]
     sides += [(joint, count + k) for k, loop in enumerate(inner) for joint in loop]
@@ -198,7 +201,9 @@ class _Springs:
         total = float(excess @ excess)
         a, b = places[self.sides[:, 0]], places[self.sides[:, 1]]
         along = b - a
-        share = np.clip(((places[self.joints] - a) * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
+        share = np.clip(
+            ((places[self.joints] - a) * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0
+        )
         away = places[self.joints] - a - share[:, None] * along
         distance = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
         near = np.maximum(CLEARANCE / distance - 1.0, 0.0)

@@ -22,6 +22,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.animate import animate
 from centrode.cli.cam import cam
+from centrode.cli.chains import chains
 from centrode.cli.draw import draw
 from centrode.cli.examples import examples
 from centrode.cli.export import export
@@ -48,6 +49,7 @@ OWN: tuple[click.Command, ...] = (
     draw,
     sheets,
     export,
+    chains,
     examples,
     schema,
 )

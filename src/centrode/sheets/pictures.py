@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
+from centrode.sheets.chain_atlas import ChainAtlas
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
@@ -37,4 +38,5 @@ Picture: TypeAlias = (
     | PathDrawing
     | WheelPositions
     | FrontDiagram
+    | ChainAtlas
 )

@@ -37,6 +37,7 @@ COMMANDS = (
     "draw",
     "sheets",
     "export",
+    "chains",
     "examples",
     "schema",
 )

@@ -12,6 +12,7 @@ from centrode.locale import _
 from centrode.render.drawing.style import darkened, house_style
 from centrode.render.drawing.walking_wheel import wheel_figure
 from centrode.render.figures.areas import area_figure
+from centrode.render.figures.chain_atlas import atlas_figure
 from centrode.render.figures.charts import bar_figure, front_figure, hodograph_figure, linkage_figure
 from centrode.render.figures.files import save_figures
 from centrode.render.figures.linkages import mechanism_figure, paths_figure
@@ -28,6 +29,7 @@ from centrode.render.pages.positions import positions_figure
 from centrode.render.pages.several_instants import instants_figure
 from centrode.render.pages.vector_diagrams import vector_diagram_figure
 from centrode.render.pages.vectors import vector_page
+from centrode.sheets.chain_atlas import ChainAtlas
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
@@ -127,5 +129,7 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return wheel_figure(picture, display)
             case FrontDiagram():
                 return front_figure(picture, display)
+            case ChainAtlas():
+                return atlas_figure(picture, display)
             case _:
                 assert_never(picture)
