@@ -63,9 +63,9 @@ def canonical_order(colours: Colours, edges: Sequence[Edge]) -> tuple[int, ...]:
     refinement: B. D. McKay, Practical graph isomorphism, 1981).
     """
     matrix = _matrix(len(colours), edges)
-    best: tuple[Matrix, tuple[int, ...]] | None = None
+    best: tuple[tuple[tuple[tuple[int, ...], ...], ...], tuple[int, ...]] | None = None
     for order in _discrete_orders(_refined(colours, matrix), matrix):
-        read = [[matrix[u][v] for v in order] for u in order]
+        read = tuple(tuple(matrix[u][v] for v in order) for u in order)
         if best is None or read < best[0]:
             best = read, order
     return () if best is None else best[1]

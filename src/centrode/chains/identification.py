@@ -1,7 +1,8 @@
 """The kinematic chain of a mechanism, and which of its inversions the mechanism is.
 
-Sliders and the parts of cylinders are links, sliding pairs are joints. A hinge of k links is k - 1 joints, which may
-join the links in different ways: a mechanism with such hinges is the limit of one inversion or of several.
+Sliders and the parts of cylinders are links, sliding pairs are joints. Links that make a triangle of hinges are one
+body. A hinge of k links is k - 1 joints, which may join the links in different ways: a mechanism with such hinges is
+the limit of one inversion or of several.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, product
 from typing import Literal, TypeAlias
 
@@ -87,12 +88,13 @@ class ChainOfMechanism(PrintsSummary):
     ----------
     mechanism : Mechanism
     inversions : the one that it is, or those that it is a limit of; none where `unnamed` says why
-    links, joints : their numbers, the frame and sliders counted, hinges of several links split
+    links, joints : their numbers, the frame and sliders counted, hinges of several links split, trusses as one link
     sliding : number of prismatic pairs among the joints
     split : points where three links or more are hinged
+    passive : links that only follow, which the chain lacks
     unnamed : "higher pairs" with gears or rolling wheels, named in `higher`; "open" where a link has a single joint;
-        "many links" beyond 12 links, or with too many hinges to split; "dimensions" where the mobility comes from
-        special dimensions, not from the numbers of links and joints
+        "many links" beyond 12 links, or with too many hinges to split; "dimensions" where special dimensions alone let
+        the links move
     higher : names of its gears and rolling wheels
     """
 
@@ -102,6 +104,7 @@ class ChainOfMechanism(PrintsSummary):
     joints: int
     sliding: int
     split: tuple[str, ...]
+    passive: tuple[str, ...] = ()
     unnamed: Unnamed = ""
     higher: tuple[str, ...] = ()
 
@@ -123,55 +126,144 @@ def chain_of(mechanism: MechanismSource) -> ChainOfMechanism:
     """
     mechanism = mechanism_of(mechanism)
     pairs = kinematic_pairs(mechanism)
-    higher = tuple(pair.name for pair in pairs if pair.kind in ("gear", "rolling"))
-    bodies = tuple(dict.fromkeys((PairedBody("frame"), *(body for pair in pairs for body in pair.bodies))))
-    hinges = _hinges(pairs)
-    split = tuple(name for name, joined in hinges.items() if len(joined) > 2)
-    sliding = sum(pair.kind == "sliding" for pair in pairs)
+    joined = _joined_bodies(pairs)
+    freedom = len(mechanism.drives)
+    found = ChainOfMechanism(
+        mechanism,
+        (),
+        len(joined.bodies),
+        joined.joints,
+        len(joined.sliding),
+        tuple(name for name, bodies in joined.hinges.items() if len(bodies) > 2),
+        higher=tuple(pair.name for pair in pairs if pair.kind in ("gear", "rolling")),
+    )
+    if found.higher:
+        return replace(found, unnamed="higher pairs")
+    if min(joined.degrees.values(), default=0) < 2:
+        return replace(found, unnamed="open")
+    if joined.splits > MOST_SPLITS or len(joined.bodies) > GREATEST:
+        return replace(found, unnamed="many links")
+    # each link with two joints that only follows takes a degree of freedom from the formula
+    surplus = freedom - (3 * (len(joined.bodies) - 1) - 2 * joined.joints)
+    driven = {drive.link for drive in mechanism.drives}
+    for passive in combinations(
+        [body for body in joined.followers if body.name not in driven], max(0, surplus)
+    ):
+        inversions = _inversions(joined.without(passive), freedom)
+        if inversions:
+            return replace(found, inversions=inversions, passive=tuple(body.name for body in passive))
+    return replace(found, unnamed="dimensions")
 
-    def chain(inversions: Sequence[ChainInversion], unnamed: Unnamed) -> ChainOfMechanism:
-        return ChainOfMechanism(
-            mechanism,
-            tuple(inversions),
-            len(bodies),
-            len(pairs) - len(higher),
-            sliding,
-            split,
-            unnamed,
-            higher,
+
+@dataclass(frozen=True)
+class _JoinedBodies:
+    """Bodies, the frame first; those hinged at each point; pairs that slide."""
+
+    bodies: tuple[PairedBody, ...]
+    hinges: dict[str, tuple[PairedBody, ...]]
+    sliding: tuple[tuple[PairedBody, PairedBody], ...]
+
+    @property
+    def joints(self) -> int:
+        """Number of joints, k - 1 at a hinge of k bodies."""
+        return len(self.sliding) + sum(len(bodies) - 1 for bodies in self.hinges.values())
+
+    @property
+    def degrees(self) -> Counter[PairedBody]:
+        """Body -> number of places where it is joined; those without any have 0."""
+        places = [*self.hinges.values(), *self.sliding]
+        return Counter({body: 0 for body in self.bodies}) + Counter(
+            body for place in places for body in place
         )
 
-    if higher:
-        return chain((), "higher pairs")
-    if min(Counter(body for pair in pairs for body in set(pair.bodies)).values(), default=0) < 2:
-        return chain((), "open")
-    sizes = [len(joined) ** (len(joined) - 2) for joined in hinges.values()]
-    if len(bodies) > GREATEST or math.prod(sizes) > MOST_SPLITS:
-        return chain((), "many links")
-    number = {body: k for k, body in enumerate(bodies)}
-    firm = [_joint(number, *pair.bodies) for pair in pairs if pair.kind == "sliding"]
-    found: dict[ContractedGraph, list[Joint]] = {}
-    for trees in product(*(tuple(_trees(joined)) for joined in hinges.values())):
-        joints = [*firm, *(_joint(number, *edge) for tree in trees for edge in tree)]
-        if _is_chain(joints, len(bodies), len(mechanism.drives)):
-            found.setdefault(marked(joints, 0), joints)
-    inversions = [_inversion(graph, joints) for graph, joints in found.items()]
-    inversions.sort(key=lambda one: (one.chain.graph, one.number))
-    return chain(inversions, "" if inversions else "dimensions")
+    @property
+    def splits(self) -> int:
+        """Number of ways in which hinges of several links are joints."""
+        return math.prod(max(1, len(bodies) ** (len(bodies) - 2)) for bodies in self.hinges.values())
+
+    @property
+    def followers(self) -> list[PairedBody]:
+        """Links hinged at two places, the last of the description first: one of equals that follows is the later."""
+        degrees = self.degrees
+        return [body for body in reversed(self.bodies) if body.kind == "link" and degrees[body] == 2]
+
+    def without(self, left_out: Sequence[PairedBody]) -> _JoinedBodies:
+        """The same without some bodies."""
+        hinges = {
+            name: tuple(body for body in bodies if body not in left_out)
+            for name, bodies in self.hinges.items()
+        }
+        return _JoinedBodies(
+            tuple(body for body in self.bodies if body not in left_out),
+            {name: bodies for name, bodies in hinges.items() if len(bodies) > 1},
+            tuple(pair for pair in self.sliding if not set(pair) & set(left_out)),
+        )
 
 
-def _hinges(pairs: Sequence[KinematicPair]) -> dict[str, list[PairedBody]]:
-    """The bodies that turn about each point; their pairs have the first of them in common."""
+def _joined_bodies(pairs: Sequence[KinematicPair]) -> _JoinedBodies:
+    """The bodies of a mechanism with trusses as one body each, named after the first of their links."""
     hinges: dict[str, list[PairedBody]] = {}
     for pair in pairs:
         if pair.kind == "turning":
-            joined = hinges.setdefault(pair.name, [pair.bodies[0]])
-            joined.append(pair.bodies[1])
-    return hinges
+            # the pairs of a hinge have the first of its bodies in common
+            hinges.setdefault(pair.name, [pair.bodies[0]]).append(pair.bodies[1])
+    frame = PairedBody("frame")
+    bodies = list(dict.fromkeys((frame, *(body for pair in pairs for body in pair.bodies))))
+    same = {body: body for body in bodies}
+    while True:
+        points: dict[PairedBody, set[str]] = {body: set() for body in bodies}
+        for name, hinged in hinges.items():
+            for body in hinged:
+                points[same[body]].add(name)
+        triangle = _triangle({body: names for body, names in points.items() if same[body] is body})
+        if not triangle:
+            break
+        for body in bodies:
+            if same[body] in triangle:
+                same[body] = triangle[0]
+    merged = {name: tuple(dict.fromkeys(same[body] for body in hinged)) for name, hinged in hinges.items()}
+    sliding = (pair.bodies for pair in pairs if pair.kind == "sliding")
+    return _JoinedBodies(
+        tuple(body for body in bodies if same[body] is body),
+        {name: hinged for name, hinged in merged.items() if len(hinged) > 1},
+        tuple((same[one], same[other]) for one, other in sliding if same[one] is not same[other]),
+    )
 
 
-def _joint(number: dict[PairedBody, int], one: PairedBody, other: PairedBody) -> Joint:
-    return min(number[one], number[other]), max(number[one], number[other])
+def _triangle(points: dict[PairedBody, set[str]]) -> tuple[PairedBody, ...]:
+    """Bodies that cannot move against each other: two with two points in common, or three hinged in a triangle."""
+    for one, other in combinations(points, 2):
+        shared = points[one] & points[other]
+        if len(shared) > 1:
+            return one, other
+        if not shared:
+            continue
+        for third in points:
+            if third in (one, other):
+                continue
+            first, second = points[one] & points[third], points[other] & points[third]
+            # three points, not one hinge of three links
+            if first and second and not (first | second) & shared and first != second:
+                return one, other, third
+    return ()
+
+
+def _inversions(joined: _JoinedBodies, freedom: int) -> tuple[ChainInversion, ...]:
+    """The inversions that bodies make with their hinges split in all ways, those alike once."""
+    number = {body: k for k, body in enumerate(joined.bodies)}
+
+    def joint(one: PairedBody, other: PairedBody) -> Joint:
+        return min(number[one], number[other]), max(number[one], number[other])
+
+    firm = [joint(*pair) for pair in joined.sliding]
+    found: dict[ContractedGraph, list[Joint]] = {}
+    for trees in product(*(tuple(_trees(bodies)) for bodies in joined.hinges.values())):
+        joints = [*firm, *(joint(*edge) for tree in trees for edge in tree)]
+        if _is_chain(joints, len(joined.bodies), freedom):
+            found.setdefault(marked(joints, 0), joints)
+    chains_of = [(graph, KinematicChain.of(joints)) for graph, joints in found.items()]
+    inversions = [ChainInversion(chain, 1 + chain.inversion_of(graph)) for graph, chain in chains_of]
+    return tuple(sorted(inversions, key=lambda one: (one.chain.graph, one.number)))
 
 
 Tree: TypeAlias = tuple[tuple[PairedBody, PairedBody], ...]
@@ -180,26 +272,21 @@ Tree: TypeAlias = tuple[tuple[PairedBody, PairedBody], ...]
 def _trees(bodies: Sequence[PairedBody]) -> Iterator[Tree]:
     """Ways to join bodies two by two so that all hold together without a loop."""
     for edges in combinations(tuple(combinations(bodies, 2)), len(bodies) - 1):
-        joined = {body: {body} for body in bodies}
+        together = {body: {body} for body in bodies}
         for one, other in edges:
-            both = joined[one] | joined[other]
-            joined.update(dict.fromkeys(both, both))
+            both = together[one] | together[other]
+            together.update(dict.fromkeys(both, both))
         # as many edges as bodies less one make no loop where all hold together
-        if len(joined[bodies[0]]) == len(bodies):
+        if len(together[bodies[0]]) == len(bodies):
             yield edges
 
 
-def _is_chain(joints: Sequence[Joint], links: int, drives: int) -> bool:
-    """Whether joints make a closed chain of so many links with the mobility that the drives take away."""
+def _is_chain(joints: Sequence[Joint], links: int, freedom: int) -> bool:
+    """Whether joints make a closed chain of so many links with this mobility, all parts of which move."""
     count = Counter(link for joint in joints for link in joint)
     if len(set(joints)) < len(joints) or any(count[link] < 2 for link in range(links)):
         return False
-    if 3 * (links - 1) - 2 * len(joints) != drives:
+    if 3 * (links - 1) - 2 * len(joints) != freedom:
         return False
     graph = marked(joints, 0)
     return is_movable(graph.vertices, graph.edges, subgraphs(graph))
-
-
-def _inversion(graph: ContractedGraph, joints: Sequence[Joint]) -> ChainInversion:
-    chain = KinematicChain.of(joints)
-    return ChainInversion(chain, 1 + chain.inversion_of(graph))

@@ -116,7 +116,7 @@ def _generic(places: Array) -> Array:
     """Coordinates [mm], to the digits that a file shows, off every symmetry."""
     turn = GOLDEN * np.arange(len(places))
     moved = SIDE * places + ASIDE * np.column_stack([np.cos(turn), np.sin(turn)])
-    return np.round(moved - moved.min(axis=0), 1)
+    return np.asarray(np.round(moved - moved.min(axis=0), 1))
 
 
 def _drivable(joints: Sequence[Joint], frame: int, count: int) -> Iterator[tuple[int, ...]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import click
 
@@ -18,6 +18,10 @@ from centrode.locale import _, mark, ngettext
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet
 
+Listed: TypeAlias = tuple[tuple[int, Any], ...]
+"""Chains with their numbers."""
+
+_NONE: Listed = ()
 MOST_DESCRIPTIONS = 2_000
 """Descriptions that are written without a chain being named; those of the chains of ten links are 1834."""
 
@@ -52,8 +56,7 @@ def chains(
         progress.say(_("looking for chains"))
         if groups:
             _refuse_of_chains(mobility, cut_links, number)
-            found = library.assur_list(links)
-            sheet, listed = library.groups_sheet(found), ()
+            sheet, listed = library.groups_sheet(library.assur_list(links)), _NONE
         else:
             found = library.chain_list(links, mobility, cut_links=cut_links)
             listed = tuple(enumerate(found.chains, start=1))
@@ -64,7 +67,7 @@ def chains(
         if out is None:
             return
         with output.output_folder(out) as draft:
-            told = _write(sheet, listed if mobility else (), draft, no_figures, progress)
+            told = _write(sheet, listed if mobility else _NONE, draft, no_figures, progress)
             names = output.file_names(draft)
     click.echo("\n" + _files(out, names))
     if told:
@@ -77,16 +80,14 @@ def _refuse_of_chains(mobility: int, cut_links: bool, number: int | None) -> Non
         raise InputError("--groups", what, _("leave them out"))
 
 
-def _chosen(listed: tuple[tuple[int, Any], ...], number: int) -> tuple[tuple[int, Any], ...]:
+def _chosen(listed: Listed, number: int) -> Listed:
     if not 1 <= number <= len(listed):
         what = _("there is no chain {number}").format(number=number)
         raise InputError("--chain", what, _("the list has chains 1 to {last}").format(last=len(listed)))
     return listed[number - 1 : number]
 
 
-def _write(
-    sheet: Sheet, listed: tuple[tuple[int, Any], ...], draft: Path, no_figures: bool, progress: Progress
-) -> str:
+def _write(sheet: Sheet, listed: Listed, draft: Path, no_figures: bool, progress: Progress) -> str:
     """Files of a list; returns what a reader should know besides."""
     display = library.display()
     render.write_tables(sheet, draft, display, asked_spelling())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from centrode.chains.identification import ChainOfMechanism, chain_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
@@ -25,6 +26,7 @@ class MechanismCheck(PrintsSummary):
     formula : the groups as a structural formula
     plan : the steps of the solution in words
     initial_residual : how well the initial position closes, in units of the greatest length
+    chain : the kinematic chain, and which of its inversions the mechanism is
     """
 
     mechanism: Mechanism = field(repr=False)
@@ -36,6 +38,7 @@ class MechanismCheck(PrintsSummary):
     formula: str
     plan: tuple[str, ...]
     initial_residual: float
+    chain: ChainOfMechanism
 
 
 def check(mechanism: MechanismSource) -> MechanismCheck:
@@ -65,4 +68,5 @@ def check_of(prepared: Ready) -> MechanismCheck:
         structural_formula(structure),
         tuple(group.sentence for group in structure.groups),
         prepared.assembled.residual,
+        chain_of(mechanism),
     )

@@ -19,7 +19,7 @@ class AtlasCell:
     name : stands below it
     places : (joints, 2) of the joints, a side being some 1 long
     outlines : of each link its joints in the order round it
-    outer : joints towards what does not belong to the sketch, drawn as fixed pivots
+    outer : joints towards what does not belong to the sketch, drawn filled
     """
 
     name: Text
@@ -30,7 +30,8 @@ class AtlasCell:
 
 @dataclass(frozen=True)
 class ChainAtlas:
-    """Sketches in rows, all to one scale."""
+    """Sketches in rows, all to one scale; the key says what signs mean that do not speak for themselves."""
 
     title: Sentence
+    key: Text
     cells: tuple[AtlasCell, ...]

@@ -713,6 +713,13 @@ CHECK = Topic(
     ),
 )
 
+CHAIN = Topic(
+    name="chain",
+    compute=Lazily("centrode.chains.identification", "chain_of"),
+    result=Lazily("centrode.chains.identification", "ChainOfMechanism"),
+    view=Lazily("centrode.views.chains", "sheet"),
+)
+
 SWEEP = Topic(
     name="sweep",
     compute=Lazily("centrode.sweeps.sweep", "sweep_results"),
@@ -1039,6 +1046,7 @@ TOPICS: tuple[Topic, ...] = (
     DIAGRAMS,
     RUN,
     CHECK,
+    CHAIN,
     SWEEP,
     PARAMETER_STUDY,
     VARIANTS,

@@ -14,7 +14,7 @@ from centrode.chains.kinematic_chains import GREATEST
 from centrode.chains.planar_drawings import chain_sketch
 from centrode.sheets.chain_atlas import AtlasCell, ChainAtlas
 from centrode.sheets.sheet import Column, Deferred, Fact, Sheet, Table
-from centrode.sheets.texts import Joined, Name, Number, Sentence, Text
+from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Text
 from centrode.structure.assur import roman
 
 if TYPE_CHECKING:
@@ -85,9 +85,13 @@ def chain_text(found: ChainOfMechanism) -> Text:
                 "not named: more than {most} links, or hinges of too many links", most=_whole(GREATEST)
             )
         case "dimensions":
-            return Sentence("not named: only special dimensions let so many links and joints move")
+            return Sentence("not named: special dimensions alone let so many links and joints move")
         case "":
-            return _inversions(found.inversions)
+            chain = _inversions(found.inversions)
+            if not found.passive:
+                return chain
+            passive = Joined(tuple(map(Name, found.passive)))
+            return Sentence("{chain}; passive links: {names}", chain=chain, names=passive)
 
 
 def _inversions(inversions: Sequence[ChainInversion]) -> Text:
@@ -97,10 +101,9 @@ def _inversions(inversions: Sequence[ChainInversion]) -> Text:
     if len(inversions) <= MOST_NAMED:
         return Sentence("limit of {names}", names=Joined(tuple(map(inversion_name, inversions)), "; "))
     return Sentence(
-        "limit of {inversions} inversions of {chains} chains of {links} links",
-        inversions=_whole(len(inversions)),
-        chains=_whole(len({one.chain for one in inversions})),
-        links=_whole(inversions[0].chain.links),
+        "{name}, or another of {count} that its hinges of several links are limits of",
+        name=inversion_name(inversions[0]),
+        count=_whole(len(inversions)),
     )
 
 
@@ -275,4 +278,6 @@ def _pages(title: Sentence, names: Sequence[Text], cell: CellOf) -> Mapping[str,
 
 def _page(title: Sentence, names: Sequence[Text], cell: CellOf, first: int) -> ChainAtlas:
     places = range(first, min(first + CELLS, len(names)))
-    return ChainAtlas(title, tuple(AtlasCell(names[place], *cell(place)) for place in places))
+    cells = tuple(AtlasCell(names[place], *cell(place)) for place in places)
+    has_outer = any(one.outer for one in cells)
+    return ChainAtlas(title, Sentence("filled circles: outer joints") if has_outer else NOTHING, cells)

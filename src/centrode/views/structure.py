@@ -22,6 +22,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Text
 from centrode.structure.pairs import kinematic_pairs
+from centrode.views.chains import chain_fact, chain_text
 from centrode.views.linkage_data import data_chapter
 
 if TYPE_CHECKING:
@@ -86,6 +87,7 @@ def facts(checked: MechanismCheck) -> Iterator[Fact]:
     redundant = Joined(tuple(map(Name, checked.redundant)), "; ")
     yield Fact(Sentence("redundant constraints"), redundant if checked.redundant else Sentence("none"))
     yield Fact(Sentence("independent loops"), _whole(checked.count.loops))
+    yield chain_fact(checked.chain)
     yield Fact(Sentence("structural formula"), Name(checked.formula))
     for number, group in enumerate(checked.groups):
         yield Fact(NOTHING if number else Sentence("groups"), _group(group))
@@ -209,6 +211,7 @@ def _mobility(checked: MechanismCheck) -> Iterator[Block]:
         "There is {n} independent closed loop.", "There are {n} independent closed loops.", count.loops
     )
     yield Paragraph(loops)
+    yield Paragraph(Sentence("Kinematic chain: {chain}.", chain=chain_text(checked.chain)))
 
 
 def _groups(checked: MechanismCheck) -> Iterator[Block]:

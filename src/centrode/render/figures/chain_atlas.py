@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
     from centrode.model.settings import Display
 
-COLUMNS, SIDE, BELOW, HEAD = 4, 1.35, 0.3, 0.45
+COLUMNS, SIDE, BELOW, HEAD = 4, 1.35, 0.3, 0.55
 """Sketches beside each other; side of the room of one, room of the name below it and of the title [inch]."""
-SIGN = 0.2
-"""Size of signs [length of a side]."""
+SIGN = 0.1
+"""Radius of a joint [length of a side]."""
 BODY = "#DCE6EE"
 
 
@@ -34,7 +34,7 @@ def atlas_figure(atlas: ChainAtlas, display: Display) -> Figure:
     figure = Figure(figsize=(PAGE_WIDTH, high))
     wide = PAGE_WIDTH / COLUMNS
     left = (PAGE_WIDTH - columns * wide) / 2.0
-    reach = 1.12 * max(float(np.ptp(cell.places, axis=0).max()) for cell in atlas.cells) / 2.0
+    reach = SIGN + 0.52 * max(float(np.ptp(cell.places, axis=0).max()) for cell in atlas.cells)
     words = PrintSpelling(display)
     for number, cell in enumerate(atlas.cells):
         row, column = divmod(number, columns)
@@ -50,12 +50,12 @@ def atlas_figure(atlas: ChainAtlas, display: Display) -> Figure:
             ha="center",
             va="top",
         )
-    write_title(figure, FigureSpelling(display).text(atlas.title), "")
+    write_title(figure, FigureSpelling(display).text(atlas.title), words.text(atlas.key))
     return figure
 
 
 def _draw_cell(axes: Axes, cell: AtlasCell, reach: float) -> None:
-    """Links as bars and polygons, hinges on them, outer joints as fixed pivots."""
+    """Links as bars and polygons, hinges on them, outer joints filled."""
     axes.set_axis_off()
     axes.set_aspect("equal")
     middle = (cell.places.min(axis=0) + cell.places.max(axis=0)) / 2.0
@@ -70,7 +70,6 @@ def _draw_cell(axes: Axes, cell: AtlasCell, reach: float) -> None:
         else:
             axes.plot(*corners.T, color=INK, linewidth=0.8 * LINK, solid_capstyle="round", zorder=2.1)
     for joint in range(len(cell.places)):
+        signs.hinge(axes, cell.places[joint], SIGN)
         if joint in cell.outer:
-            signs.fixed_hinge(axes, cell.places[joint], SIGN)
-        else:
-            signs.hinge(axes, cell.places[joint], SIGN)
+            signs.traced_point(axes, cell.places[joint], 2.0 * SIGN, INK)
