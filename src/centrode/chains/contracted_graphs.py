@@ -87,17 +87,16 @@ def _refined(colours: Colours, matrix: Matrix) -> Colours:
         # the class itself stands first, so that classes are only split, in an order that names do not change
         signs = [
             (
-                colours[u],
-                matrix[u][u],
-                sorted((row, colours[v]) for v, row in enumerate(matrix[u]) if row and v != u),
+                colour,
+                row[u],
+                tuple(sorted((between, colours[v]) for v, between in enumerate(row) if between and v != u)),
             )
-            for u in range(len(colours))
+            for u, (colour, row) in enumerate(zip(colours, matrix, strict=True))
         ]
-        classes = sorted({repr(sign): sign for sign in signs}.values())
-        numbers = tuple(classes.index(sign) for sign in signs)
-        if len(classes) == len(set(colours)):
-            return numbers
-        colours = numbers
+        number = {sign: k for k, sign in enumerate(sorted(set(signs)))}
+        if len(number) == len(set(colours)):
+            return tuple(number[sign] for sign in signs)
+        colours = tuple(number[sign] for sign in signs)
 
 
 def _discrete_orders(classes: Colours, matrix: Matrix) -> Iterator[tuple[int, ...]]:
@@ -189,8 +188,8 @@ def _with_vertices(graph: Plain, places: Sequence[int]) -> tuple[Plain, list[int
     return (count, (*kept, *more)), ends
 
 
-def weighted(graph: ContractedGraph, binary_links: int) -> Iterator[tuple[Edge, ...]]:
-    """Ways to hand out so many binary links to the edges of a graph; of parallel edges the later get no fewer."""
+def weighted(graph: ContractedGraph, binary_links: int, most: int) -> Iterator[tuple[Edge, ...]]:
+    """Ways to hand out so many binary links to the edges of a graph, at most `most` to each; parallel ones in order."""
     ends = [(u, v) for u, v, _weight in graph.edges]
 
     def hand_out(first: int, left: int, given: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
@@ -200,7 +199,8 @@ def weighted(graph: ContractedGraph, binary_links: int) -> Iterator[tuple[Edge, 
             return
         # edges stand in ascending order, so parallel ones are neighbours
         least = given[-1] if first and ends[first] == ends[first - 1] else 0
-        for weight in range(least, left + 1):
+        # what the edges behind cannot take has to be given here
+        for weight in range(max(least, left - most * (len(ends) - first - 1)), min(left, most) + 1):
             yield from hand_out(first + 1, left - weight, (*given, weight))
 
     for weights in hand_out(0, binary_links, ()):

@@ -235,7 +235,8 @@ def _enumerated(links: int, mobility: int, cut_links: bool) -> tuple[KinematicCh
         if binary < 0:
             continue
         groups = subgraphs(graph)
-        for edges in weighted(graph, binary):
+        # without a string of b links the rest has b - 2 degrees of freedom less, and has to keep one
+        for edges in weighted(graph, binary, mobility + 1):
             if is_movable(graph.vertices, edges, groups):
                 found.add(ContractedGraph.of(graph.colours, edges))
     return tuple(map(KinematicChain, sorted(found, key=lambda graph: (graph.vertices, graph))))
@@ -255,7 +256,8 @@ def subgraphs(graph: ContractedGraph) -> Groups:
         )
         if count > 1 and inside:
             sets.append((count, inside))
-    return tuple(sets)
+    # small sets refuse most
+    return tuple(sorted(sets))
 
 
 def is_movable(vertices: int, edges: Sequence[Edge], groups: Groups) -> bool:
@@ -267,8 +269,9 @@ def is_movable(vertices: int, edges: Sequence[Edge], groups: Groups) -> bool:
     # a loop of its own needs four links, one of them polygonal
     if any(u == v and weight < 3 for u, v, weight in edges):
         return False
+    taken = [min(0, weight - 2) for _u, _v, weight in edges]
     for count, inside in groups:
-        freedom = 3 * (count - 1) + sum(min(0, edges[k][2] - 2) for k in inside)
+        freedom = 3 * (count - 1) + sum([taken[k] for k in inside])
         # the whole chain, where no string may be left out, is no part of itself: a truss has no freedom
         is_whole = count == vertices and all(edge[2] < 2 for edge in edges)
         if freedom < (0 if is_whole else 1):

@@ -101,7 +101,7 @@ def _inversions(inversions: Sequence[ChainInversion]) -> Text:
     if len(inversions) <= MOST_NAMED:
         return Sentence("limit of {names}", names=Joined(tuple(map(inversion_name, inversions)), "; "))
     return Sentence(
-        "{name}, or another of {count} that its hinges of several links are limits of",
+        "{name}, or another of the {count} that its hinges of several links are limits of",
         name=inversion_name(inversions[0]),
         count=_whole(len(inversions)),
     )

@@ -1,0 +1,112 @@
+"""The chains of mechanisms, and descriptions that start from them."""
+
+from __future__ import annotations
+
+import pytest
+
+import centrode as ct
+from centrode.chains.identification import family_of
+from centrode.chains.planar_drawings import chain_sketch
+from centrode.chains.start_descriptions import start_texts
+from centrode.errors import InputError, Status
+from centrode.kinematics.motion import initial_place
+
+NAMED = {
+    "crank-rocker": ("four-bar", 1),
+    "spherical-four-bar": ("four-bar", 1),
+    "single-cylinder-engine": ("four-bar", 1),
+    "oscillating-cylinder": ("four-bar", 1),
+    "scotch-yoke": ("four-bar", 1),
+    "watt-six-bar": ("Watt", 1),
+    "six-bar-press": ("Watt", 2),
+    "shaper": ("Watt", 2),
+    "whitworth-quick-return": ("Watt", 2),
+    "stephenson-six-bar": ("Stephenson", 3),
+    # D. E. G. Klann calls it a modified Stephenson type III
+    "klann-leg": ("Stephenson", 3),
+    "third-class-triad": ("Stephenson", 3),
+    "fourth-class-group": ("Stephenson", 2),
+}
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_chains_of_examples(name: str) -> None:
+    (inversion,) = ct.chain_of(name).inversions
+    assert (inversion.family, inversion.number) == NAMED[name]
+
+
+def test_all_examples_of_hinges_and_sliders_have_a_chain() -> None:
+    for name in ct.example_names():
+        found = ct.chain_of(name)
+        mechanism = ct.example(name)
+        if mechanism.gears or mechanism.rolling:
+            assert (found.unnamed, bool(found.higher)) == ("higher pairs", True)
+        elif name == "two-link-arm":
+            assert found.unnamed == "open"
+        else:
+            assert found.inversions, name
+            for inversion in found.inversions:
+                assert inversion.chain.mobility == len(mechanism.drives)
+                assert inversion.chain.links == found.links - len(found.passive)
+
+
+def test_a_hinge_of_three_links_is_split_in_each_way() -> None:
+    found = ct.chain_of("slider-between-cranks")
+    assert found.split == ("C",)
+    assert [(one.family, one.number) for one in found.inversions] == [("Watt", 2), ("Stephenson", 3)]
+
+
+def test_a_truss_is_one_link() -> None:
+    # both triangles of Jansen's leg are three bars each in the description
+    found = ct.chain_of("jansen-leg")
+    assert (found.links, found.joints) == (8, 10)
+
+
+def test_a_link_that_only_follows_is_left_out() -> None:
+    found = ct.chain_of("three-crank-parallelogram")
+    assert found.passive == ("FE",)
+    assert [one.family for one in found.inversions] == ["four-bar"]
+
+
+@pytest.mark.parametrize(("links", "mobility"), [(4, 1), (6, 1), (8, 1), (5, 2), (7, 2), (8, 3)])
+def test_descriptions_have_the_chain_that_they_start_from(links: int, mobility: int) -> None:
+    chains = ct.chains(links, mobility, cut_links=True)
+    for chain in chains[:: 1 if links < 8 else 4]:
+        for number, text in enumerate(start_texts(chain), start=1):
+            mechanism = ct.parse_mechanism(text)
+            assert ct.check(mechanism).mobility == mobility
+            (inversion,) = ct.chain_of(mechanism).inversions
+            assert (inversion.chain, inversion.number) == (chain, number)
+
+
+def test_a_description_moves() -> None:
+    mechanism = ct.start_description(ct.chains(8)[3], 2)
+    start = initial_place(mechanism)
+    motion = ct.motion(mechanism, at=[start - 0.01, start, start + 0.01])
+    assert (motion.status == Status.OK).all()
+
+
+def test_descriptions_that_are_refused() -> None:
+    watt, _stephenson = ct.chains(6)
+    with pytest.raises(InputError, match="inversion 3"):
+        ct.start_description(watt, 3)
+    (truss,) = ct.chains(3, 0)
+    with pytest.raises(InputError, match="truss"):
+        ct.start_description(truss)
+
+
+def test_names_of_families() -> None:
+    assert [family_of(chain) for chain in (*ct.chains(4), *ct.chains(6), ct.chains(8)[0])] == [
+        "four-bar",
+        "Watt",
+        "Stephenson",
+        "",
+    ]
+
+
+def test_numbers_of_a_chain_are_those_of_the_list() -> None:
+    (lift,) = ct.chain_of("scissor-lift").inversions
+    assert lift.chain_number is not None
+    assert ct.chains(8)[lift.chain_number - 1] == lift.chain
+    sketch = chain_sketch(lift.chain)
+    assert sketch.crossings == 0
