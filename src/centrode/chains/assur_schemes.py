@@ -82,7 +82,7 @@ def assur_groups(links: int) -> tuple[AssurScheme, ...]:
     """
     if links < 2 or links % 2:
         what = _("there is no Assur group of {links} links").format(links=links)
-        raise InputError("links", what, _("groups have 2, 4, 6 links and so on, as 3 links = 2 joints"))
+        raise InputError("links", what, _("a group has an even number of links"))
     if links + 1 > GREATEST:
         what = _("groups of 2 to {most} links are found, {links} are wished").format(
             most=GREATEST - 2, links=links
