@@ -11,7 +11,19 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import animations, cold, forces, kernels, machine, motions, peer, reports, simulation, sweeps  # noqa: E402
+from benchmarks import (
+    animations,
+    chains,
+    cold,
+    forces,
+    kernels,
+    machine,
+    motions,
+    peer,
+    reports,
+    simulation,
+    sweeps,
+)  # noqa: E402
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.numerics import machine_code  # noqa: E402
@@ -33,6 +45,7 @@ SECTIONS: Mapping[str, Section] = {
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "animations": (f"Animations, {animations.FRAMES} frames of 800 by 600 pixels", animations.animations),
     "reports": ("Thirty reports of the assignment's table, two processes", reports.thirty_reports),
+    "chains": ("All kinematic chains of some links, mobility 1", chains.chain_lists),
     "machine": ("Bounds of the machine", machine.bounds),
     "kernels": (
         f"Machine code, {LANES} mechanisms of {SAMPLES} samples, a position", kernels.kernels,
