@@ -11,7 +11,7 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import (
+from benchmarks import (  # noqa: E402
     animations,
     chains,
     cold,
@@ -23,7 +23,7 @@ from benchmarks import (
     reports,
     simulation,
     sweeps,
-)  # noqa: E402
+)
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.numerics import machine_code  # noqa: E402
