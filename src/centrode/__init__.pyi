@@ -41,10 +41,8 @@ from .analysis.graphic.results import graphic_analysis as graphic_analysis
 
 # Kinematic chains
 from .chains.kinematic_chains import chains as chains
-from .chains.kinematic_chains import KinematicChain as KinematicChain
 from .chains.assur_schemes import assur_groups as assur_groups
 from .chains.identification import chain_of as chain_of
-from .chains.start_descriptions import start_description as start_description
 
 # Instant centres, centrodes, curvature, equations
 from .analysis.instant_centres.centres import instant_centres as instant_centres

@@ -7,7 +7,7 @@ import pytest
 import centrode as ct
 from centrode.chains.identification import family_of
 from centrode.chains.planar_drawings import chain_sketch
-from centrode.chains.start_descriptions import start_texts
+from centrode.chains.start_descriptions import start_description, start_texts
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import initial_place
 
@@ -80,7 +80,7 @@ def test_descriptions_have_the_chain_that_they_start_from(links: int, mobility: 
 
 
 def test_a_description_moves() -> None:
-    mechanism = ct.start_description(ct.chains(8)[3], 2)
+    mechanism = start_description(ct.chains(8)[3], 2)
     start = initial_place(mechanism)
     motion = ct.motion(mechanism, at=[start - 0.01, start, start + 0.01])
     assert (motion.status == Status.OK).all()
@@ -89,10 +89,10 @@ def test_a_description_moves() -> None:
 def test_descriptions_that_are_refused() -> None:
     watt, _stephenson = ct.chains(6)
     with pytest.raises(InputError, match="inversion 3"):
-        ct.start_description(watt, 3)
+        start_description(watt, 3)
     (truss,) = ct.chains(3, 0)
     with pytest.raises(InputError, match="truss"):
-        ct.start_description(truss)
+        start_description(truss)
 
 
 def test_names_of_families() -> None:

@@ -93,7 +93,7 @@ def test_names_that_look_like_kinds_stay() -> None:
         assembly={"sides": {"B": "left"}},
     )
     ct.choose_language("ru")
-    text = PlainSpelling(None).text(sheet_of(ct.check(mechanism)).facts[5].value)
+    text = PlainSpelling(None).text(sheet_of(ct.check(mechanism)).facts[6].value)
     assert text.startswith("RRP: ")
     assert "AB, PB: класс II, порядок 2, ВВВ" in ct.summary(ct.check(mechanism))
 

@@ -54,7 +54,7 @@ class KinematicChain:
     Examples
     --------
     >>> import centrode as ct
-    >>> chain = ct.KinematicChain.of([(0, 3), (3, 1), (1, 2), (2, 0)])
+    >>> chain = KinematicChain.of([(0, 3), (3, 1), (1, 2), (2, 0)])
     >>> chain.links, chain.mobility, chain == ct.chains(4)[0]
     (4, 1, True)
     """

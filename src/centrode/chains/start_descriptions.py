@@ -41,7 +41,7 @@ def start_description(
     ----------
     chain : KinematicChain
     inversion : number of the inversion, from 1 in the order of `chain.inversions`
-    sketch : where its joints stand; computed if left out
+    sketch : where its joints stand; by default that of `chain_sketch`
 
     Returns
     -------
@@ -57,7 +57,7 @@ def start_description(
     --------
     >>> import centrode as ct
     >>> watt, stephenson = ct.chains(6)
-    >>> ct.check(ct.start_description(stephenson, 3)).mobility
+    >>> ct.check(start_description(stephenson, 3)).mobility
     1
     """
     return parse_mechanism(start_text(chain, inversion, sketch))

@@ -26,7 +26,7 @@ MOST_DESCRIPTIONS = 2_000
 """Descriptions that are written without a chain being named; those of the chains of ten links are 1834."""
 
 
-@click.command(help=mark("List all kinematic chains, or Assur groups, of a number of links."))
+@click.command(help=mark("List kinematic chains or Assur groups."))
 @click.argument("links", type=int, metavar=mark("LINKS"), help=mark("Number of links, the frame counted."))
 @click.option(
     "--mobility", type=int, default=1, metavar=mark("N"), help=mark("Degrees of freedom; 1 by default.")

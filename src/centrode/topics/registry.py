@@ -714,7 +714,7 @@ CHECK = Topic(
 )
 
 CHAIN = Topic(
-    name="chain",
+    name="kinematic-chain",
     compute=Lazily("centrode.chains.identification", "chain_of"),
     result=Lazily("centrode.chains.identification", "ChainOfMechanism"),
     view=Lazily("centrode.views.chains", "sheet"),
