@@ -28,8 +28,8 @@ SIDE = 100.0
 """Length of a side [mm]."""
 GOLDEN, ASIDE = 2.399963229728653, 6.0
 """Angle between the directions in which one joint after the other is moved, and how far [mm]."""
-LEAST_SINGULAR = 1e-3
-"""Least singular value of the velocity equations, over the greatest, at which links can be driven."""
+WELL = 3e-3
+"""Least singular value of the velocity equations, over the greatest, at which no other joints are looked at."""
 
 
 def start_description(
@@ -75,9 +75,7 @@ def start_text(chain: KinematicChain, inversion: int = 1, sketch: ChainSketch | 
     letters = _letters(len(chain.joints))
     names = ["".join(sorted(letters[k] for k in ring)) for ring in sketch.outlines]
     places = _generic(sketch.places)
-    driven = next(
-        d for d in _drivable(chain.joints, frame, chain.mobility) if _moves(chain, places, frame, d)
-    )
+    driven = _driven(chain, places, frame)
     moving = [link for link in range(chain.links) if link != frame]
     tables = {
         "title": _title(chain, inversion),
@@ -126,8 +124,21 @@ def _drivable(joints: Sequence[Joint], frame: int, count: int) -> Iterator[tuple
     return combinations(at_frame + elsewhere, count)
 
 
-def _moves(chain: KinematicChain, places: Array, frame: int, driven: Sequence[int]) -> bool:
-    """Whether velocities of all links follow from those of the driven joints."""
+def _driven(chain: KinematicChain, places: Array, frame: int) -> tuple[int, ...]:
+    """The first joints that move all links well, or those that move them best."""
+    best: tuple[int, ...] = ()
+    share = -1.0
+    for joints in _drivable(chain.joints, frame, chain.mobility):
+        found = _conditioning(chain, places, frame, joints)
+        if found > share:
+            best, share = joints, found
+        if found > WELL:
+            break
+    return best
+
+
+def _conditioning(chain: KinematicChain, places: Array, frame: int, driven: Sequence[int]) -> float:
+    """How surely velocities of all links follow from those of driven joints: least over greatest singular value."""
     rows = np.zeros((2 * len(chain.joints) + len(driven), chain.links, 3))
     for k, (joint, place) in enumerate(zip(chain.joints, places / SIDE, strict=True)):
         for link, sign in zip(joint, (1.0, -1.0), strict=True):
@@ -139,7 +150,7 @@ def _moves(chain: KinematicChain, places: Array, frame: int, driven: Sequence[in
         rows[2 * len(chain.joints) + k, [one, other], 2] = 1.0, -1.0
     free = [link for link in range(chain.links) if link != frame]
     values = np.linalg.svd(rows[:, free].reshape(len(rows), -1), compute_uv=False)
-    return bool(values[-1] > LEAST_SINGULAR * values[0])
+    return float(values[-1] / values[0])
 
 
 def _drive(names: Sequence[str], frame: int, joint: Joint) -> dict[str, Any]:
