@@ -124,21 +124,32 @@ class DrawingPage(Page):
         self, field: Field, text: str, heights: Iterable[float], layer: str, left: bool = False, **how: Any
     ) -> None:
         """A text in a field, in the greatest of some heights at which it goes into it, wrapped where it must be."""
-        room = field.size - 1.6
-        kept: Text | None = None
-        for height in heights:
-            lines = _wrapped(text, float(room[0]), height)
-            shown = "\n".join(lines)
-            x = field.corner[0] + 1.0 if left else float(field.corner[0] + field.size[0] / 2)
-            if kept is not None:
-                kept.remove()
-            kept = self.overlay.text(
-                float(x), float(field.corner[1] + field.size[1] / 2), shown, fontsize=points_of(height), color="black",
-                ha="left" if left else "center", va="center", linespacing=1.1, gid=layer, zorder=9, **how,
-            )  # fmt: skip
-            box = self.box_of(kept)
-            if (box[1] - box[0] <= room + 0.8).all():
-                break
+        height = self.largest_height(field, [text], heights)
+        self._write_in_field(field, text, height, layer, left, **how)
+
+    def largest_height(self, field: Field, texts: Iterable[str], heights: Iterable[float]) -> float:
+        """The greatest of some heights at which each of some texts goes into a field; the last where none does."""
+        *_others, height = heights = list(heights)
+        for text in texts:
+            for height in heights:
+                drawn = self._write_in_field(field, text, height, "")
+                box = self.box_of(drawn)
+                drawn.remove()
+                if (box[1] - box[0] <= field.size - 0.8).all():
+                    break
+            heights = heights[heights.index(height) :]
+        return height
+
+    def _write_in_field(
+        self, field: Field, text: str, height: float, layer: str, left: bool = False, **how: Any
+    ) -> Text:
+        """A text in the middle of a field, or from its left side on."""
+        shown = "\n".join(_wrapped(text, float(field.size[0]) - 1.6, height))
+        x, y = field.corner + [1.0 if left else field.size[0] / 2, field.size[1] / 2]
+        return self.overlay.text(
+            float(x), float(y), shown, fontsize=points_of(height), color="black",
+            ha="left" if left else "center", va="center", linespacing=1.1, gid=layer or None, zorder=9, **how,
+        )  # fmt: skip
 
 
 def _wrapped(text: str, room: float, height: float) -> list[str]:

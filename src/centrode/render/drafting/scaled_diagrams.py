@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from centrode.sheets.drawing_sheets import EnergyMassDiagram, ScaledCurve, ScaledDiagram
     from centrode.sheets.plots import AxisLabel
 
-LEFT, RIGHT, LOW, TOP = 20.0, 14.0, 9.0, 9.0
+LEFT, RIGHT, LOW, TOP = 20.0, 24.0, 9.0, 9.0
 """Room for numbers and names around the axes [mm]."""
 TICK = 1.2
 """Half the length of a tick [mm]."""
@@ -32,8 +32,8 @@ APART = 24.0
 """About so far apart are the numbers along an axis [mm]."""
 WORD, HEIGHT = 3.5, 7.0
 """Half the width of a number at a tick, and how far it reaches from the axis [mm]."""
-BESIDE_LETTER = 8.0
-"""Length of an axis at its end above which its letter stands [mm]."""
+NEXT = 6.5
+"""Numbers nearer to the one before than this are left out [mm]."""
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 BEYOND = 7.0
 """How far an axis goes beyond what is drawn [mm]."""
@@ -135,37 +135,47 @@ def draw_axis(
         way = -way
     across = np.array([-way[1], way[0]]) if which == 0 else np.array([way[1], -way[0]])
     start, end = (axes.origin + value / axes.per[which] * way for value in span)
-    tip = end + BEYOND * way
+    tip = _name_axis(page, end, way, label)
     page.line([start, tip], THIN)
     page.overlay.add_patch(page_head(tip, way))
     page.avoid([(start, tip)])
-    text = (
-        f"{symbol_text(label)}, {spelled_unit(label.unit)}"
-        if label.unit not in ("", "1")
-        else symbol_text(label)
-    )
-    if abs(way[0]) > 0.5:
-        page.write_in(USUAL, float(tip[0]) + 1.0, float(tip[1]) + 2.0, text, ha="right", va="bottom")
-    else:
-        top = float(tip[1]) if way[1] > 0 else float(tip[1]) - 1.0
-        page.write_in(USUAL, float(tip[0]) + 2.0, top, text, ha="left", va="top" if way[1] > 0 else "bottom")
     numbered = bool(ticks)
+    before = -np.inf
     places = ticks if numbered else _round_places(span, axes.per[which])
     for number, value in enumerate(places):
         if value == 0.0 and not numbered:
             continue
         at = axes.origin + value / axes.per[which] * way
         page.line([at - TICK * across, at + TICK * across], THIN)
+        if numbered and (value - before) / axes.per[which] < NEXT and before < value:
+            continue
+        before = value
         words = str(number) if numbered else number_text(value)
         height = USUAL if numbered else SMALLEST
         if abs(way[0]) > 0.5:
-            last = float((end - at) @ way) < BESIDE_LETTER  # above stands the letter of the axis
-            free = not last and _is_crowded(at, -1.0, curves) and not _is_crowded(at, 1.0, curves)
+            free = _is_crowded(at, -1.0, curves) and not _is_crowded(at, 1.0, curves)
             side = 1.0 if free else -1.0
             up = float(at[1]) + side * 1.5 * TICK
-            page.write_in(height, float(at[0]), up, words, ha="center", va="top" if side < 0 else "bottom")
+            # at the origin stands the other axis
+            right, where = (float(at[0]), "center") if value else (float(at[0]) - 1.0, "right")
+            page.write_in(height, right, up, words, ha=where, va="top" if side < 0 else "bottom")
         else:
             page.write_in(height, float(at[0]) - 1.5 * TICK, float(at[1]), words, ha="right", va="center")
+
+
+def _name_axis(page: DrawingPage, end: Array, way: Array, label: AxisLabel) -> Array:
+    """Write the letter of an axis beyond its end, where no number of it stands; returns its tip [mm]."""
+    text = symbol_text(label)
+    if label.unit not in ("", "1"):
+        text = f"{text}, {spelled_unit(label.unit)}"
+    tip = np.asarray(end + BEYOND * way)
+    if abs(way[0]) > 0.5:
+        left = float(end[0]) + WORD
+        written = page.write_in(USUAL, left, float(end[1]) + 2.0, text, ha="left", va="bottom")
+        return np.array([max(float(tip[0]), float(page.box_of(written)[1, 0]) + 1.0), tip[1]])
+    top = float(tip[1]) if way[1] > 0 else float(tip[1]) - 1.0
+    page.write_in(USUAL, float(tip[0]) + 2.0, top, text, ha="left", va="top" if way[1] > 0 else "bottom")
+    return tip
 
 
 def _is_crowded(at: Array, side: float, curves: Sequence[Array]) -> bool:
