@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,13 +46,17 @@ PLACES = 1441
 """Places of a curve over a turn, beside the numbered ones."""
 BEYOND = 0.12
 """How far faces, rays and axes go on beyond what they are drawn for, over the base radius."""
-WALLS, ABOVE, STEM = 0.3, 0.35, 0.12
+WALLS, ABOVE, STEM = 0.15, 0.3, 0.1
 """Over the base radius: between the highest place and the guide; length of the guide; the stem above it."""
+RAY = 0.4
+"""How far a line at the admissible angle goes on beyond the foot of the cam's centre, over the base radius."""
 ARC = 0.55
 """Radius of the arc of an angle over the base radius."""
 RADIUS_AT = math.radians(215.0)
 """Direction of the radius of the base circle that is named, where most followers leave room."""
 CENTRE = (0.0, 0.0)
+MOST_FACTS = 8
+"""Segments that are listed."""
 TITLES = {
     False: (
         Sentence("Displacement of the follower"),
@@ -132,9 +137,7 @@ def _bend_diagram(body: FollowerCam, phi: Array) -> ScaledDiagram:
 def _around(body: FollowerCam, phi: Array) -> Array:
     """Angles of a turn [rad], both sides of every edge and the numbered positions among them."""
     edges = body.edges
-    parts = [
-        _with_positions(*inside(start, stop), phi) for start, stop in zip(edges, edges[1:], strict=False)
-    ]
+    parts = [_with_positions(*inside(start, stop), phi) for start, stop in pairwise(edges)]
     return np.concatenate(parts)
 
 
@@ -146,11 +149,12 @@ def _velocity_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> Geometric
     around = _around(body, phi)
     starts, ends = centres_in_frame(body, phi), velocity_ends(body, phi)
     path = centres_in_frame(body, np.linspace(0.0, math.tau, PLACES))
+    bounds = list(_bound_lines(cam, body, phi))
     lines = [
         GeometryLine(velocity_ends(body, around), LineLook.MAIN),
         *(GeometryLine(np.stack(pair)) for pair in zip(starts, ends, strict=True) if math.dist(*pair) > 0.0),
         *_guidance_lines(body, path, starts),
-        *_bound_lines(cam, body, phi),
+        *(GeometryLine(line) for line, _bound in bounds),
         GeometryLine(np.array([CENTRE, tuple(starts[0])]), head=True),
     ]
     radius: Text = Symbol("r", "0", slanted=True)
@@ -160,11 +164,14 @@ def _velocity_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> Geometric
         *_numbers(ends, np.hypot(*(ends - starts).T) > 0.0),
         GeometryName(CENTRE, Symbol("O")),
         GeometryName(_point(0.5 * starts[0]), radius),
+        *_bound_names(bounds),
     ]
     hinges = [CENTRE]
     if isinstance(body.guide, Oscillating):
         hinges.append((body.guide.distance, 0.0))
         names.append(GeometryName(hinges[1], Symbol("A")))
+    elif body.guide.offset:
+        names.append(GeometryName((0.5 * body.guide.offset, 0.0), Symbol("e")))
     title = Sentence("Choice of the least radius by the pressure angle")
     angles = tuple(_pressure_angles(body))
     lines += [GeometryLine(np.array([CENTRE, one.apex]), LineLook.DASHED) for one in angles]
@@ -181,13 +188,13 @@ def _guidance_lines(body: FollowerCam, path: Array, starts: Array) -> Iterator[G
             yield GeometryLine(np.stack([pivot, start]))
         return
     low, high = np.array([guide.offset, 0.0]), np.array([guide.offset, float(path[:, 1].max())])
-    yield GeometryLine(np.stack([low, high + [0.0, BEYOND * body.base_radius]]), LineLook.CHAIN)
+    yield GeometryLine(np.stack([low, high + np.array([0.0, BEYOND * body.base_radius])]), LineLook.CHAIN)
     if guide.offset:
         yield GeometryLine(np.array([CENTRE, tuple(low)]))
 
 
-def _bound_lines(cam: PlateCam, body: FollowerCam, phi: Array) -> Iterator[GeometryLine]:
-    """Lines at the admissible pressure angles: the centre of the cam lies on their far side."""
+def _bound_lines(cam: PlateCam, body: FollowerCam, phi: Array) -> Iterator[tuple[Array, float]]:
+    """Lines at the admissible pressure angles [rad]: the centre of the cam lies on their far side."""
     kept = admissible_of(cam)
     if cam.bounds.pressure_angle is None and cam.bounds.return_pressure_angle is None:
         return
@@ -205,8 +212,15 @@ def _bound_lines(cam: PlateCam, body: FollowerCam, phi: Array) -> Iterator[Geome
                     back[0] * math.sin(turn) + back[1] * math.cos(turn),
                 ]
             )
-            far = float(np.hypot(*end)) + BEYOND * body.base_radius
-            yield GeometryLine(np.stack([end, end + far / max(math.cos(bound), 0.5) * ray]))
+            far = max(0.0, float(-end @ ray)) + RAY * body.base_radius
+            yield np.stack([end, end + far * ray]), bound
+
+
+def _bound_names(bounds: Sequence[tuple[Array, float]]) -> Iterator[GeometryName]:
+    """Each admissible angle once, at the end of its first line."""
+    for bound in dict.fromkeys(bound for _line, bound in bounds):
+        end = next(line[1] for line, one in bounds if one == bound)
+        yield GeometryName(_point(end), Joined((Symbol("[α]"), _degrees(bound)), " = "))
 
 
 def _bounding_angles(
@@ -228,21 +242,21 @@ def _bounding_angles(
 
 def _pressure_angles(body: FollowerCam) -> Iterator[GeometryAngle]:
     """The greatest pressure angles of the rise and of the return, at the ends of the velocity analogues."""
-    for at, name in _steepest(body):
+    for at, size in _steepest(body):
         end = velocity_ends(body, np.array([at]))[0]
         back = -directions_in_frame(body, np.array([at]))[0]
-        yield _angle_between(end, back, -end, 0.8 * ARC * body.base_radius, name)
+        yield _angle_between(end, back, -end, 0.8 * ARC * body.base_radius, _angle_text(size))
 
 
-def _steepest(body: FollowerCam) -> Iterator[tuple[float, Text]]:
-    """Where the follower is driven least well [rad], rising and falling, with the name and size of the angle."""
+def _steepest(body: FollowerCam) -> Iterator[tuple[float, float]]:
+    """Where the pressure angle is greatest, rising and falling, and its size [rad]."""
     phi = np.concatenate([nodes_of(body.edges), body.turns("pressure")])
     slope, size = body.motion.lift(phi, 1)[1], np.abs(body.contact(phi).pressure_angle)
     still = 1e-9 * float(np.abs(slope).max())
     for way in (slope > still, slope < -still):
         if way.any() and float(size[way].max()) > 1e-9:
             worst = int(np.argmax(np.where(way, size, -1.0)))
-            yield float(phi[worst]), _angle_text(float(size[worst]))
+            yield float(phi[worst]), float(size[worst])
 
 
 def _angle_text(value: float) -> Text:
@@ -341,8 +355,8 @@ def _profile(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
     if isinstance(body.guide, Oscillating):
         names.append(GeometryName((body.guide.distance, 0.0), Symbol("A")))
     angles = list[GeometryAngle]()
-    for at, name in list(_steepest(body))[:1]:
-        found, drawn = _angle_of_pressure(body, at, name)
+    for at, size in sorted(_steepest(body), key=lambda one: -one[1])[:1]:
+        found, drawn = _angle_of_pressure(body, at, _angle_text(size))
         angles.append(found)
         lines += drawn
     return GeometricDrawing(
@@ -365,7 +379,7 @@ def _inverted(
     beyond = BEYOND * body.base_radius
     roller = 0.0 if flat else body.touch.roller
     centres = centres_in_frame(body, phi)
-    tips = centres + [0.0, roller + (2.0 * beyond if flat else beyond)]
+    tips = centres + np.array([0.0, roller + (2.0 * beyond if flat else beyond)])
     feet = np.stack([np.full(len(phi), guide.offset), np.zeros(len(phi))], axis=1)
     lines = [
         GeometryLine(np.stack(pair))
@@ -422,7 +436,8 @@ def _angle_of_pressure(body: FollowerCam, at: float, name: Text) -> tuple[Geomet
         way = way if way @ normal > 0.0 else -way
     else:
         way = in_cam(body, directions_in_frame(body, place), place)[0]
-    far = 1.4 * ARC * body.base_radius
+    roller = body.touch.roller if body.touch.roller < math.inf else 0.0
+    far = roller + 1.4 * ARC * body.base_radius
     start = contact.centre[0]
     lines = [
         GeometryLine(np.stack([contact.place[0], start + far * normal])),
@@ -432,10 +447,10 @@ def _angle_of_pressure(body: FollowerCam, at: float, name: Text) -> tuple[Geomet
 
 
 def _numbers(places: Array, shown: Array | None = None) -> Iterator[GeometryName]:
-    """Numbers of positions beside their places."""
+    """Numbers of positions beside their places; where not all are shown, these have dots."""
     for number, place in enumerate(places):
         if shown is None or shown[number]:
-            yield GeometryName(_point(place), Number(number, digits="d"), dotted=True)
+            yield GeometryName(_point(place), Number(number, digits="d"), dotted=shown is not None)
 
 
 def _point(place: Array) -> tuple[float, float]:
@@ -451,14 +466,18 @@ def _facts(cam: PlateCam, body: FollowerCam) -> Iterator[tuple[Text, Text]]:
     follower, bounds = cam.follower, cam.bounds
     kind = Sentence("{kind}, with {contact}", kind=KINDS[follower.kind], contact=CONTACTS[follower.contact])
     yield Sentence("follower"), kind
-    for segment in cam.segments:
+    before = 0.0
+    for segment in cam.segments[:MOST_FACTS]:
         turned = Number(math.degrees(segment.angle), "deg", ".5g", unit_fixed=True)
         if segment.to is None:
             yield curve_name(segment.curve), turned
         else:
+            way = Sentence("return, {curve}", curve=curve_name(segment.curve))
+            if segment.to >= before:
+                way = Sentence("rise, {curve}", curve=curve_name(segment.curve))
             lift = Number(segment.to, "rad" if cam.swings else "m", ".5g")
-            to = Sentence("{angle}, to {lift}", angle=turned, lift=lift)
-            yield curve_name(segment.curve), to
+            yield way, Sentence("{angle}, to {lift}", angle=turned, lift=lift)
+            before = segment.to
     yield from _lengths(
         (Sentence("base radius"), body.base_radius),
         (Sentence("radius of the roller"), follower.roller_radius),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -145,7 +146,8 @@ class DrawingPage(Page):
     ) -> Text:
         """A text in the middle of a field, or from its left side on."""
         shown = "\n".join(_wrapped(text, float(field.size[0]) - 1.6, height))
-        x, y = field.corner + [1.0 if left else field.size[0] / 2, field.size[1] / 2]
+        x = field.corner[0] + (1.0 if left else field.size[0] / 2)
+        y = field.corner[1] + field.size[1] / 2
         return self.overlay.text(
             float(x), float(y), shown, fontsize=points_of(height), color="black",
             ha="left" if left else "center", va="center", linespacing=1.1, gid=layer or None, zorder=9, **how,
@@ -211,6 +213,21 @@ def _blacken(artist: Artist) -> None:
         artist.set_alpha(None)
         artist.set_edgecolor("black")
         artist.set_linewidth([_width(float(width), faint) for width in np.atleast_1d(artist.get_linewidth())])
+
+
+MATHEMATICS = re.compile(r"\$[^$]*\$")
+PRIMES = {r"{}^{\prime}": "′", r"^{\prime}": "′", "'''": "‴", "''": "″", "'": "′"}
+
+
+def with_primes(text: str) -> str:
+    """A text whose primes in formulas are letters of the font: those of mathematics come from one without names."""
+    return MATHEMATICS.sub(lambda found: _primed(found[0]), text)
+
+
+def _primed(formula: str) -> str:
+    for written, prime in PRIMES.items():
+        formula = formula.replace(written, prime)
+    return formula
 
 
 BOLD = 0.95

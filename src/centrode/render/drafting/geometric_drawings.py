@@ -51,6 +51,10 @@ AVOIDED = 160
 STEP = np.deg2rad(2.0)
 LEAST_ARC = 12.0
 """Length of an arc from which on it ends in heads [mm]."""
+HINGE = SIGN * np.array([[-2.8, -4.2], [2.8, 1.0]])
+"""Corners of the sign of a hinge on the frame about its centre [mm]."""
+TURNING = SIGN * np.array([[-3.8, 1.0], [3.8, 5.0]])
+"""The same of the arrow that says how a body turns [mm]."""
 WALL = 1.3
 """Half the width of a guide, in radii of a hinge."""
 
@@ -84,6 +88,9 @@ def draw_geometric_plate(
         page.avoid(pairwise(view.mm(_arc(np.array(circle.centre), circle.radius, 0.0, 2.0 * np.pi))))
     if drawing.frame is not None:
         _draw_frame(axes, drawing.frame, SIGN * per)
+        page.boxes += [view.mm(np.array(place)) + HINGE for place in drawing.frame.hinges]
+        if drawing.frame.sense:
+            page.boxes.append(view.mm(np.array(drawing.frame.hinges[0])) + TURNING)
     for angle in drawing.angles:
         _draw_angle(page, axes, view, angle, spelling)
     for name in drawing.names:

@@ -50,7 +50,7 @@ LINE = 6.5
 
 def scale_text(symbol: str, value: float, unit: str) -> str:
     """What a millimetre stands for: "μ_v = 0.02 (m/s)/mm", its letter as mathematics."""
-    shown = spelled_unit(unit)
+    shown = spelled_unit(unit) or "1"
     shown = f"({shown})" if "/" in shown or "·" in shown or "⋅" in shown else shown
     return f"$\\mu_{{{symbol}}}$ = {number_text(value)} {shown}/{spelled_unit('mm')}"
 

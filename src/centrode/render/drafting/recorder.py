@@ -18,7 +18,6 @@ from centrode.render.drafting.board import (
     CAPITAL,
     CHAIN,
     DASHED,
-    Array,
     BoardWords,
     Cover,
     Drawing,

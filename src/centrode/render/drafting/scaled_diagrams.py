@@ -35,6 +35,8 @@ WORD, HEIGHT = 3.5, 7.0
 NEXT = 6.5
 """Numbers nearer to the one before than this are left out [mm]."""
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+FIRST = 0.6
+"""Share of the room of the tangents' numbers that their first column takes: its lines are longer."""
 BEYOND = 7.0
 """How far an axis goes beyond what is drawn [mm]."""
 
@@ -153,11 +155,15 @@ def draw_axis(
         words = str(number) if numbered else number_text(value)
         height = USUAL if numbered else SMALLEST
         if abs(way[0]) > 0.5:
-            free = _is_crowded(at, -1.0, curves) and not _is_crowded(at, 1.0, curves)
-            side = 1.0 if free else -1.0
+            below, above = (_is_crowded(at, side, curves) for side in (-1.0, 1.0))
+            side = 1.0 if below and not above else -1.0
             up = float(at[1]) + side * 1.5 * TICK
-            # at the origin stands the other axis
-            right, where = (float(at[0]), "center") if value else (float(at[0]) - 1.0, "right")
+            # at the origin stands the other axis, elsewhere a curve may go straight up and down
+            right, where = float(at[0]), "center"
+            if not value:
+                right, where = right - 1.0, "right"
+            elif below and above:
+                right, where = right + 1.0, "left"
             page.write_in(height, right, up, words, ha=where, va="top" if side < 0 else "bottom")
         else:
             page.write_in(height, float(at[0]) - 1.5 * TICK, float(at[1]), words, ha="right", va="center")
@@ -307,8 +313,9 @@ def _write_tangents(
     lines = [lines[0], lines[1], lines[5], lines[2], lines[3], lines[4]]
     rows = -(-len(lines) // 2)
     for number, line in enumerate(lines):
-        cell = field.share(2, number // rows, rows, rows - 1 - number % rows)
-        left, middle = float(cell.corner[0]), float(cell.corner[1] + cell.size[1] / 2)
+        cell = field.share(1, 0, rows, rows - 1 - number % rows)
+        left = float(cell.corner[0] + (FIRST * cell.size[0] if number >= rows else 0.0))
+        middle = float(cell.corner[1] + cell.size[1] / 2)
         page.write_in(USUAL, left, middle, line, ha="left", va="center")
 
 

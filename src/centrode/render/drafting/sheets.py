@@ -11,7 +11,14 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 
-from centrode.render.drafting.drawing_page import A1, DrawingPage, Field, blacken, new_drawing_page
+from centrode.render.drafting.drawing_page import (
+    A1,
+    DrawingPage,
+    Field,
+    blacken,
+    new_drawing_page,
+    with_primes,
+)
 from centrode.render.drafting.dxf import write_drawing_dxf
 from centrode.render.drafting.geometric_drawings import draw_geometric_plate, write_facts
 from centrode.render.drafting.plates import (
@@ -31,7 +38,7 @@ from centrode.render.drafting.title_block import (
     drawing_field,
 )
 from centrode.render.drawing.style import house_style
-from centrode.render.figures.files import spell_decimals
+from centrode.render.figures.files import respell, spell_decimals
 from centrode.render.spelling import DASH, FigureSpelling
 from centrode.sheets.drawing_sheets import (
     CamSheet,
@@ -58,8 +65,10 @@ ROWS = 2
 """Rows of plans of vectors on a sheet of their own."""
 ASIDE = 2.0
 """Between a field and the main inscription [mm]."""
-CHOICE = 236.0
+CHOICE = 205.0
 """Height of the choice of a cam's least radius, beside the main inscription [mm]."""
+ABOVE = 8.0
+"""Between the profile of a cam and the list of its sizes [mm]."""
 CORNER = 16.0
 """Height that the repeated designation takes off the upper left corner of the field [mm]."""
 
@@ -84,6 +93,7 @@ def drawing_figures(made: DrawingSet, scale: DrawingScale | None = None) -> list
             shown = _draw(page, sheet, scale)
             blacken(page.figure)
             draw_frame(page, Inscription(made.block, names, number, shown))
+            respell(page.figure, with_primes)
             spell_decimals(page.figure)
         figures.append(page.figure)
     return figures
