@@ -23,7 +23,7 @@ LETTERS = {
 }
 MARKS = {"ⁿ": "^{n}", "ᵗ": "^{t}", "": ""}
 SHORTEST, LONGEST = 8.0, 20.0
-"""Arrows at the places where forces act are this long on a page of a document [mm]: they show directions, the polygon sizes."""
+"""Arrows at the places where forces act are this long on a page [mm]: they show directions, the polygon sizes."""
 LONGER = 1.3
 """How much longer they are on a sheet with larger signs, at most: names of forces at one place stand apart."""
 LIKE = 0.97
