@@ -326,9 +326,59 @@ def test_sheets_of_cams_speak() -> None:
         check_fields(figure, [])
 
 
+CIRCLE = """
+kind = "cam"
+display = { length = "mm", angle = "deg" }
+[curvature]
+law = "constant"
+k0 = "0.01 1/mm"
+[start]
+radius = "60 mm"
+[range]
+to = "90 deg"
+[roller]
+radius = "9 mm"
+"""
+
+
+def test_the_path_of_a_constant_curvature_is_a_circle(tmp_path: Path) -> None:
+    """Of radius 100 mm about (0, -40) mm: rho = -40 cos phi + sqrt(100^2 - 40^2 sin^2 phi), the profile 9 mm inside."""
+    sheet = drawn(ct.parse_cam(CIRCLE), tmp_path)
+    distance, rate, _second = sheet.curves()
+    across = sheet.scales["\\varphi"][0]
+    phi = (distance[:, 0] - distance[0, 0]) * across
+    assert phi[-1] == pytest.approx(math.pi / 2, rel=1e-12)
+    root = np.sqrt(1.0 - (0.4 * np.sin(phi)) ** 2)
+    radius = 0.1 * (root - 0.4 * np.cos(phi))
+    per = sheet.scales["\\rho"][0] if "\\rho" in sheet.scales else sheet.scales["ρ"][0]
+    np.testing.assert_allclose(np.diff(distance[:, 1]) * per, np.diff(radius), atol=1e-12)
+    slope = 0.1 * (0.4 * np.sin(phi) - 0.16 * np.sin(phi) * np.cos(phi) / root)
+    np.testing.assert_allclose((rate[:, 1] - rate[0, 1]) * sheet.scales["ρ′"][0], slope, atol=1e-12)
+    per = sheet.scales["l"][0]
+    rollers = np.array([place for place, size in sheet.rings() if abs(size * per - 0.009) <= 1e-12])
+    assert len(rollers) == 12
+    profile = sheet.profile()
+    # three places of the profile give its centre; all others lie on its circle, rollers on the circle about it
+    first, middle, last = profile[[0, len(profile) // 2, -1]]
+    rows = 2.0 * np.array([middle - first, last - first])
+    centre = np.linalg.solve(rows, [middle @ middle - first @ first, last @ last - first @ first])
+    np.testing.assert_allclose(np.hypot(*(profile - centre).T) * per, 0.091, rtol=1e-9)
+    np.testing.assert_allclose(np.hypot(*(rollers - centre).T) * per, 0.1, rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["cam-from-curvature", "walking-wheel-four-legs"])
+def test_sheets_of_curvature_laws_keep_their_fields(name: str) -> None:
+    cam = ct.example(name)
+    (figure,) = drawing_figures(drawing_sheets(cam))
+    check_fields(figure, [])
+    texts = " ".join(text for _layer, text, _box in boxes_of_texts(figure))
+    steepest = ct.cam(cam, 3601)["cam_pressure_angle"]
+    assert f"= {math.degrees(float(abs(steepest).max())):.4g}°" in texts
+
+
 def test_what_no_sheet_shows_is_refused() -> None:
     for cam, arguments, told in (
-        ("walking-wheel-three-legs", {}, "has no lift"),
+        ("walking-wheel-three-legs", {"link": "A"}, "motion of its follower"),
         ("valve-cam", {"instants": ["30 deg"]}, "no plans of vectors"),
         ("valve-cam", {"link": "A"}, "motion of its follower"),
         ("valve-cam", {"positions": 1}, "1 positions are given"),

@@ -10,13 +10,14 @@ import numpy as np
 from centrode.analysis.graphic.results import graphic_analysis
 from centrode.analysis.position_plan import SAMPLES, USUAL, check_positions, plan_of_positions
 from centrode.cams.followers.base_circle import follower_cam
+from centrode.cams.profiles import roller_path_of
 from centrode.dynamics.force_polygons.results import force_polygon_results, has_force_polygons
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.steady_motion.machine import is_machine, machine_results
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import motion
 from centrode.locale import _
-from centrode.model.cam_files import has_follower, with_follower
+from centrode.model.cam_files import has_follower, require_curvature_cam, with_follower
 from centrode.model.examples.catalogue import description_of
 from centrode.model.explanatory_note import TitlePage
 from centrode.model.mechanism import Mechanism
@@ -24,6 +25,7 @@ from centrode.model.reading import FRAME
 from centrode.sheets.drawing_sheets import DrawingSet, TitleBlock
 from centrode.views.cam_sheets import cam_sheet
 from centrode.views.drawing_sheets import diagram_sheet, energy_sheet, force_sheets, motion_sheets
+from centrode.views.path_sheets import path_sheet
 
 if TYPE_CHECKING:
     from centrode.model.cam_files import AnyCam
@@ -44,11 +46,11 @@ def drawing_sheets(
     """Sheets A1 of a mechanism: its motion; where they are described, its machine and its forces; or of a cam.
 
     Of a mechanism on the sphere they show the diagrams of its output and of its machine; `absent` names the drawings
-    that are of the plane. Of a cam that its follower's lift gives one sheet shows the synthesis.
+    that are of the plane. Of a cam one sheet shows the synthesis.
 
     Parameters
     ----------
-    description : Mechanism or PlateCam, or the name of its file or of a built-in one
+    description : Mechanism, PlateCam or Cam, or the name of its file or of a built-in one
     instants : values of the drive [rad or m], times [s], or texts with a unit, at which plans of vectors and forces
         are drawn; those of the study by default, else the initial position
     positions, link : as of `plan_of_positions`; of a cam about so many positions stand on its rises and returns
@@ -89,16 +91,15 @@ def cam_sheets(
     positions: int = USUAL,
     link: str | None = None,
 ) -> DrawingSet:
-    """The sheet A1 of a cam that its follower's lift gives; arguments and errors are those of `drawing_sheets`."""
+    """The sheet A1 of a cam; arguments and errors are those of `drawing_sheets`."""
     if np.size(instants):
         raise InputError("instants", _("the sheet of a cam has no plans of vectors"), _("omit it"))
     if link is not None:
         raise InputError("link", _("the sheet of a cam shows the motion of its follower"), _("omit it"))
     check_positions(positions)
     if not has_follower(cam):
-        what = _("a cam by a curvature law has no lift, from which a sheet shows the synthesis")
-        repair = _("compute it with: centrode cam; its profile is written with --out")
-        raise InputError("", what, repair)
+        curved = require_curvature_cam(cam)
+        return DrawingSet(title_block(cam), (path_sheet(curved, roller_path_of(curved), positions),))
     plate = with_follower(cam)
     sheet = cam_sheet(plate, follower_cam(plate), positions)
     return DrawingSet(title_block(cam), (sheet,))

@@ -37,13 +37,24 @@ from centrode.sheets.drawing_sheets import (
 from centrode.sheets.plots import AxisLabel
 from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text, Unit
 from centrode.views.followers import CONTACTS, KINDS, curve_name
+from centrode.views.geometric_drawings import (
+    CENTRE,
+    PLACES,
+    angle_axis,
+    angle_between,
+    greatest_angle_text,
+    in_degrees,
+    length_facts,
+    mesh_with,
+    numbered_names,
+    point_of,
+    ticks_of,
+)
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.model.follower_cam import PlateCam
 
-PLACES = 1441
-"""Places of a curve over a turn, beside the numbered ones."""
 BEYOND = 0.12
 """How far faces, rays and axes go on beyond what they are drawn for, over the base radius."""
 WALLS, ABOVE, STEM = 0.15, 0.3, 0.1
@@ -54,7 +65,6 @@ ARC = 0.55
 """Radius of the arc of an angle over the base radius."""
 RADIUS_AT = math.radians(215.0)
 """Direction of the radius of the base circle that is named, where most followers leave room."""
-CENTRE = (0.0, 0.0)
 MOST_FACTS = 8
 """Segments that are listed."""
 TITLES = {
@@ -94,15 +104,11 @@ def cam_sheet(cam: PlateCam, body: FollowerCam, positions: int) -> CamSheet:
 # Diagrams over the angle of the cam
 
 
-def _ticks(phi: Array) -> tuple[float, ...]:
-    return (*phi.tolist(), math.tau)
-
-
 def _motion_diagrams(cam: PlateCam, phi: Array) -> Iterator[ScaledDiagram]:
     """Lift and its two derivatives; where a derivative jumps its curve goes straight up or down."""
     motion = follower_motion(cam)
     parts = stretches(motion.law)
-    meshes = [_with_positions(*part.ends, phi) for part in parts]
+    meshes = [mesh_with(*part.ends, phi) for part in parts]
     rows = np.concatenate(
         [part.derivatives(mesh, 2) for part, mesh in zip(parts, meshes, strict=True)], axis=1
     )
@@ -112,17 +118,7 @@ def _motion_diagrams(cam: PlateCam, phi: Array) -> Iterator[ScaledDiagram]:
         quantity = QUANTITIES[name]
         up = AxisLabel(symbol=Symbol(quantity.symbol), unit=quantity.unit)
         curve = ScaledCurve(NOTHING, across, values)
-        yield ScaledDiagram(title, _angle_axis(), up, (curve,), _ticks(phi))
-
-
-def _with_positions(start: float, stop: float, phi: Array) -> Array:
-    """Places of a stretch, its ends and the numbered positions in it included."""
-    count = 2 + math.ceil(PLACES * (stop - start) / math.tau)
-    return np.union1d(np.linspace(start, stop, count), phi[(phi >= start) & (phi <= stop)])
-
-
-def _angle_axis() -> AxisLabel:
-    return AxisLabel(symbol=Symbol("φ"), unit="rad")
+        yield ScaledDiagram(title, angle_axis(), up, (curve,), ticks_of(phi))
 
 
 def _bend_diagram(body: FollowerCam, phi: Array) -> ScaledDiagram:
@@ -131,13 +127,13 @@ def _bend_diagram(body: FollowerCam, phi: Array) -> ScaledDiagram:
     up = AxisLabel(symbol=Symbol("ρ"), unit="m")
     curve = ScaledCurve(NOTHING, across, body.contact(across).bend)
     title = Sentence("Radius of curvature of the profile")
-    return ScaledDiagram(title, _angle_axis(), up, (curve,), _ticks(phi))
+    return ScaledDiagram(title, angle_axis(), up, (curve,), ticks_of(phi))
 
 
 def _around(body: FollowerCam, phi: Array) -> Array:
     """Angles of a turn [rad], both sides of every edge and the numbered positions among them."""
     edges = body.edges
-    parts = [_with_positions(*inside(start, stop), phi) for start, stop in pairwise(edges)]
+    parts = [mesh_with(*inside(start, stop), phi) for start, stop in pairwise(edges)]
     return np.concatenate(parts)
 
 
@@ -161,9 +157,9 @@ def _velocity_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> Geometric
     if body.touch.roller:
         radius = Joined((radius, Symbol("r")), " + ")
     names = [
-        *_numbers(ends, np.hypot(*(ends - starts).T) > 0.0),
+        *numbered_names(ends, np.hypot(*(ends - starts).T) > 0.0),
         GeometryName(CENTRE, Symbol("O")),
-        GeometryName(_point(0.5 * starts[0]), radius),
+        GeometryName(point_of(0.5 * starts[0]), radius),
         *_bound_names(bounds),
     ]
     hinges = [CENTRE]
@@ -220,7 +216,7 @@ def _bound_names(bounds: Sequence[tuple[Array, float]]) -> Iterator[GeometryName
     """Each admissible angle once, at the end of its first line."""
     for bound in dict.fromkeys(bound for _line, bound in bounds):
         end = next(line[1] for line, one in bounds if one == bound)
-        yield GeometryName(_point(end), Joined((Symbol("[α]"), _degrees(bound)), " = "))
+        yield GeometryName(point_of(end), Joined((Symbol("[α]"), in_degrees(bound)), " = "))
 
 
 def _bounding_angles(
@@ -245,7 +241,7 @@ def _pressure_angles(body: FollowerCam) -> Iterator[GeometryAngle]:
     for at, size in _steepest(body):
         end = velocity_ends(body, np.array([at]))[0]
         back = -directions_in_frame(body, np.array([at]))[0]
-        yield _angle_between(end, back, -end, 0.8 * ARC * body.base_radius, _angle_text(size))
+        yield angle_between(end, back, -end, 0.8 * ARC * body.base_radius, greatest_angle_text(size))
 
 
 def _steepest(body: FollowerCam) -> Iterator[tuple[float, float]]:
@@ -259,23 +255,11 @@ def _steepest(body: FollowerCam) -> Iterator[tuple[float, float]]:
             yield float(phi[worst]), float(size[worst])
 
 
-def _angle_text(value: float) -> Text:
-    degrees = Number(math.degrees(value), "deg", ".4g", unit_fixed=True)
-    return Joined((Symbol("α", "max"), degrees), " = ")
-
-
-def _angle_between(apex: Array, first: Array, last: Array, radius: float, text: Text) -> GeometryAngle:
-    """The angle between two directions, the smaller way round."""
-    begin = math.atan2(first[1], first[0])
-    turn = math.remainder(math.atan2(last[1], last[0]) - begin, math.tau)
-    return GeometryAngle(_point(apex), begin, begin + turn, radius, text)
-
-
 def _acceleration_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
     """Lift over the analogue of acceleration: a tangent at 45 degrees cuts the least s + s″ off the axis."""
     motion = follower_motion(cam)
     parts = stretches(motion.law)
-    rows = np.concatenate([part.derivatives(_with_positions(*part.ends, phi), 2) for part in parts], axis=1)
+    rows = np.concatenate([part.derivatives(mesh_with(*part.ends, phi), 2) for part in parts], axis=1)
     sums = extremes_of(motion.law, 3, lambda rows: (rows[0] + rows[2], rows[1] + rows[3]))
     least, at = sums.least, sums.at_least
     lift, _slope, second = (
@@ -307,25 +291,21 @@ def _acceleration_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> Geome
     )
     places = motion.lift(phi, 2)[[2, 0]].T
     names = (
-        *_numbers(places, np.hypot(*places.T) > 0.0),
-        GeometryName(_point(centre), Symbol("O")),
-        GeometryName(_point(aside + 0.5 * centre), Symbol("r", "0", slanted=True)),
+        *numbered_names(places, np.hypot(*places.T) > 0.0),
+        GeometryName(point_of(centre), Symbol("O")),
+        GeometryName(point_of(aside + 0.5 * centre), Symbol("r", "0", slanted=True)),
         GeometryName(
-            _point(0.5 * (cut + centre) + 0.4 * aside),
+            point_of(0.5 * (cut + centre) + 0.4 * aside),
             Joined((Symbol("ρ", "min"), Number(rest, "m", ".5g")), " = "),
         ),
         GeometryName((right + 2.0 * beyond, 0.0), Joined((Symbol("s″"), Unit("m/rad^2")))),
         GeometryName((0.0, float(rows[0].max()) + 2.0 * beyond), Joined((Symbol("s"), Unit("m")))),
     )
-    angle = _angle_between(
-        cut, touching - cut, np.array([0.0, 1.0]), 0.7 * ARC * radius, _plain_degrees(45.0)
+    angle = angle_between(
+        cut, touching - cut, np.array([0.0, 1.0]), 0.7 * ARC * radius, Number(45.0, "deg", unit_fixed=True)
     )
     title = Sentence("Choice of the least radius by the curvature of the profile")
-    return GeometricDrawing(title, lines, (), names, (angle,), GeometryFrame((_point(centre),)))
-
-
-def _plain_degrees(value: float) -> Number:
-    return Number(value, "deg", unit_fixed=True)
+    return GeometricDrawing(title, lines, (), names, (angle,), GeometryFrame((point_of(centre),)))
 
 
 # The profile by inversion
@@ -342,21 +322,21 @@ def _profile(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
     if rolls:
         lines.append(GeometryLine(np.concatenate([contact.centre, contact.centre[:1]]), LineLook.CHAIN))
         circles.append(GeometryCircle(CENTRE, body.base_radius + body.touch.roller))
-        circles += [GeometryCircle(_point(one), body.touch.roller) for one in places.centre[1:]]
-        circles.append(GeometryCircle(_point(places.centre[0]), body.touch.roller, LineLook.MAIN))
+        circles += [GeometryCircle(point_of(one), body.touch.roller) for one in places.centre[1:]]
+        circles.append(GeometryCircle(point_of(places.centre[0]), body.touch.roller, LineLook.MAIN))
     frame, more, further, tips = _inverted(body, phi)
     arm = np.array([math.cos(RADIUS_AT), math.sin(RADIUS_AT)]) * body.base_radius
     lines += [*more, GeometryLine(np.array([CENTRE, tuple(arm)]), head=True)]
     names = [
-        *_numbers(tips),
+        *numbered_names(tips),
         GeometryName(CENTRE, Symbol("O")),
-        GeometryName(_point(0.6 * arm), Symbol("r", "0", slanted=True)),
+        GeometryName(point_of(0.6 * arm), Symbol("r", "0", slanted=True)),
     ]
     if isinstance(body.guide, Oscillating):
         names.append(GeometryName((body.guide.distance, 0.0), Symbol("A")))
     angles = list[GeometryAngle]()
     for at, size in sorted(_steepest(body), key=lambda one: -one[1])[:1]:
-        found, drawn = _angle_of_pressure(body, at, _angle_text(size))
+        found, drawn = _angle_of_pressure(body, at, greatest_angle_text(size))
         angles.append(found)
         lines += drawn
     return GeometricDrawing(
@@ -396,7 +376,7 @@ def _inverted(
     high = low + np.array([0.0, ABOVE * body.base_radius])
     stem = np.stack([centres[0], high + np.array([0.0, STEM * body.base_radius])])
     lines.append(GeometryLine(stem, LineLook.MAIN))
-    frame = GeometryFrame((CENTRE,), (_point(low), _point(high)), body.sense)
+    frame = GeometryFrame((CENTRE,), (point_of(low), point_of(high)), body.sense)
     return frame, lines, circles, in_cam(body, tips, phi)
 
 
@@ -443,19 +423,7 @@ def _angle_of_pressure(body: FollowerCam, at: float, name: Text) -> tuple[Geomet
         GeometryLine(np.stack([contact.place[0], start + far * normal])),
         GeometryLine(np.stack([start, start + far * way]), head=True),
     ]
-    return _angle_between(start, normal, way, 0.8 * far, name), lines
-
-
-def _numbers(places: Array, shown: Array | None = None) -> Iterator[GeometryName]:
-    """Numbers of positions beside their places; where not all are shown, these have dots."""
-    for number, place in enumerate(places):
-        if shown is None or shown[number]:
-            yield GeometryName(_point(place), Number(number, digits="d"), dotted=shown is not None)
-
-
-def _point(place: Array) -> tuple[float, float]:
-    x, y = place.tolist()
-    return x, y
+    return angle_between(start, normal, way, 0.8 * far, name), lines
 
 
 # Numbers beside the drawings
@@ -478,7 +446,7 @@ def _facts(cam: PlateCam, body: FollowerCam) -> Iterator[tuple[Text, Text]]:
             lift = Number(segment.to, "rad" if cam.swings else "m", ".5g")
             yield way, Sentence("{angle}, to {lift}", angle=turned, lift=lift)
             before = segment.to
-    yield from _lengths(
+    yield from length_facts(
         (Sentence("base radius"), body.base_radius),
         (Sentence("radius of the roller"), follower.roller_radius),
         (Sentence("offset of the follower's axis"), follower.offset or None),
@@ -487,22 +455,12 @@ def _facts(cam: PlateCam, body: FollowerCam) -> Iterator[tuple[Text, Text]]:
         (Sentence("offset of the face from the pivot"), follower.face_offset or None),
     )
     if bounds.pressure_angle is not None:
-        yield Sentence("admissible pressure angle"), _degrees(bounds.pressure_angle)
+        yield Sentence("admissible pressure angle"), in_degrees(bounds.pressure_angle)
     if bounds.return_pressure_angle is not None:
-        yield Sentence("the same on the return"), _degrees(bounds.return_pressure_angle)
+        yield Sentence("the same on the return"), in_degrees(bounds.return_pressure_angle)
     if ClosedForms(body).has_pressure_angle:
         steepest = max(abs(body.pressure.least), abs(body.pressure.greatest))
-        yield Sentence("greatest pressure angle"), _degrees(steepest)
+        yield Sentence("greatest pressure angle"), in_degrees(steepest)
     bend = body.least_bend[0]
     if math.isfinite(bend):
-        yield from _lengths((Sentence("least radius of curvature of the profile"), bend))
-
-
-def _lengths(*lengths: tuple[Text, float | None]) -> Iterator[tuple[Text, Text]]:
-    for label, value in lengths:
-        if value is not None:
-            yield label, Number(value, "m", ".5g")
-
-
-def _degrees(value: float) -> Number:
-    return Number(math.degrees(value), "deg", ".4g", unit_fixed=True)
+        yield from length_facts((Sentence("least radius of curvature of the profile"), bend))

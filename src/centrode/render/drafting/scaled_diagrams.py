@@ -17,7 +17,7 @@ from centrode.render.drafting.drawing_page import SMALLEST, USUAL, DrawingPage, 
 from centrode.render.drafting.plates import begin, number_text, scale_text, write_caption
 from centrode.render.drafting.recorder import MAIN, THIN
 from centrode.render.drafting.scales import diagram_scale
-from centrode.render.pages.page import Array
+from centrode.render.pages.page import Array, count_crossings
 from centrode.render.spelling import FigureSpelling
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def _draw_one(
     """Axes, curves, names and caption of a diagram."""
     lines = [axes.mm(curve.across, curve.up) for curve in diagram.curves]
     draw_axis(page, axes, diagram.across, 0, across, diagram.ticks, lines)
-    draw_axis(page, axes, diagram.up, 1, up)
+    draw_axis(page, axes, diagram.up, 1, up, curves=lines)
     draw_curves(page, axes, diagram.curves)
     page.place_names(begin_box(field))
     scales = [axis_scale(diagram.up, axes.per[1]), axis_scale(diagram.across, axes.per[0])]
@@ -155,7 +155,8 @@ def draw_axis(
         words = str(number) if numbered else number_text(value)
         height = USUAL if numbered else SMALLEST
         if abs(way[0]) > 0.5:
-            below, above = (_is_crowded(at, side, curves) for side in (-1.0, 1.0))
+            room = np.array([[-WORD, 0.3], [WORD, HEIGHT]])
+            above, below = (_is_crowded(at + room * [1.0, side], curves) for side in (1.0, -1.0))
             side = 1.0 if below and not above else -1.0
             up = float(at[1]) + side * 1.5 * TICK
             # at the origin stands the other axis, elsewhere a curve may go straight up and down
@@ -166,7 +167,11 @@ def draw_axis(
                 right, where = right + 1.0, "left"
             page.write_in(height, right, up, words, ha=where, va="top" if side < 0 else "bottom")
         else:
-            page.write_in(height, float(at[0]) - 1.5 * TICK, float(at[1]), words, ha="right", va="center")
+            room = np.array([[2.0, -1.5], [2.0 + 0.7 * height * len(words), 1.5]])
+            beside, other = (_is_crowded(at + room * [side, 1.0], curves) for side in (-1.0, 1.0))
+            side = 1.0 if beside and not other else -1.0
+            right = float(at[0]) + side * 1.5 * TICK
+            page.write_in(height, right, float(at[1]), words, ha="right" if side < 0 else "left", va="center")
 
 
 def _name_axis(page: DrawingPage, end: Array, way: Array, label: AxisLabel) -> Array:
@@ -184,11 +189,13 @@ def _name_axis(page: DrawingPage, end: Array, way: Array, label: AxisLabel) -> A
     return tip
 
 
-def _is_crowded(at: Array, side: float, curves: Sequence[Array]) -> bool:
-    """Whether a curve runs where a number above (1) or below (-1) a tick would stand."""
+def _is_crowded(box: Array, curves: Sequence[Array]) -> bool:
+    """Whether a curve runs through a box given by two opposite corners [mm]."""
+    low, high = box.min(axis=0), box.max(axis=0)
     for places in curves:
-        away = places - at
-        if ((np.abs(away[:, 0]) < WORD) & (side * away[:, 1] > 0.3) & (side * away[:, 1] < HEIGHT)).any():
+        segments = np.stack([places[:-1], places[1:]], axis=1)
+        segments = segments[np.isfinite(segments).all(axis=(1, 2))]
+        if count_crossings(low[None], high[None], segments)[0]:
             return True
     return False
 
