@@ -74,7 +74,7 @@ def test_of_a_cam_its_synthesis_is_drawn(centrode: Centrode, tmp_path: Path) -> 
     words = {text.dxf.text for text in document.modelspace().query("TEXT")}
     assert {
         "Profile of the cam by the method of inversion",
-        "Analogue of the follower's angular velocity",
+        "Angular velocity coefficient of the follower",
     } <= words
 
 

@@ -228,7 +228,7 @@ class CamSheet:
 
     Attributes
     ----------
-    diagrams : displacement of the follower, the analogues of its velocity and acceleration, over the cam's angle
+    diagrams : lift of the follower, its velocity and acceleration coefficients, over the cam's angle
     choice : what decides the least radius of the cam: a drawing of lengths, or a diagram of a radius of curvature
     profile : the cam with its follower in numbered positions of the inverted motion
     facts : what is given and what follows, each as a text with its value

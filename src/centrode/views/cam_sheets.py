@@ -69,14 +69,14 @@ MOST_FACTS = 8
 """Segments that are listed."""
 TITLES = {
     False: (
-        Sentence("Displacement of the follower"),
-        Sentence("Analogue of the follower's velocity"),
-        Sentence("Analogue of the follower's acceleration"),
+        Sentence("Lift of the follower"),
+        Sentence("Velocity coefficient of the follower"),
+        Sentence("Acceleration coefficient of the follower"),
     ),
     True: (
         Sentence("Angle of the follower"),
-        Sentence("Analogue of the follower's angular velocity"),
-        Sentence("Analogue of the follower's angular acceleration"),
+        Sentence("Angular velocity coefficient of the follower"),
+        Sentence("Angular acceleration coefficient of the follower"),
     ),
 }
 
@@ -141,7 +141,7 @@ def _around(body: FollowerCam, phi: Array) -> Array:
 
 
 def _velocity_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
-    """Turned velocity analogues laid off from the roller's centre, the centre of the cam, and bounds of it."""
+    """Turned velocity coefficients laid off from the roller's centre, the centre of the cam, and bounds of it."""
     around = _around(body, phi)
     starts, ends = centres_in_frame(body, phi), velocity_ends(body, phi)
     path = centres_in_frame(body, np.linspace(0.0, math.tau, PLACES))
@@ -237,7 +237,7 @@ def _bounding_angles(
 
 
 def _pressure_angles(body: FollowerCam) -> Iterator[GeometryAngle]:
-    """The greatest pressure angles of the rise and of the return, at the ends of the velocity analogues."""
+    """The greatest pressure angles of the rise and of the return, at the ends of the velocity coefficients."""
     for at, size in _steepest(body):
         end = velocity_ends(body, np.array([at]))[0]
         back = -directions_in_frame(body, np.array([at]))[0]
@@ -256,7 +256,7 @@ def _steepest(body: FollowerCam) -> Iterator[tuple[float, float]]:
 
 
 def _acceleration_diagram(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
-    """Lift over the analogue of acceleration: a tangent at 45 degrees cuts the least s + s″ off the axis."""
+    """Lift over the acceleration coefficient: a tangent at 45 degrees cuts the least s + s″ off the axis."""
     motion = follower_motion(cam)
     parts = stretches(motion.law)
     rows = np.concatenate([part.derivatives(mesh_with(*part.ends, phi), 2) for part in parts], axis=1)

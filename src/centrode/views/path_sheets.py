@@ -46,8 +46,8 @@ BEYOND, ARC = 0.12, 0.35
 """How far rays go on beyond what they are drawn for, and radius of an angle's arc, over the path's least radius."""
 TITLES = (
     Sentence("Distance of the roller's centre from the cam's centre"),
-    Sentence("Analogue of the roller's velocity along the carrier"),
-    Sentence("Analogue of the roller's acceleration along the carrier"),
+    Sentence("Velocity coefficient of the roller along the carrier"),
+    Sentence("Acceleration coefficient of the roller along the carrier"),
 )
 
 
@@ -82,7 +82,7 @@ def _worst(found: Frames) -> int:
 
 
 def _velocity_diagram(rows: Array, numbered: Array, found: Frames) -> GeometricDrawing:
-    """The distance over its analogue of velocity: a ray from the centre leaves the axis by the pressure angle."""
+    """The distance over its velocity coefficient: a ray from the centre leaves the axis by the pressure angle."""
     curve, places = rows[[1, 0]].T, numbered[[1, 0]].T
     worst, least = _worst(found), float(rows[0].min())
     top = np.array([0.0, float(rows[0].max()) + BEYOND * least])

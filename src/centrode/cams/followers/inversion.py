@@ -1,6 +1,6 @@
-"""The inverted motion of a follower about its cam at rest: numbered positions, directions, velocity analogues.
+"""The inverted motion of a follower about its cam at rest: numbered positions, directions, velocity coefficients.
 
-The analogue of the velocity of the roller's centre, turned by a right angle in the sense of the cam and laid off from
+The velocity coefficient of the roller's centre, turned by a right angle in the sense of the cam and laid off from
 that centre, ends at a place E; from the cam's centre E is seen along the normal of the contact. So the pressure angle
 is that between this line and the follower's motion, whatever the radius of the cam.
 """
@@ -54,7 +54,7 @@ def directions_in_frame(body: FollowerCam, phi: Array) -> Array:
 
 
 def velocity_ends(body: FollowerCam, phi: Array) -> Array:
-    """Ends (n, 2) [m] of the turned velocity analogues of the roller's centre, in the axes of the frame."""
+    """Ends (n, 2) [m] of the turned velocity coefficients of the roller's centre, in the axes of the frame."""
     arm = body.guide.arm if isinstance(body.guide, Oscillating) else 1.0
     rate = arm * body.motion.lift(phi, 1)[1]
     x, y = (rate[:, None] * directions_in_frame(body, phi)).T
