@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from matplotlib.patches import Polygon
@@ -34,6 +34,8 @@ WORD, HEIGHT = 3.5, 7.0
 """Half the width of a number at a tick, and how far it reaches from the axis [mm]."""
 NEXT = 6.5
 """Numbers nearer to the one before than this are left out [mm]."""
+SHIFTS = {"center": 0.0, "left": 1.0, "right": -1.0}
+"""Between a tick and a number beside it, by the number's alignment [mm]."""
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 FIRST = 0.6
 """Share of the room of the tangents' numbers that their first column takes: its lines are longer."""
@@ -155,16 +157,9 @@ def draw_axis(
         words = str(number) if numbered else number_text(value)
         height = USUAL if numbered else SMALLEST
         if abs(way[0]) > 0.5:
-            room = np.array([[-WORD, 0.3], [WORD, HEIGHT]])
-            above, below = (_is_crowded(at + room * [1.0, side], curves) for side in (1.0, -1.0))
-            side = 1.0 if below and not above else -1.0
+            side, where = _free_side(at, curves, at_axis=not value)
+            right = float(at[0]) + SHIFTS[where]
             up = float(at[1]) + side * 1.5 * TICK
-            # at the origin stands the other axis, elsewhere a curve may go straight up and down
-            right, where = float(at[0]), "center"
-            if not value:
-                right, where = right - 1.0, "right"
-            elif below and above:
-                right, where = right + 1.0, "left"
             page.write_in(height, right, up, words, ha=where, va="top" if side < 0 else "bottom")
         else:
             room = np.array([[2.0, -1.5], [2.0 + 0.7 * height * len(words), 1.5]])
@@ -187,6 +182,25 @@ def _name_axis(page: DrawingPage, end: Array, way: Array, label: AxisLabel) -> A
     top = float(tip[1]) if way[1] > 0 else float(tip[1]) - 1.0
     page.write_in(USUAL, float(tip[0]) + 2.0, top, text, ha="left", va="top" if way[1] > 0 else "bottom")
     return tip
+
+
+def _free_side(
+    at: Array, curves: Sequence[Array], at_axis: bool
+) -> tuple[float, Literal["center", "left", "right"]]:
+    """Below (-1) or above (1) a tick, and how aligned: the first of these where no curve runs.
+
+    At the origin stands the other axis, so a number stands beside it.
+    """
+    ways: tuple[Literal["center", "left", "right"], ...] = (
+        ("right",) if at_axis else ("center", "left", "right")
+    )
+    for where in ways:
+        for side in (-1.0, 1.0):
+            box = np.array([[-WORD, 0.3 * side], [WORD, HEIGHT * side]])
+            box[:, 0] += SHIFTS[where] + {"center": 0.0, "left": WORD, "right": -WORD}[where]
+            if not _is_crowded(at + box, curves):
+                return side, where
+    return -1.0, ways[0]
 
 
 def _is_crowded(box: Array, curves: Sequence[Array]) -> bool:
