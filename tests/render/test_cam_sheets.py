@@ -94,11 +94,11 @@ class Drawn:
 
     def curves(self) -> list[Array]:
         """Curves over the angle of the cam, from above."""
-        found = [line for line in self.lines("main") if len(line) > 1000 and line[:, 0].max() < 382.0]
+        found = [line for line in self.lines("main") if len(line) > 300 and line[:, 0].max() < 382.0]
         return sorted(found, key=lambda line: -line[0, 1])
 
     def profile(self) -> Array:
-        found = [line for line in self.lines("main") if len(line) > 1000 and line[:, 0].min() > 382.0]
+        found = [line for line in self.lines("main") if len(line) > 300 and line[:, 0].min() > 382.0]
         return max(found, key=lambda line: line[:, 1].mean())
 
     def rings(self) -> list[tuple[Array, float]]:
@@ -226,7 +226,7 @@ def test_the_diagram_of_velocities_gives_the_pressure_angle(one: Drawn) -> None:
     body, per = ct.follower_cam(one.cam), one.scales["l"][1]
     low = [ring for ring in one.rings() if ring[0][1] < 220.0 and ring[1] > 1.0]
     curve = min(
-        (line for line in one.lines("main") if len(line) > 1000 and line[:, 0].min() > 382.0),
+        (line for line in one.lines("main") if len(line) > 300 and line[:, 0].min() > 382.0),
         key=lambda line: line[:, 1].mean(),
     )
     swings = one.cam.follower.kind == "oscillating"
