@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 from matplotlib.patches import Polygon
@@ -146,6 +146,8 @@ def draw_axis(
     numbered = bool(ticks)
     before = -np.inf
     places = ticks if numbered else _round_places(span, axes.per[which])
+    apart = float(np.abs(np.diff(places)).min(initial=np.inf)) / axes.per[which]
+    ways = BESIDE_TICK if apart > NEXT + WORD else AT_TICK
     for number, value in enumerate(places):
         if value == 0.0 and not numbered:
             continue
@@ -157,7 +159,7 @@ def draw_axis(
         words = str(number) if numbered else number_text(value)
         height = USUAL if numbered else SMALLEST
         if abs(way[0]) > 0.5:
-            side, where = _free_side(at, curves, at_axis=not value)
+            side, where = _free_side(at, curves, ("right",) if not value else ways)
             right = float(at[0]) + SHIFTS[where]
             up = float(at[1]) + side * 1.5 * TICK
             page.write_in(height, right, up, words, ha=where, va="top" if side < 0 else "bottom")
@@ -184,16 +186,13 @@ def _name_axis(page: DrawingPage, end: Array, way: Array, label: AxisLabel) -> A
     return tip
 
 
-def _free_side(
-    at: Array, curves: Sequence[Array], at_axis: bool
-) -> tuple[float, Literal["center", "left", "right"]]:
-    """Below (-1) or above (1) a tick, and how aligned: the first of these where no curve runs.
+Alignment: TypeAlias = Literal["center", "left", "right"]
+AT_TICK: tuple[Alignment, ...] = ("center",)
+BESIDE_TICK: tuple[Alignment, ...] = ("center", "left", "right")
 
-    At the origin stands the other axis, so a number stands beside it.
-    """
-    ways: tuple[Literal["center", "left", "right"], ...] = (
-        ("right",) if at_axis else ("center", "left", "right")
-    )
+
+def _free_side(at: Array, curves: Sequence[Array], ways: tuple[Alignment, ...]) -> tuple[float, Alignment]:
+    """Below (-1) or above (1) a tick, and how aligned: the first of some ways at which no curve runs."""
     for where in ways:
         for side in (-1.0, 1.0):
             box = np.array([[-WORD, 0.3 * side], [WORD, HEIGHT * side]])
