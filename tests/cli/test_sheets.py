@@ -45,7 +45,16 @@ def test_what_cannot_be_put_on_sheets_is_told(centrode: Centrode, tmp_path: Path
             ("spherical-crank-rocker", "--link", "BC"),
             "BC neither turns about a hinge of the frame nor is a guide",
         ),
-        (("valve-cam",), "this describes a cam, not a linkage"),
+        (("valve-cam", "--at", "30 deg"), "--at: the sheet of a cam has no plans of vectors; omit it"),
+        (
+            ("valve-cam", "--link", "A"),
+            "--link: the sheet of a cam shows the motion of its follower; omit it",
+        ),
+        (
+            ("valve-cam", "--scale", "10:1"),
+            "10:1 is too large for the sheet; the largest standard scale is 4:1",
+        ),
+        (("valve-cam", "--positions", "40"), "40 positions are given"),
     ):
         done = centrode("sheets", *words, "--out", tmp_path / "a")
         assert (done.code, told in done.err) == (2, True), done.err
@@ -56,6 +65,17 @@ def test_of_a_spherical_linkage_its_diagrams_are_drawn(centrode: Centrode, tmp_p
     done = centrode("sheets", "spherical-crank-guide", "--out", tmp_path / "a")
     assert (done.code, "not drawn on the sphere: plan of positions" in done.err) == (0, True), done.err
     assert sorted(file.name for file in (tmp_path / "a").iterdir()) == ["sheet-1.dxf", "sheet-1.pdf"]
+
+
+def test_of_a_cam_its_synthesis_is_drawn(centrode: Centrode, tmp_path: Path) -> None:
+    done = centrode("sheets", "indexing-cam", "--positions", "8", "--out", tmp_path / "a")
+    assert done.code == 0, done.err
+    document = ezdxf.readfile(tmp_path / "a" / "sheet-1.dxf")
+    words = {text.dxf.text for text in document.modelspace().query("TEXT")}
+    assert {
+        "Profile of the cam by the method of inversion",
+        "Angular velocity coefficient of the follower",
+    } <= words
 
 
 def test_a_sheet_that_cannot_be_made_is_named(centrode: Centrode, tmp_path: Path) -> None:

@@ -44,7 +44,9 @@ ALLOWED = {
         "centrode.analysis.position_plan",
         "centrode.dynamics.force_polygons.results",
         "centrode.dynamics.steady_motion.machine",
+        "centrode.views.cam_sheets",
         "centrode.views.drawing_sheets",
+        "centrode.views.path_sheets",
     },
     # the chapter of a repaired mechanism consists of those of other topics, and begins with what was changed
     "report/repaired_mechanism.py": {"centrode.views.single_changes"},

@@ -14,23 +14,16 @@ import pypdfium2
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.text import Text
 
 import centrode as ct
 from centrode.locale import speaking
+from centrode.render.drafting.recorder import drawing_of_figure
 from centrode.render.drafting.scales import diagram_scale, largest_standard_scale, read_scale
 from centrode.render.drafting.sheets import drawing_figures, write_drawing_set
-from centrode.render.drawing.style import house_style
 from centrode.report.drawing_sheets import drawing_sheets
 from samples import examples_at_hand
+from sheet_fields import BLOCK, EXACT, FRAME, TURNED, boxes_of_texts, check_fields, inside
 
-EXACT = 1e-9
-"""Places are in millimetres of a sheet of one metre; this is some million roundings."""
-FRAME = (20.0, 5.0, 836.0, 589.0)
-GROWN = (20.0 - EXACT, 5.0 - EXACT, 836.0 + EXACT, 589.0 + EXACT)
-BLOCK = (651.0, 5.0, 836.0, 60.0)
-TURNED = (20.0, 575.0, 90.0, 589.0)
-"""GOST 2.104: frame of an A1 sheet, main inscription of form 1, the repeated designation."""
 SIGNED = """
 [report.title_page]
 institution = "НТУУ «КПІ»"
@@ -179,43 +172,6 @@ def test_lines_have_the_widths_of_the_standard(written: Written) -> None:
     assert corners == [pytest.approx(TURNED, abs=EXACT), pytest.approx(BLOCK, abs=EXACT)]
 
 
-def boxes_of_texts(figure: Figure) -> list[tuple[str, str, np.ndarray]]:
-    """Layer, text and box [mm] of every text of a sheet."""
-    canvas = FigureCanvasAgg(figure)
-    found = []
-    with house_style():
-        renderer = canvas.get_renderer()
-        for text in figure.findobj(Text):
-            assert isinstance(text, Text)
-            if text.get_text() and text.get_visible() and text.axes is figure.axes[0]:
-                box = text.get_window_extent(renderer).get_points() / figure.dpi * 25.4
-                found.append((text.get_gid() or "", text.get_text(), box))
-    return found
-
-
-def inside(box: np.ndarray, field: tuple[float, float, float, float]) -> bool:
-    return bool((box[0] >= field[:2]).all() and (box[1] <= field[2:]).all())
-
-
-def apart(box: np.ndarray, field: tuple[float, float, float, float]) -> bool:
-    return bool((box[0] >= field[2:]).any() or (box[1] <= field[:2]).any())
-
-
-def check_fields(figure: Figure, lines: list[tuple[str, np.ndarray]]) -> None:
-    """Everything lies inside the frame; only what belongs to it lies over the main inscription and the upper corner."""
-    for layer, text, box in boxes_of_texts(figure):
-        if layer:
-            assert inside(box, BLOCK) or inside(box, TURNED), text
-        else:
-            assert inside(box, FRAME), text
-            assert apart(box, BLOCK) and apart(box, TURNED), text
-    for layer, places in lines:
-        box = np.array([places.min(axis=0), places.max(axis=0)])
-        assert inside(box, GROWN)
-        if not layer.startswith(("title-block", "frame")):
-            assert apart(box, BLOCK) and apart(box, TURNED), (layer, box)
-
-
 def test_nothing_leaves_its_field(written: Written) -> None:
     for number, figure in enumerate(written.figures):
         layers = ("main", "thin", "dashed", "chain", "frame", "title-block", "title-block-main")
@@ -250,7 +206,7 @@ def test_the_scale_is_the_largest_standard_one(name: str) -> None:
         [one["position"].values.reshape(-1, 2) for one in (positions.positions, positions.path)]
     )
     size = 1e3 * np.nanmax(tracks, axis=0) - 1e3 * np.nanmin(tracks, axis=0)
-    room = np.array([814.0 - 354.0, 582.0 - 16.0 - 17.0 - (232.0 if made.sheets[0].plans else 0.0)])
+    room = np.array([814.0 - 362.0, 582.0 - 16.0 - 17.0 - (232.0 if made.sheets[0].plans else 0.0)])
     assert (size * scale.ratio <= room - 34.0 + EXACT).all()
     assert (size * min(larger) > room - 34.0).any()
 
@@ -321,3 +277,46 @@ def test_several_instants_have_a_sheet_of_plans() -> None:
     assert len(made.sheets[1].plans) == 6
     for figure in drawing_figures(made):
         check_fields(figure, [])
+
+
+def test_letters_of_titles_are_alike_on_all_sheets(written: Written) -> None:
+    titles = ("Plan of positions", "Moments, works", "Force polygons")
+    heights = [
+        text.dxf.height
+        for document, title in zip(written.documents, titles, strict=True)
+        for text in document.modelspace().query('TEXT[layer=="title-block"]')
+        if text.dxf.text.startswith(title)
+    ]
+    assert len(heights) == 3 and np.ptp(heights) <= EXACT
+
+
+def test_the_course_stands_below_the_designation(press: ct.Mechanism, tmp_path: Path) -> None:
+    course = "Теорія механізмів і машин"
+    signed = SIGNED.replace("designation", f'course = "{course}"\ndesignation')
+    made = drawing_sheets(ct.parse_mechanism(ct.mechanism_text(ct.example("crank-rocker")) + signed))
+    (figure,) = drawing_figures(made)
+    boxes = {text: box for layer, text, box in boxes_of_texts(figure) if layer}
+    designation, below = boxes["ТММ.07.01"], boxes[course]
+    assert below[1, 1] <= designation[0, 1] + 1.0  # boxes have room above and below small letters
+    field = (716.0, 45.0, 836.0, 60.0)  # GOST 2.104: field 2 of form 1
+    assert inside(below, field)
+    check_fields(figure, [])
+
+
+def test_edges_end_at_the_border_of_their_field() -> None:
+    """Of a line that leaves its axes the part inside is drawn up to the border: (0, 0) to (2, 1) is cut at x = 1."""
+    figure = Figure(figsize=(100.0 / 25.4, 100.0 / 25.4), dpi=72)
+    axes = figure.add_axes((0.1, 0.2, 0.5, 0.4))
+    axes.set_axis_off()
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(0.0, 1.0)
+    axes.plot([0.0, 2.0], [0.0, 1.0], color="black")
+    axes.plot([0.5, 1.5, 0.5], [0.5, 0.5, 0.75], color="black")
+    axes.plot([-1.0, 3.0], [1.5, 1.5], color="black")
+    FigureCanvasAgg(figure)
+    found = [stroke.places for stroke in drawing_of_figure(figure).strokes]
+    expected = [[(0, 0), (1, 0.5)], [(0.5, 0.5), (1, 0.5)], [(1, 0.625), (0.5, 0.75)]]
+    assert len(found) == 3
+    for places, ends in zip(found, expected, strict=True):
+        scaled = np.array([10.0, 20.0]) + np.array(ends) * [50.0, 40.0]
+        np.testing.assert_allclose(places, scaled, atol=1e-6)

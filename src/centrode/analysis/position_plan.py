@@ -96,12 +96,7 @@ def plan_of_positions(
     if mechanism.space != "plane":
         raise InputError("space", _("a plan of positions is drawn in the plane only"), _("draw the motion"))
     positions = USUAL if positions is None else positions
-    if isinstance(positions, bool) or not 2 <= positions <= MOST:
-        raise InputError(
-            "positions",
-            _("{count} positions are given").format(count=positions),
-            _("give 2 to {most}").format(most=MOST),
-        )
+    check_positions(positions)
     path = motion(mechanism, SAMPLES)
     ok = path["status"].values == Status.OK
     by = mechanism.motion_parameter.instants(path)
@@ -120,6 +115,16 @@ def plan_of_positions(
     # beyond the end of the range the turn begins again, so that every value lies in the range
     values = np.where((values - by[-1]) / turn >= -SAME, values - turn, values)
     return PositionPlan(mechanism, listed, motion(mechanism, at=values), path, zero, name, closed, extremes)
+
+
+def check_positions(positions: int) -> None:
+    """Raise InputError for a number of positions that cannot be drawn."""
+    if isinstance(positions, bool) or not 2 <= positions <= MOST:
+        raise InputError(
+            "positions",
+            _("{count} positions are given").format(count=positions),
+            _("give 2 to {most}").format(most=MOST),
+        )
 
 
 def _points_on_frame_guides(mechanism: Mechanism) -> tuple[str, ...]:

@@ -289,14 +289,29 @@ def _body(cam: Cam) -> ProfileBody:
         raise InputError("[roller]", _("a profile needs a roller"), _("give [roller] radius"))
     path, asked = path_of(cam), cam.return_arc or Return()
     if cam.return_arc is None and cam.mover is None:
-        whole = path.stop - path.start >= math.tau * (1 - CLOSED)
-        closed = _whole_turn(path) if whole else ClosedPath((_check_stalls(path, working_arc(path)),))
-        return ProfileBody(closed, cam.roller.radius)
+        return ProfileBody(_own_path(path), cam.roller.radius)
     working = _check_stalls(path, working_of(cam, path))
     if asked.kind == "mirrored":
         return ProfileBody(mirror_arc(working), cam.roller.radius)
     found = design_return(working, bounds_of(asked, cam.roller.radius, working))
     return ProfileBody(found.closed, cam.roller.radius, found)
+
+
+def roller_path_of(cam: Cam) -> ClosedPath:
+    """The path of a cam's roller, with its return arc if it has one; of a cam without a roller over its range.
+
+    Raises
+    ------
+    InputError, MotionError
+        As `cam_body`, but for a roller that is missing.
+    """
+    return _own_path(path_of(cam)) if cam.roller is None else cam_body(cam).closed
+
+
+def _own_path(path: RollerPath) -> ClosedPath:
+    """A path without a return arc: all the way round by itself, else open."""
+    whole = path.stop - path.start >= math.tau * (1 - CLOSED)
+    return _whole_turn(path) if whole else ClosedPath((_check_stalls(path, working_arc(path)),))
 
 
 def working_of(cam: Cam, path: RollerPath) -> Arc:

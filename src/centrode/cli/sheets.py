@@ -6,9 +6,10 @@ from pathlib import Path
 
 import click
 
+import centrode as ct
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument, results_option
+from centrode.cli.arguments import results_option
 from centrode.cli.instants import echo_values
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
@@ -16,8 +17,12 @@ from centrode.locale import _, mark, ngettext
 FORMATS = ("pdf", "dxf")
 
 
-@click.command(help=mark("Draw a mechanism on sheets A1 at standard scales."))
-@mechanism_argument
+@click.command(help=mark("Draw a mechanism or a cam on sheets A1 at standard scales."))
+@click.argument(
+    "mechanism",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in mechanism or cam."),
+)
 @results_option
 @click.option(
     "--format",
@@ -38,7 +43,9 @@ FORMATS = ("pdf", "dxf")
 @click.option(
     "--scale",
     metavar=mark("RATIO"),
-    help=mark("Scale of the plan of positions (1:5); the largest standard one that fits by default."),
+    help=mark(
+        "Scale of the plan of positions or of the cam (1:5); the largest standard one that fits by default."
+    ),
 )
 @click.option(
     "--positions", type=int, default=12, metavar=mark("N"), help=mark("Number of positions; 12 by default.")
@@ -64,10 +71,14 @@ def sheets(
             what = _("a sheet cannot be written as {ending}").format(ending=f'"{kind}"')
             raise InputError("--format", what, _("use one of {known}").format(known=", ".join(FORMATS)))
     wanted = None if scale is None else library.read_scale(scale, "--scale")
-    description = library.load(mechanism)
+    description = library.load_either(mechanism)
     with about(mechanism):
-        places = description.motion_parameter.instant.read_all(instants, "--at")
-        echo_values(description, *(("--at", place) for place in places))
+        places: list[float] = []
+        if isinstance(description, ct.Mechanism):
+            places = description.motion_parameter.instant.read_all(instants, "--at")
+            echo_values(description, *(("--at", place) for place in places))
+        else:
+            _refuse_for_cams(instants, link)
         made = library.drawing_sheets(description, instants=places, positions=positions, link=link)
     with output.output_folder(output.folder_of(out, mechanism, "sheets")) as draft:
         library.write_drawing_set(made, draft, kinds, wanted)
@@ -82,3 +93,11 @@ def sheets(
             len(made.missing),
         )
         raise MotionError(mechanism, what.format(n=len(made.missing), reasons="\n".join(made.missing)))
+
+
+def _refuse_for_cams(instants: tuple[str, ...], link: str | None) -> None:
+    """Refuse options about linkages where a cam is drawn."""
+    if instants:
+        raise InputError("--at", _("the sheet of a cam has no plans of vectors"), _("omit it"))
+    if link is not None:
+        raise InputError("--link", _("the sheet of a cam shows the motion of its follower"), _("omit it"))

@@ -5,23 +5,31 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from centrode.analysis.graphic.results import graphic_analysis
-from centrode.analysis.position_plan import SAMPLES, USUAL, plan_of_positions
+from centrode.analysis.position_plan import SAMPLES, USUAL, check_positions, plan_of_positions
+from centrode.cams.followers.base_circle import follower_cam
+from centrode.cams.profiles import roller_path_of
 from centrode.dynamics.force_polygons.results import force_polygon_results, has_force_polygons
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.steady_motion.machine import is_machine, machine_results
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import motion
 from centrode.locale import _
-from centrode.model.examples.catalogue import mechanism_of
+from centrode.model.cam_files import has_follower, require_curvature_cam, with_follower
+from centrode.model.examples.catalogue import description_of
 from centrode.model.explanatory_note import TitlePage
+from centrode.model.mechanism import Mechanism
 from centrode.model.reading import FRAME
 from centrode.sheets.drawing_sheets import DrawingSet, TitleBlock
+from centrode.views.cam_sheets import cam_sheet
 from centrode.views.drawing_sheets import diagram_sheet, energy_sheet, force_sheets, motion_sheets
+from centrode.views.path_sheets import path_sheet
 
 if TYPE_CHECKING:
-    from centrode.model.examples.catalogue import MechanismSource
-    from centrode.model.mechanism import Mechanism
+    from centrode.model.cam_files import AnyCam
+    from centrode.model.examples.catalogue import DescriptionSource
     from centrode.sheets.drawing_sheets import DrawingSheet
 
 SHORT = 60
@@ -29,27 +37,29 @@ SHORT = 60
 
 
 def drawing_sheets(
-    mechanism: MechanismSource,
+    description: DescriptionSource,
     *,
     instants: Sequence[float | str] | float | str = (),
     positions: int = USUAL,
     link: str | None = None,
 ) -> DrawingSet:
-    """Sheets A1 of a mechanism: its motion; where they are described, its machine and its forces.
+    """Sheets A1 of a mechanism: its motion; where they are described, its machine and its forces; or of a cam.
 
     Of a mechanism on the sphere they show the diagrams of its output and of its machine; `absent` names the drawings
-    that are of the plane.
+    that are of the plane. Of a cam one sheet shows the synthesis.
 
     Parameters
     ----------
+    description : Mechanism, PlateCam or Cam, or the name of its file or of a built-in one
     instants : values of the drive [rad or m], times [s], or texts with a unit, at which plans of vectors and forces
         are drawn; those of the study by default, else the initial position
-    positions, link : as of `plan_of_positions`
+    positions, link : as of `plan_of_positions`; of a cam about so many positions stand on its rises and returns
 
     Raises
     ------
     InputError, MotionError
-        As `plan_of_positions`; on the sphere, a link that does not turn about a hinge of the frame.
+        As `plan_of_positions`; on the sphere, a link that does not turn about a hinge of the frame; as `follower_cam`,
+        and of a cam instants or a link.
 
     Examples
     --------
@@ -59,7 +69,10 @@ def drawing_sheets(
     >>> [type(sheet).__name__ for sheet in made.sheets]
     ['MotionSheet']
     """
-    mechanism = mechanism_of(mechanism)
+    description = description_of(description)
+    if not isinstance(description, Mechanism):
+        return cam_sheets(description, instants=instants, positions=positions, link=link)
+    mechanism = description
     missing: list[str] = []
     if mechanism.space == "sphere":
         drawn = tuple(_sheets_on_sphere(mechanism, link, missing))
@@ -71,8 +84,29 @@ def drawing_sheets(
     return DrawingSet(title_block(mechanism), sheets, tuple(missing))
 
 
-def title_block(mechanism: Mechanism) -> TitleBlock:
-    """What the description says of its work: its title page, and the mechanism's title where the work has none."""
+def cam_sheets(
+    cam: AnyCam,
+    *,
+    instants: Sequence[float | str] | float | str = (),
+    positions: int = USUAL,
+    link: str | None = None,
+) -> DrawingSet:
+    """The sheet A1 of a cam; arguments and errors are those of `drawing_sheets`."""
+    if np.size(instants):
+        raise InputError("instants", _("the sheet of a cam has no plans of vectors"), _("omit it"))
+    if link is not None:
+        raise InputError("link", _("the sheet of a cam shows the motion of its follower"), _("omit it"))
+    check_positions(positions)
+    if not has_follower(cam):
+        curved = require_curvature_cam(cam)
+        return DrawingSet(title_block(cam), (path_sheet(curved, roller_path_of(curved), positions),))
+    plate = with_follower(cam)
+    sheet = cam_sheet(plate, follower_cam(plate), positions)
+    return DrawingSet(title_block(cam), (sheet,))
+
+
+def title_block(mechanism: Mechanism | AnyCam) -> TitleBlock:
+    """What the description says of its work: its title page, and its own title where the work has none."""
     page = mechanism.report.title_page or TitlePage()
     organisation = (
         page.institution,
@@ -85,6 +119,7 @@ def title_block(mechanism: Mechanism) -> TitleBlock:
         page.author,
         page.teacher,
         tuple(filter(None, organisation)),
+        page.course,
     )
 
 

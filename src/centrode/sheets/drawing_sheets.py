@@ -6,7 +6,8 @@ The renderer places the drawings, chooses their scales from the standard ones, a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from enum import Enum
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.pages import PositionsPage, VectorDiagramPage
 from centrode.sheets.plots import AxisLabel
 from centrode.sheets.texts import Sentence, Text
+
+if TYPE_CHECKING:
+    from centrode.model.settings import Display
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -29,6 +33,7 @@ class TitleBlock:
     title : of the work
     author, teacher : who drew and who checked
     organisation : lines of the lower right field
+    course : the subject taught, below the designation
     """
 
     designation: str
@@ -36,6 +41,7 @@ class TitleBlock:
     author: str
     teacher: str
     organisation: tuple[str, ...]
+    course: str = ""
 
 
 @dataclass(frozen=True)
@@ -138,7 +144,106 @@ class ForceSheet:
     groups: tuple[GroupPage | LeverPage, ...]
 
 
-DrawingSheet: TypeAlias = MotionSheet | DiagramSheet | VectorSheet | EnergySheet | ForceSheet
+class LineLook(Enum):
+    """How a line of a geometric drawing is drawn."""
+
+    MAIN = "main"
+    THIN = "thin"
+    DASHED = "dashed"
+    CHAIN = "chain"
+
+
+@dataclass(frozen=True, eq=False)
+class GeometryLine:
+    """A line through places (n, 2) [m]; with a `head` it ends in an arrow."""
+
+    places: Array
+    look: LineLook = LineLook.THIN
+    head: bool = False
+
+
+@dataclass(frozen=True)
+class GeometryCircle:
+    """A circle about a centre, lengths in metres."""
+
+    centre: tuple[float, float]
+    radius: float
+    look: LineLook = LineLook.THIN
+
+
+@dataclass(frozen=True)
+class GeometryName:
+    """A text near a place [m], with a dot on the place where it is `dotted`."""
+
+    place: tuple[float, float]
+    text: Text
+    dotted: bool = False
+
+
+@dataclass(frozen=True)
+class GeometryAngle:
+    """An angle between two directions [rad] at a place [m], with its name; its arc has a radius [m]."""
+
+    apex: tuple[float, float]
+    first: float
+    last: float
+    radius: float
+    text: Text
+
+
+@dataclass(frozen=True)
+class GeometryFrame:
+    """What belongs to the frame: hinges [m], and the middle line of a guide between two places [m], or none.
+
+    `sense` is that in which the body on the first hinge turns, +1 counter-clockwise; 0 without an arrow.
+    """
+
+    hinges: tuple[tuple[float, float], ...]
+    guide: tuple[tuple[float, float], tuple[float, float]] | None = None
+    sense: float = 0.0
+
+
+@dataclass(frozen=True)
+class GeometricDrawing:
+    """A drawing of lengths in a plane at one standard scale.
+
+    Attributes
+    ----------
+    title : what it shows
+    lines, circles, names, angles : in drawing order
+    frame : hinges and a guide, or none
+    """
+
+    title: Sentence
+    lines: tuple[GeometryLine, ...]
+    circles: tuple[GeometryCircle, ...] = ()
+    names: tuple[GeometryName, ...] = ()
+    angles: tuple[GeometryAngle, ...] = ()
+    frame: GeometryFrame | None = None
+
+
+@dataclass(frozen=True)
+class CamSheet:
+    """A cam from the motion of its follower.
+
+    Attributes
+    ----------
+    diagrams : lift of the follower, its velocity and acceleration coefficients, over the cam's angle
+    choice : what decides the least radius of the cam: a drawing of lengths, or a diagram of a radius of curvature
+    profile : the cam with its follower in numbered positions of the inverted motion
+    facts : what is given and what follows, each as a text with its value
+    display : units of the facts
+    """
+
+    name: Sentence
+    diagrams: tuple[ScaledDiagram, ...]
+    choice: GeometricDrawing | ScaledDiagram
+    profile: GeometricDrawing
+    facts: tuple[tuple[Text, Text], ...]
+    display: Display
+
+
+DrawingSheet: TypeAlias = MotionSheet | DiagramSheet | VectorSheet | EnergySheet | ForceSheet | CamSheet
 
 
 @dataclass(frozen=True)

@@ -273,6 +273,8 @@ CORNERS = 96
 """Of a circle that is partly hidden."""
 TOUCH = 1e-9
 """Parts of a stroke shorter than this share of it are left out."""
+BORDER = 1e-9
+"""What lies no farther outside a border than this lies on it [mm]."""
 
 
 def visible(drawing: Drawing) -> tuple[list[Stroke], list[Ring]]:
@@ -316,6 +318,26 @@ def _visible_parts(places: Array, covers: list[Cover]) -> list[Array]:
                 parts.append([begin, finish])
             open_end = last == 1.0
         open_end = open_end and bool(free)
+    return [np.array(part) for part in parts]
+
+
+def parts_within(places: Array, low: Array, high: Array) -> list[Array]:
+    """The parts of a line through places that lie in a box between its corners, border included."""
+    low, high = low - BORDER, high + BORDER
+    corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+    parts: list[list[Array]] = []
+    open_end = False
+    for start, end in pairwise(places):
+        within = _inside(start, end, corners) if np.isfinite([start, end]).all() else None
+        if within is None:
+            open_end = False
+            continue
+        begin, finish = (start + share * (end - start) for share in within)
+        if open_end and within[0] == 0.0:
+            parts[-1].append(finish)
+        else:
+            parts.append([begin, finish])
+        open_end = within[1] == 1.0
     return [np.array(part) for part in parts]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -124,21 +125,33 @@ class DrawingPage(Page):
         self, field: Field, text: str, heights: Iterable[float], layer: str, left: bool = False, **how: Any
     ) -> None:
         """A text in a field, in the greatest of some heights at which it goes into it, wrapped where it must be."""
-        room = field.size - 1.6
-        kept: Text | None = None
-        for height in heights:
-            lines = _wrapped(text, float(room[0]), height)
-            shown = "\n".join(lines)
-            x = field.corner[0] + 1.0 if left else float(field.corner[0] + field.size[0] / 2)
-            if kept is not None:
-                kept.remove()
-            kept = self.overlay.text(
-                float(x), float(field.corner[1] + field.size[1] / 2), shown, fontsize=points_of(height), color="black",
-                ha="left" if left else "center", va="center", linespacing=1.1, gid=layer, zorder=9, **how,
-            )  # fmt: skip
-            box = self.box_of(kept)
-            if (box[1] - box[0] <= room + 0.8).all():
-                break
+        height = self.largest_height(field, [text], heights)
+        self._write_in_field(field, text, height, layer, left, **how)
+
+    def largest_height(self, field: Field, texts: Iterable[str], heights: Iterable[float]) -> float:
+        """The greatest of some heights at which each of some texts goes into a field; the last where none does."""
+        *_others, height = heights = list(heights)
+        for text in texts:
+            for height in heights:
+                drawn = self._write_in_field(field, text, height, "")
+                box = self.box_of(drawn)
+                drawn.remove()
+                if (box[1] - box[0] <= field.size - 0.8).all():
+                    break
+            heights = heights[heights.index(height) :]
+        return height
+
+    def _write_in_field(
+        self, field: Field, text: str, height: float, layer: str, left: bool = False, **how: Any
+    ) -> Text:
+        """A text in the middle of a field, or from its left side on."""
+        shown = "\n".join(_wrapped(text, float(field.size[0]) - 1.6, height))
+        x = field.corner[0] + (1.0 if left else field.size[0] / 2)
+        y = field.corner[1] + field.size[1] / 2
+        return self.overlay.text(
+            float(x), float(y), shown, fontsize=points_of(height), color="black",
+            ha="left" if left else "center", va="center", linespacing=1.1, gid=layer or None, zorder=9, **how,
+        )  # fmt: skip
 
 
 def _wrapped(text: str, room: float, height: float) -> list[str]:
@@ -200,6 +213,21 @@ def _blacken(artist: Artist) -> None:
         artist.set_alpha(None)
         artist.set_edgecolor("black")
         artist.set_linewidth([_width(float(width), faint) for width in np.atleast_1d(artist.get_linewidth())])
+
+
+MATHEMATICS = re.compile(r"\$[^$]*\$")
+PRIMES = {r"{}^{\prime}": "′", r"^{\prime}": "′", "'''": "‴", "''": "″", "'": "′"}
+
+
+def with_primes(text: str) -> str:
+    """A text whose primes in formulas are letters of the font: those of mathematics come from one without names."""
+    return MATHEMATICS.sub(lambda found: _primed(found[0]), text)
+
+
+def _primed(formula: str) -> str:
+    for written, prime in PRIMES.items():
+        formula = formula.replace(written, prime)
+    return formula
 
 
 BOLD = 0.95

@@ -50,7 +50,7 @@ LINE = 6.5
 
 def scale_text(symbol: str, value: float, unit: str) -> str:
     """What a millimetre stands for: "μ_v = 0.02 (m/s)/mm", its letter as mathematics."""
-    shown = spelled_unit(unit)
+    shown = spelled_unit(unit) or "1"
     shown = f"({shown})" if "/" in shown or "·" in shown or "⋅" in shown else shown
     return f"$\\mu_{{{symbol}}}$ = {number_text(value)} {shown}/{spelled_unit('mm')}"
 
@@ -63,6 +63,30 @@ def number_text(value: float) -> str:
 def ratio_text(scale: DrawingScale) -> str:
     """A scale as it stands in title blocks, with the decimal mark of the language."""
     return scale.text.replace(".", decimal_mark())
+
+
+def length_captions(scale: DrawingScale) -> list[str]:
+    """What a millimetre of a drawing of lengths stands for, and its ratio."""
+    ratio = _("scale {ratio}").format(ratio=ratio_text(scale))
+    return [scale_text("l", 1.0 / METRE / scale.ratio, "m"), ratio]
+
+
+def fitting_scale(ratios: Array, wanted: DrawingScale | None) -> DrawingScale:
+    """The largest standard scale not greater than any of some ratios of paper to reality, or the wanted one.
+
+    Raises
+    ------
+    InputError
+        The scale that is wanted is larger than that.
+    """
+    largest = largest_standard_scale(float(np.min(ratios)))
+    if wanted is not None and wanted.ratio > largest.ratio:
+        raise InputError(
+            "--scale",
+            _("{scale} is too large for the sheet").format(scale=wanted.text),
+            _("the largest standard scale is {scale}").format(scale=largest.text),
+        )
+    return wanted or largest
 
 
 def write_caption(page: DrawingPage, field: Field, title: str, scales: Sequence[str]) -> None:
@@ -98,14 +122,7 @@ def draw_positions_plate(
     scene = scene_of(mechanism, xarray.concat(together, dim="sample", data_vars="minimal"))
     inner = begin(page, field)
     size = METRE / scene.factor * (scene.high - scene.low)
-    largest = largest_standard_scale(float(np.min((inner.size - 2.0 * AROUND) / size)))
-    if wanted is not None and wanted.ratio > largest.ratio:
-        raise InputError(
-            "--scale",
-            _("{scale} is too large for the sheet").format(scale=wanted.text),
-            _("the largest standard scale is {scale}").format(scale=largest.text),
-        )
-    scale = wanted or largest
+    scale = fitting_scale((inner.size - 2.0 * AROUND) / size, wanted)
     unit = scene.factor / METRE / scale.ratio
     view = PageView.about(inner.corner, inner.size, np.array([scene.low, scene.high]), unit)
     scene = replace(scene, inches=SIGN_INCHES * scene.extent / (SIGN * unit))
@@ -118,10 +135,8 @@ def draw_positions_plate(
         number_path(page, view, scene, name, count)
     page.place_names(inner.box)
     title = FigureSpelling(mechanism.display).text(sheet.title)
-    length = scale_text("l", 1.0 / METRE / scale.ratio, "m")
-    ratio = _("scale {ratio}").format(ratio=ratio_text(scale))
     first = _("position {number}").format(number=0) + ": " + caption(mechanism, sheet.positions, 0)
-    write_caption(page, field, title, [length, ratio, first])
+    write_caption(page, field, title, [*length_captions(scale), first])
     return scale
 
 

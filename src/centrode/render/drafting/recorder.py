@@ -18,13 +18,13 @@ from centrode.render.drafting.board import (
     CAPITAL,
     CHAIN,
     DASHED,
-    Array,
     BoardWords,
     Cover,
     Drawing,
     Look,
     Ring,
     Stroke,
+    parts_within,
 )
 
 POINT = 25.4 / 72.0
@@ -116,8 +116,10 @@ class Recorder(RendererBase):
             if filled:
                 self.drawing.strokes.append(Stroke(layer, places, level, filled=True))
             elif edge:
-                bounds = None if clip is None else POINT * np.asarray(clip.get_points())
-                self.drawing.strokes.append(Stroke(layer, _clipped(places, bounds), level))
+                parts = (
+                    [places] if clip is None else parts_within(places, *POINT * np.asarray(clip.get_points()))
+                )
+                self.drawing.strokes += [Stroke(layer, part, level) for part in parts]
 
     def draw_text(
         self,
@@ -196,11 +198,3 @@ def _circle(path: Path, transform: Transform) -> tuple[tuple[float, float], floa
     if abs(radius - other) > 1e-6 * radius:
         return None
     return (float(middle[0]), float(middle[1])), radius
-
-
-def _clipped(places: Array, bounds: Array | None) -> Array:
-    """A line with gaps where it leaves a box."""
-    if bounds is None or ((places >= bounds[0] - 1e-9) & (places <= bounds[1] + 1e-9)).all():
-        return places
-    inside = ((places >= bounds[0] - 1e-9) & (places <= bounds[1] + 1e-9)).all(axis=1)
-    return np.where(inside[:, None], places, np.nan)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 from matplotlib.patches import Polygon
@@ -17,14 +17,14 @@ from centrode.render.drafting.drawing_page import SMALLEST, USUAL, DrawingPage, 
 from centrode.render.drafting.plates import begin, number_text, scale_text, write_caption
 from centrode.render.drafting.recorder import MAIN, THIN
 from centrode.render.drafting.scales import diagram_scale
-from centrode.render.pages.page import Array
+from centrode.render.pages.page import Array, count_crossings
 from centrode.render.spelling import FigureSpelling
 
 if TYPE_CHECKING:
     from centrode.sheets.drawing_sheets import EnergyMassDiagram, ScaledCurve, ScaledDiagram
     from centrode.sheets.plots import AxisLabel
 
-LEFT, RIGHT, LOW, TOP = 20.0, 14.0, 9.0, 9.0
+LEFT, RIGHT, LOW, TOP = 20.0, 24.0, 9.0, 9.0
 """Room for numbers and names around the axes [mm]."""
 TICK = 1.2
 """Half the length of a tick [mm]."""
@@ -32,9 +32,13 @@ APART = 24.0
 """About so far apart are the numbers along an axis [mm]."""
 WORD, HEIGHT = 3.5, 7.0
 """Half the width of a number at a tick, and how far it reaches from the axis [mm]."""
-BESIDE_LETTER = 8.0
-"""Length of an axis at its end above which its letter stands [mm]."""
+NEXT = 6.5
+"""Numbers nearer to the one before than this are left out [mm]."""
+SHIFTS = {"center": 0.0, "left": 1.0, "right": -1.0}
+"""Between a tick and a number beside it, by the number's alignment [mm]."""
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+FIRST = 0.6
+"""Share of the room of the tangents' numbers that their first column takes: its lines are longer."""
 BEYOND = 7.0
 """How far an axis goes beyond what is drawn [mm]."""
 
@@ -97,7 +101,7 @@ def _draw_one(
     """Axes, curves, names and caption of a diagram."""
     lines = [axes.mm(curve.across, curve.up) for curve in diagram.curves]
     draw_axis(page, axes, diagram.across, 0, across, diagram.ticks, lines)
-    draw_axis(page, axes, diagram.up, 1, up)
+    draw_axis(page, axes, diagram.up, 1, up, curves=lines)
     draw_curves(page, axes, diagram.curves)
     page.place_names(begin_box(field))
     scales = [axis_scale(diagram.up, axes.per[1]), axis_scale(diagram.across, axes.per[0])]
@@ -135,44 +139,76 @@ def draw_axis(
         way = -way
     across = np.array([-way[1], way[0]]) if which == 0 else np.array([way[1], -way[0]])
     start, end = (axes.origin + value / axes.per[which] * way for value in span)
-    tip = end + BEYOND * way
+    tip = _name_axis(page, end, way, label)
     page.line([start, tip], THIN)
     page.overlay.add_patch(page_head(tip, way))
     page.avoid([(start, tip)])
-    text = (
-        f"{symbol_text(label)}, {spelled_unit(label.unit)}"
-        if label.unit not in ("", "1")
-        else symbol_text(label)
-    )
-    if abs(way[0]) > 0.5:
-        page.write_in(USUAL, float(tip[0]) + 1.0, float(tip[1]) + 2.0, text, ha="right", va="bottom")
-    else:
-        top = float(tip[1]) if way[1] > 0 else float(tip[1]) - 1.0
-        page.write_in(USUAL, float(tip[0]) + 2.0, top, text, ha="left", va="top" if way[1] > 0 else "bottom")
     numbered = bool(ticks)
+    before = -np.inf
     places = ticks if numbered else _round_places(span, axes.per[which])
+    apart = float(np.abs(np.diff(places)).min(initial=np.inf)) / axes.per[which]
+    ways = BESIDE_TICK if apart > NEXT + WORD else AT_TICK
     for number, value in enumerate(places):
         if value == 0.0 and not numbered:
             continue
         at = axes.origin + value / axes.per[which] * way
         page.line([at - TICK * across, at + TICK * across], THIN)
+        if numbered and (value - before) / axes.per[which] < NEXT and before < value:
+            continue
+        before = value
         words = str(number) if numbered else number_text(value)
         height = USUAL if numbered else SMALLEST
         if abs(way[0]) > 0.5:
-            last = float((end - at) @ way) < BESIDE_LETTER  # above stands the letter of the axis
-            free = not last and _is_crowded(at, -1.0, curves) and not _is_crowded(at, 1.0, curves)
-            side = 1.0 if free else -1.0
+            side, where = _free_side(at, curves, ("right",) if not value else ways)
+            right = float(at[0]) + SHIFTS[where]
             up = float(at[1]) + side * 1.5 * TICK
-            page.write_in(height, float(at[0]), up, words, ha="center", va="top" if side < 0 else "bottom")
+            page.write_in(height, right, up, words, ha=where, va="top" if side < 0 else "bottom")
         else:
-            page.write_in(height, float(at[0]) - 1.5 * TICK, float(at[1]), words, ha="right", va="center")
+            room = np.array([[2.0, -1.5], [2.0 + 0.7 * height * len(words), 1.5]])
+            beside, other = (_is_crowded(at + room * [side, 1.0], curves) for side in (-1.0, 1.0))
+            side = 1.0 if beside and not other else -1.0
+            right = float(at[0]) + side * 1.5 * TICK
+            page.write_in(height, right, float(at[1]), words, ha="right" if side < 0 else "left", va="center")
 
 
-def _is_crowded(at: Array, side: float, curves: Sequence[Array]) -> bool:
-    """Whether a curve runs where a number above (1) or below (-1) a tick would stand."""
+def _name_axis(page: DrawingPage, end: Array, way: Array, label: AxisLabel) -> Array:
+    """Write the letter of an axis beyond its end, where no number of it stands; returns its tip [mm]."""
+    text = symbol_text(label)
+    if label.unit not in ("", "1"):
+        text = f"{text}, {spelled_unit(label.unit)}"
+    tip = np.asarray(end + BEYOND * way)
+    if abs(way[0]) > 0.5:
+        left = float(end[0]) + WORD
+        written = page.write_in(USUAL, left, float(end[1]) + 2.0, text, ha="left", va="bottom")
+        return np.array([max(float(tip[0]), float(page.box_of(written)[1, 0]) + 1.0), tip[1]])
+    top = float(tip[1]) if way[1] > 0 else float(tip[1]) - 1.0
+    page.write_in(USUAL, float(tip[0]) + 2.0, top, text, ha="left", va="top" if way[1] > 0 else "bottom")
+    return tip
+
+
+Alignment: TypeAlias = Literal["center", "left", "right"]
+AT_TICK: tuple[Alignment, ...] = ("center",)
+BESIDE_TICK: tuple[Alignment, ...] = ("center", "left", "right")
+
+
+def _free_side(at: Array, curves: Sequence[Array], ways: tuple[Alignment, ...]) -> tuple[float, Alignment]:
+    """Below (-1) or above (1) a tick, and how aligned: the first of some ways at which no curve runs."""
+    for where in ways:
+        for side in (-1.0, 1.0):
+            box = np.array([[-WORD, 0.3 * side], [WORD, HEIGHT * side]])
+            box[:, 0] += SHIFTS[where] + {"center": 0.0, "left": WORD, "right": -WORD}[where]
+            if not _is_crowded(at + box, curves):
+                return side, where
+    return -1.0, ways[0]
+
+
+def _is_crowded(box: Array, curves: Sequence[Array]) -> bool:
+    """Whether a curve runs through a box given by two opposite corners [mm]."""
+    low, high = box.min(axis=0), box.max(axis=0)
     for places in curves:
-        away = places - at
-        if ((np.abs(away[:, 0]) < WORD) & (side * away[:, 1] > 0.3) & (side * away[:, 1] < HEIGHT)).any():
+        segments = np.stack([places[:-1], places[1:]], axis=1)
+        segments = segments[np.isfinite(segments).all(axis=(1, 2))]
+        if count_crossings(low[None], high[None], segments)[0]:
             return True
     return False
 
@@ -297,8 +333,9 @@ def _write_tangents(
     lines = [lines[0], lines[1], lines[5], lines[2], lines[3], lines[4]]
     rows = -(-len(lines) // 2)
     for number, line in enumerate(lines):
-        cell = field.share(2, number // rows, rows, rows - 1 - number % rows)
-        left, middle = float(cell.corner[0]), float(cell.corner[1] + cell.size[1] / 2)
+        cell = field.share(1, 0, rows, rows - 1 - number % rows)
+        left = float(cell.corner[0] + (FIRST * cell.size[0] if number >= rows else 0.0))
+        middle = float(cell.corner[1] + cell.size[1] / 2)
         page.write_in(USUAL, left, middle, line, ha="left", va="center")
 
 

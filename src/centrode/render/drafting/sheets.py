@@ -11,8 +11,16 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 
-from centrode.render.drafting.drawing_page import A1, DrawingPage, Field, blacken, new_drawing_page
+from centrode.render.drafting.drawing_page import (
+    A1,
+    DrawingPage,
+    Field,
+    blacken,
+    new_drawing_page,
+    with_primes,
+)
 from centrode.render.drafting.dxf import write_drawing_dxf
+from centrode.render.drafting.geometric_drawings import draw_geometric_plate, write_facts
 from centrode.render.drafting.plates import (
     draw_group_plate,
     draw_lever_plate,
@@ -30,9 +38,17 @@ from centrode.render.drafting.title_block import (
     drawing_field,
 )
 from centrode.render.drawing.style import house_style
-from centrode.render.figures.files import spell_decimals
+from centrode.render.figures.files import respell, spell_decimals
 from centrode.render.spelling import DASH, FigureSpelling
-from centrode.sheets.drawing_sheets import DiagramSheet, EnergySheet, ForceSheet, MotionSheet, VectorSheet
+from centrode.sheets.drawing_sheets import (
+    CamSheet,
+    DiagramSheet,
+    EnergySheet,
+    ForceSheet,
+    GeometricDrawing,
+    MotionSheet,
+    VectorSheet,
+)
 from centrode.sheets.force_pages import GroupPage
 
 if TYPE_CHECKING:
@@ -41,7 +57,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("pdf", "dxf")
 """Kinds of files."""
-DIAGRAMS = 354.0
+DIAGRAMS = 362.0
 """Width of the column of diagrams [mm]: a turn at 0.02 rad/mm with room for numbers."""
 PLANS = 232.0
 """Height of the row of plans of vectors [mm]."""
@@ -49,6 +65,10 @@ ROWS = 2
 """Rows of plans of vectors on a sheet of their own."""
 ASIDE = 2.0
 """Between a field and the main inscription [mm]."""
+CHOICE = 205.0
+"""Height of the choice of a cam's least radius, beside the main inscription [mm]."""
+ABOVE = 8.0
+"""Between the profile of a cam and the list of its sizes [mm]."""
 CORNER = 16.0
 """Height that the repeated designation takes off the upper left corner of the field [mm]."""
 
@@ -66,13 +86,14 @@ def drawing_figures(made: DrawingSet, scale: DrawingScale | None = None) -> list
         The scale is too large for the sheet.
     """
     figures = []
+    names = tuple(FigureSpelling(None).text(sheet.name) for sheet in made.sheets)
     for number, sheet in enumerate(made.sheets, start=1):
         with house_style():
             page = new_drawing_page(A1)
             shown = _draw(page, sheet, scale)
             blacken(page.figure)
-            name = FigureSpelling(None).text(sheet.name)
-            draw_frame(page, Inscription(made.block, name, number, len(made.sheets), shown))
+            draw_frame(page, Inscription(made.block, names, number, shown))
+            respell(page.figure, with_primes)
             spell_decimals(page.figure)
         figures.append(page.figure)
     return figures
@@ -91,6 +112,8 @@ def _draw(page: DrawingPage, sheet: DrawingSheet, scale: DrawingScale | None) ->
             return _draw_energies(page, sheet)
         case ForceSheet():
             return _draw_forces(page, sheet)
+        case CamSheet():
+            return _draw_cam(page, sheet, scale)
         case _:
             assert_never(sheet)
 
@@ -164,6 +187,28 @@ def _draw_forces(page: DrawingPage, sheet: ForceSheet) -> str:
         else:
             draw_lever_plate(page, cell, group)
     return DASH
+
+
+def _draw_cam(page: DrawingPage, sheet: CamSheet, scale: DrawingScale | None) -> str:
+    """Diagrams below each other at the left, the profile at the upper right, below it the choice of its radius."""
+    field = _field()
+    column = field.part(right=float(field.size[0]) - DIAGRAMS, top=CORNER)
+    for number, diagram in enumerate(reversed(sheet.diagrams)):
+        draw_diagram(page, column.share(1, 0, len(sheet.diagrams), number), diagram)
+    right = field.part(left=DIAGRAMS)
+    spelling = FigureSpelling(sheet.display)
+    shown = draw_geometric_plate(page, right.part(bottom=CHOICE), sheet.profile, spelling, scale)
+    low = right.part(top=float(right.size[1]) - CHOICE)
+    beside = low.part(right=WIDE + ASIDE)
+    if isinstance(sheet.choice, GeometricDrawing):
+        draw_geometric_plate(page, beside, sheet.choice, spelling)
+    else:
+        draw_diagram(page, beside, sheet.choice)
+    facts = [(spelling.text(label), spelling.text(value)) for label, value in sheet.facts]
+    write_facts(
+        page, low.part(left=float(low.size[0]) - WIDE + ASIDE, bottom=HIGH + ASIDE, right=ASIDE), facts
+    )
+    return ratio_text(shown)
 
 
 # Files

@@ -36,18 +36,32 @@ TURNED = 70.0, 14.0
 """Sides of the field at the upper left corner of the frame, which repeats the designation upside down [mm]."""
 SMALL = 2.0, 1.8
 """Heights of letters in the columns of changes and of signatures [mm], which hold whole words."""
+COURSE = 6.0
+"""Height of the line of the course below the designation [mm]."""
 LAYER, LINES, STRONG = "title-block", "title-block", "title-block-main"
 
 
 @dataclass(frozen=True)
 class Inscription:
-    """What the main inscription of one sheet says: the block of all sheets, and name, number and scale of this one."""
+    """What the main inscription of one sheet says.
+
+    Attributes
+    ----------
+    block : of all sheets
+    names : of all sheets; those of one work have letters of one height
+    number : of this sheet, counted from 1
+    scale : of this sheet
+    """
 
     block: TitleBlock
-    name: str
+    names: tuple[str, ...]
     number: int
-    count: int
     scale: str
+
+    @property
+    def titles(self) -> list[str]:
+        """Title of the work and name of the sheet, of every sheet."""
+        return ["\n".join(filter(None, (plain(self.block.title), name))) for name in self.names]
 
 
 def drawing_field(size: tuple[float, float]) -> Field:
@@ -142,14 +156,18 @@ def _words(page: DrawingPage, block: Field, said: Inscription) -> None:
         low, top = (5 - row) * ROW, (6 - row) * ROW
         write(0.0, low, CHANGES[2], top, role, *SMALL, start=True)
         write(CHANGES[2], low, CHANGES[3], top, plain(name), SMALLEST, 2.0, 1.6, 1.3, start=True)
-    write(CHANGES[-1], 8 * ROW, WIDE, HIGH, plain(_designation(said)), 7.0, HEADING, USUAL)
-    title = "\n".join(filter(None, (plain(said.block.title), said.name)))
-    write(CHANGES[-1], 3 * ROW, RIGHT, 8 * ROW, title, HEADING, USUAL, SMALLEST, 2.0)
+    course = plain(said.block.course)
+    above = 8 * ROW + (COURSE if course else 0.0)
+    write(CHANGES[-1], above, WIDE, HIGH, plain(_designation(said)), 7.0, HEADING, USUAL)
+    write(CHANGES[-1], 8 * ROW, WIDE, above, course, USUAL, SMALLEST, 2.0, 1.6)
+    field = Field.between(x + CHANGES[-1], y + 3 * ROW, x + RIGHT, y + 8 * ROW)
+    height = page.largest_height(field, said.titles, (HEADING, USUAL, SMALLEST, 2.0))
+    write(CHANGES[-1], 3 * ROW, RIGHT, 8 * ROW, said.titles[said.number - 1], height)
     write(LETTER, 7 * ROW, MASS, 8 * ROW, _("Lit."))
     write(MASS, 7 * ROW, SCALE, 8 * ROW, _("Mass"))
     write(SCALE, 7 * ROW, END, 8 * ROW, _("Scale"))
     write(SCALE, 4 * ROW, END, 7 * ROW, said.scale, HEADING, USUAL, SMALLEST)
     write(LETTER, 3 * ROW, SHEETS, 4 * ROW, _("Sheet {number}").format(number=said.number))
-    write(SHEETS, 3 * ROW, END, 4 * ROW, _("Sheets {count}").format(count=said.count))
+    write(SHEETS, 3 * ROW, END, 4 * ROW, _("Sheets {count}").format(count=len(said.names)))
     organisation = "\n".join(plain(line) for line in said.block.organisation)
     write(RIGHT, 0.0, END, 3 * ROW, organisation, USUAL, SMALLEST, 2.0, 1.6)

@@ -23,7 +23,9 @@ LETTERS = {
 }
 MARKS = {"ⁿ": "^{n}", "ᵗ": "^{t}", "": ""}
 SHORTEST, LONGEST = 8.0, 20.0
-"""Arrows at the places where forces act are this long [mm]: they show directions, the polygon shows sizes."""
+"""Arrows at the places where forces act are this long on a page [mm]: they show directions, the polygon sizes."""
+LONGER = 1.3
+"""How much longer they are on a sheet with larger signs, at most: names of forces at one place stand apart."""
 LIKE = 0.97
 """Cosine from which two forces at one place are drawn on both sides of it."""
 TURN = 4.0
@@ -51,7 +53,7 @@ def force_arrows(
         if abs(force) <= 1e-12 * greatest or force == 0:
             continue
         unit = force / abs(force)
-        length = max(SHORTEST, longest * (abs(force) / greatest) ** 0.5)
+        length = min(page.signs, LONGER) * max(SHORTEST, longest * (abs(force) / greatest) ** 0.5)
         step = flat([length * unit])[0]
         crowded = along_a_line(page, place, unit) or any(
             np.hypot(*(place - at)) < 1.0 and (unit * other.conjugate()).real > LIKE for at, other in taken
