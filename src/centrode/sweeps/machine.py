@@ -293,6 +293,8 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = dict[str, Array]
 
 RESIDUAL, SLACK = "worst residual", "slack at samples"
+CHECKED = 5
+"""Samples at which residuals are looked at where closed forms say that a mechanism closes at all of them."""
 
 
 @dataclass(frozen=True)
@@ -380,6 +382,17 @@ class Expressed:
         slack = self.judging.slack_at_samples
         return judges if slack is None else {**judges, SLACK: slack}
 
+    def check_some(self, rows: Mapping[str, Array]) -> Values:
+        """The greatest residual of a few samples, of mechanisms that are certain to close at all of them."""
+        return self._over_some.run(rows, self.kernels, self.threads)
+
+    @cached_property
+    def _over_some(self) -> Pass:
+        chosen = np.unique(np.linspace(0.0, self.samples - 1.0, CHECKED).astype(np.intp))
+        residual = greatest(RESIDUAL, as_node(self.traced.solved.residual[0, 0]), 0.0)
+        names = (*self.judging.names, *self.task.paths)
+        return Pass(residual, names, {name: x[chosen] for name, x in self.inputs.items()})
+
     @property
     def samples(self) -> int:
         """Number of samples."""
@@ -424,8 +437,8 @@ class Passing(Protocol):
     def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         """The states when all samples are passed."""
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
-        """Write every sample; returns what mechanisms are judged by."""
+    def write_samples(self, rows: PassedValues, rooms: Rooms, certain: bool) -> dict[str, Array]:
+        """Write every sample; returns what mechanisms are judged by, where they are not certain to be clear."""
 
 
 def passing_of(asked: Expressed) -> Passing:
@@ -445,13 +458,13 @@ class EachForItself:
         # where nothing moves the samples are counted all the same
         return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms, certain: bool) -> dict[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
         for part, room in rooms:
             take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self.reduce(judging_states(self.asked), rows)
+        return self.asked.check_some(rows) if certain else self.reduce(judging_states(self.asked), rows)
 
     @cached_property
     def _scan(self) -> Scan:
@@ -473,7 +486,7 @@ class Along:
         asked = self.asked
         return Walking(asked.judging.walk, reduction).reduce(asked.way, rows, asked.kernels, asked.threads)
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms, certain: bool) -> dict[str, Array]:
         asked = self.asked
         walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
         parts = []
@@ -666,11 +679,12 @@ class MachineCodeExecutor:
         rows |= judged.values
         # mechanisms that turn out doubtful at a sample are taken out again below
         clear = judged.clear.copy()
-        if clear.any():
-            everywhere = bool(clear.all())
-            at: Any = slice(None) if everywhere else np.nonzero(clear)[0]
-            some = rows if everywhere else {name: row[at] for name, row in rows.items()}
-            clear[at] = self._without_events(some, at, results)
+        for which, certain in ((judged.certain, True), (judged.clear & ~judged.certain, False)):
+            if which.any():
+                everywhere = bool(which.all())
+                at: Any = slice(None) if everywhere else np.nonzero(which)[0]
+                some = rows if everywhere else {name: row[at] for name, row in rows.items()}
+                clear[at] = self._without_events(some, at, results, certain)
         left = np.nonzero(~clear)[0]
         # few mechanisms with events are not worth a kernel of their own
         worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
@@ -714,12 +728,12 @@ class MachineCodeExecutor:
     def _passing(self) -> Passing:
         return passing_of(self.asked)
 
-    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
+    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         states = (
-            self._fill_reductions(rows, at, results)
+            self._fill_reductions(rows, at, results, certain)
             if self.task.asked.is_reduced
-            else self._fill_samples(rows, at, results)
+            else self._fill_samples(rows, at, results, certain)
         )
         results["samples_ok"][at] = self.asked.samples
         results["worst_residual"][at] = states[RESIDUAL]
@@ -730,13 +744,17 @@ class MachineCodeExecutor:
             clear &= states[slack] > 0.0
         return clear
 
-    def _fill_reductions(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_reductions(
+        self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool
+    ) -> Values:
         """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
         rows = dict(rows)
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows |= self._passing.reduce(self._states(depth), rows)
+            rows |= self._passing.reduce(self._states(depth, certain), rows)
+        if certain:
+            rows |= self.asked.check_some(rows)
         nodes = {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
         values = evaluate(Graph(nodes), rows)
         for name, numbers in columns.items():
@@ -745,22 +763,22 @@ class MachineCodeExecutor:
                 flat[at, k] = values[f"{name} {k}"]
         return rows
 
-    def _states(self, depth: int) -> Reduction:
+    def _states(self, depth: int, certain: bool) -> Reduction:
         """States handed on in a pass over the samples."""
         folds = self.asked.folds.at_depth(depth)
         parts = [fold.state for fold in folds]
         if self.task.asked.slopes:
             parts += [self.asked.slopes.of_fold(fold) for fold in folds]
-        # judging costs little and is done with the first pass
-        if depth == 0:
+        # judging is done with the first pass; what is certain has no sample to be judged
+        if depth == 0 and not certain:
             parts.append(judging_states(self.asked))
         return together(*parts)
 
-    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool) -> Values:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         every = EverySample(self.asked.columns, results, at, self.asked.samples)
-        return self._passing.write_samples(rows, every.rooms())
+        return self._passing.write_samples(rows, every.rooms(), certain)
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:
