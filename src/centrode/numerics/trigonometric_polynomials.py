@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeAlias
 
-from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, apply_operation, as_node
 from centrode.numerics.graphs import topological_order
 from centrode.numerics.operations import CONSTANT, VARIABLE
 from centrode.numerics.rounding import SAFETY, UNIT_ROUNDOFF
@@ -29,6 +29,8 @@ FUNCTION = 4.0
 """Roundings that a sine or cosine counts for: libraries are right to two units of the last place."""
 BOUNDING = 12.0
 """Roundings of a wave's extremes, from its coefficients on."""
+STILL = frozenset({"add", "subtract", "negate", "abs", "multiply", "divide", "sqrt", "sin", "cos"})
+"""Operations whose errors are bounded where nothing moves."""
 Wave: TypeAlias = tuple[Operand, Operand]
 """Factors of cosine and sine."""
 
@@ -241,23 +243,25 @@ def _reciprocal(x: TrigonometricPolynomial) -> TrigonometricPolynomial:
 
 
 def _still(node: Node, arguments: Sequence[TrigonometricPolynomial]) -> TrigonometricPolynomial | None:
-    """An operation on what does not move: the node as it is, with the bound of its error."""
+    """An operation on what does not move, with the bound of its error."""
     values, errors = [x.constant for x in arguments], [x.error for x in arguments]
+    if node.operation not in STILL:
+        return None
+    # where waves have cancelled, the arguments are other expressions than those that the variable stands in
+    result = apply_operation(node.operation, *values)
     if node.operation in ("negate", "abs"):
-        return TrigonometricPolynomial(node, {}, errors[0])
+        return TrigonometricPolynomial(result, {}, errors[0])
     if node.operation in ("add", "subtract"):
         carried = plus(*errors)
     elif node.operation == "multiply":
         carried = plus(times(size(values[0]), errors[1]), times(size(values[1]), errors[0]))
     elif node.operation == "divide":
-        carried = times(plus(errors[0], times(size(node), errors[1])), 1.0 / as_node(size(values[1])))
+        carried = times(plus(errors[0], times(size(result), errors[1])), 1.0 / as_node(size(values[1])))
     elif node.operation == "sqrt":
-        carried = times(errors[0], 0.5 / node)
-    elif node.operation in ("sin", "cos"):
-        carried = plus(errors[0], FUNCTION)
+        carried = times(errors[0], 0.5 / result)
     else:
-        return None
-    return TrigonometricPolynomial(node, {}, plus(carried, size(node)))
+        carried = plus(errors[0], FUNCTION)
+    return TrigonometricPolynomial(result, {}, plus(carried, size(result)))
 
 
 # Arithmetic of coefficients: what is plainly zero costs nothing, and what is taken from itself is nothing.

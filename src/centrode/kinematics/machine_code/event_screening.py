@@ -204,8 +204,14 @@ class EventScreening:
 
     @cached_property
     def closure(self) -> ClosureConditions | None:
-        """Closed forms that say whether groups close all along the mesh, where there are any."""
-        return ClosureConditions.of(self.traced, self.mesh[0], self.mesh[-1], self.names)
+        """Closed forms that say whether groups close all along the cells of the mesh, where there are any."""
+        return ClosureConditions.of(self.traced, *self.covered, self.names)
+
+    @property
+    def covered(self) -> tuple[float, float]:
+        """Ends of the range that the cells of the mesh cover: half a step beyond the first and the last node."""
+        beyond = 0.5 * self._path.step
+        return float(self.mesh[0] - beyond), float(self.mesh[-1] + beyond)
 
     def judge(self, values: Mapping[str, Array]) -> ScreenedEvents:
         """Judge the mechanisms of a batch; with groups of higher class `values` have where walks begin.
@@ -252,7 +258,7 @@ class EventScreening:
         path = self._path
         if path.by_time or self.traced.steps or len(self.mesh) < 2 * WIDE:
             return None
-        low, high = self.mesh[0] - 0.5 * path.step, self.mesh[-1] + 0.5 * path.step
+        low, high = self.covered
         count = int(np.ceil((high - low) / (WIDE * path.step)))
         half = 0.5 * (high - low) / count
         bends = self.traced.bent.guards(half)
