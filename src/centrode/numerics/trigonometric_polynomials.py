@@ -204,10 +204,10 @@ def _of_angle(
         return _Angle(rate, shift) if rate else shift
     if operation == "multiply":
         angle, factor = (rest[0], first) if isinstance(rest[0], _Angle) else (first, rest[0])
-        if isinstance(angle, _Angle) and isinstance(factor, TrigonometricPolynomial):
-            # a ratio that differs from mechanism to mechanism would be a frequency that does
-            if isinstance(factor.constant, float) and not factor.waves and factor.constant:
-                return _Angle(angle.rate * factor.constant, angle.shift * factor)
+        # a ratio that differs from mechanism to mechanism would be a frequency that does
+        ratio = factor.constant if isinstance(factor, TrigonometricPolynomial) else None
+        if isinstance(angle, _Angle) and isinstance(ratio, float) and not factor.waves and ratio:
+            return _Angle(angle.rate * ratio, angle.shift * factor)
     return None
 
 

@@ -460,8 +460,8 @@ class Passing(Protocol):
     def reducing(self, reduction: Reduction) -> Reducing:
         """A pass over all samples, for any number of batches."""
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms, certain: bool) -> dict[str, Array]:
-        """Write every sample; returns what mechanisms are judged by, where they are not certain to be clear."""
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+        """Write every sample; returns what mechanisms are judged by."""
 
 
 def passing_of(asked: Expressed) -> Passing:
@@ -489,13 +489,13 @@ class EachForItself:
     def _judging(self) -> Reducing:
         return self.reducing(judging_states(self.asked))
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms, certain: bool) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
         for part, room in rooms:
             take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self.asked.check_some(rows) if certain else self._judging(rows)
+        return self._judging(rows)
 
     @cached_property
     def _scan(self) -> Scan:
@@ -522,7 +522,7 @@ class Along:
 
         return reduce
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms, certain: bool) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
         walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
         parts = []
@@ -721,12 +721,14 @@ class MachineCodeExecutor:
         rows |= judged.values
         # mechanisms that turn out doubtful at a sample are taken out again below
         clear = judged.clear.copy()
-        for which, certain in ((judged.certain, True), (judged.clear & ~judged.certain, False)):
+        # every sample that is kept has its residual judged; of reduced ones that are certain a few do
+        certain = judged.certain if self.task.asked.is_reduced else np.zeros_like(clear)
+        for which, sure in ((certain, True), (judged.clear & ~certain, False)):
             if which.any():
                 everywhere = bool(which.all())
                 at: Any = slice(None) if everywhere else np.nonzero(which)[0]
                 some = rows if everywhere else {name: row[at] for name, row in rows.items()}
-                clear[at] = self._without_events(some, at, results, certain)
+                clear[at] = self._without_events(some, at, results, sure)
         left = np.nonzero(~clear)[0]
         # few mechanisms with events are not worth a kernel of their own
         worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
@@ -775,7 +777,7 @@ class MachineCodeExecutor:
         states = (
             self._fill_reductions(rows, at, results, certain)
             if self.task.asked.is_reduced
-            else self._fill_samples(rows, at, results, certain)
+            else self._fill_samples(rows, at, results)
         )
         results["samples_ok"][at] = self.asked.samples
         results["worst_residual"][at] = states[RESIDUAL]
@@ -839,11 +841,11 @@ class MachineCodeExecutor:
             parts.append(judging_states(self.asked))
         return together(*parts)
 
-    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool) -> Values:
+    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         every = EverySample(self.asked.columns, results, at, self.asked.samples)
-        return self._passing.write_samples(rows, every.rooms(), certain)
+        return self._passing.write_samples(rows, every.rooms())
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:

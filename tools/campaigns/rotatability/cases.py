@@ -69,7 +69,7 @@ def reserve(kind: Kind, values: Values, lane: int, low: float, high: float) -> t
     """To 50 digits: the least factor, and the product of the least ones over that of the greatest ones."""
     with mpmath.workdps(DIGITS):
         own = {path: mpmath.mpf(float(x[lane])) for path, x in values.items()}
-        wave = kind.wave(own, Digits)  # type: ignore[arg-type]
+        wave = kind.wave(own, Digits)
         least, greatest = extremes(wave, mpmath.mpf(low), mpmath.mpf(high), mpmath, mpmath.pi)
         ends = [sorted((a + b * least, a + b * greatest)) for a, b in wave.factors]
         share = mpmath.fprod(one for one, _other in ends) / mpmath.fprod(abs(other) for _one, other in ends)
@@ -118,7 +118,7 @@ def run(seed: int, number: int) -> Outcome:
     doubtful = ~judged.clear & ~judged.opens
     found.count("mechanisms", LANES)
     for what, lanes in (("clear", judged.clear), ("open", judged.opens), ("doubtful", doubtful)):
-        found.count(what, np.count_nonzero(lanes))
+        found.count(what, int(np.count_nonzero(lanes)))
     found.measure(row, "doubtful", np.count_nonzero(doubtful) / LANES)
     for lane in np.nonzero(judged.clear & ~clear)[0]:
         least, share = reserve(kind, values, int(lane), *mesh)
@@ -141,22 +141,24 @@ def run(seed: int, number: int) -> Outcome:
 CAMPAIGN = Campaign(
     "rotatability",
     "Conditions of closure in closed form",
-    """Dyads on a turning crank, a thousand random mechanisms a case: four-bars, slider-cranks, inverted slider-cranks
-    and spherical four-bars, over a turn and over a part of one; among them equal sides, kites, collinear pivots, guides
-    that pass the crank's axis, and two fifths that miss the border between closing and opening by a share of 1e-1 to
-    1e-16 of a length.
+    """Dyads on a turning crank, a thousand random mechanisms a case: four-bars, slider-cranks, inverted slider-
+    cranks and spherical four-bars, over a turn and over a part of one; among them equal sides, kites, collinear
+    pivots, guides that pass the crank's axis, and two fifths that miss the border between closing and opening
+    by a share of 1e-1 to 1e-16 of a length.
 
-    Closed forms call a mechanism clear, open or doubtful; the arrays' search looks for limits and change points on the
-    mesh. Where clear mechanisms have an event or a sample that is not ok, and where open ones have none, the extremes of
-    what decides are computed by other formulas to 50 digits from the same doubles: a fault is a clear mechanism that does
-    not close by its margin, and an open one that closes. Doubtful ones lie next to the border, or are a fault.""",
+    Closed forms call a mechanism clear, open or doubtful; the arrays' search looks for limits and change points
+    on the mesh. Where clear mechanisms have an event or a sample that is not ok, and where open ones have none,
+    the extremes of what decides are computed by other formulas to 50 digits from the same doubles: a fault is a
+    clear mechanism that does not close by its margin, and an open one that closes. Doubtful ones lie next to
+    the border, or are a fault.""",
     {
         "doubtful": "share of the mechanisms of a case that are left to the mesh",
         "event found": "where the search finds an event of a clear mechanism: the radicand's least value over the bound "
         "of its greatest one, to 50 digits; below 1e-8 it is a fault",
-        "no event found": "where the search finds no event of an open mechanism: how far below zero a factor falls, over "
-        "its greatest value",
-        "doubt": f"how far from the border, as a share of the greatest value, a doubtful mechanism is; bound {DOUBTFUL:g}",
+        "no event found": "where the search finds no event of an open mechanism: how far below zero a factor falls, "
+        "over its greatest value",
+        "doubt": f"how far from the border, as a share of the greatest value, a doubtful mechanism is; "
+        f"bound {DOUBTFUL:g}",
     },
     run,
     1000,

@@ -27,7 +27,6 @@ from centrode.numerics.jets import Jet
 from centrode.numerics.scans import Reduction
 from centrode.numerics.trigonometric_polynomials import (
     Extremes,
-    TrigonometricPolynomial,
     factors_of,
     minus,
     plus,

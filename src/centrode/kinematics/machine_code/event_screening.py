@@ -2,10 +2,10 @@
 
 Of the commonest groups closed forms tell that (`closure_conditions`). Others are looked at cell by cell, first in wide
 cells, then in those of the mesh. A mechanism is clear where every radicand stays above zero all over each cell, and
-every divisor off it, by the bounds of `numerics.bends`: the search of `events` would find nothing. Behind a group of higher class nothing is
-bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut off, and the formulas of
-`traced` are the whole motion. What is not clear is left to the arrays; to call a clear mechanism unclear costs time and
-nothing else.
+every divisor off it, by the bounds of `numerics.bends`: the search of `events` would find nothing. Behind a group of
+higher class nothing is bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut
+off, and the formulas of `traced` are the whole motion. What is not clear is left to the arrays; to call a clear
+mechanism unclear costs time and nothing else.
 """
 
 from __future__ import annotations
@@ -273,7 +273,8 @@ class EventScreening:
             return None
         if values:
             parts.append(least(LOWEST, least_of(values)))
-        places = self._places(low + half * (2.0 * np.arange(count) + 1.0))
+        centres: Array = low + half * (2.0 * np.arange(count) + 1.0)
+        places = self._places(centres)
         return Pass(together(*parts, least(SLACK, least_of(slacks))), self.names, places)
 
     def _on_the_mesh(self, values: Mapping[str, Array]) -> FoundClosure:
