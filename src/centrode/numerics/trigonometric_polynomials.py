@@ -205,9 +205,13 @@ def _of_angle(
     if operation == "multiply":
         angle, factor = (rest[0], first) if isinstance(rest[0], _Angle) else (first, rest[0])
         # a ratio that differs from mechanism to mechanism would be a frequency that does
-        ratio = factor.constant if isinstance(factor, TrigonometricPolynomial) else None
-        if isinstance(angle, _Angle) and isinstance(ratio, float) and not factor.waves and ratio:
-            return _Angle(angle.rate * ratio, angle.shift * factor)
+        if isinstance(angle, _Angle) and isinstance(factor, TrigonometricPolynomial) and not factor.waves:
+            ratio = factor.constant
+            return (
+                _Angle(angle.rate * ratio, angle.shift * factor)
+                if isinstance(ratio, float) and ratio
+                else None
+            )
     return None
 
 

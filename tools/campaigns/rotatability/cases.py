@@ -153,8 +153,8 @@ CAMPAIGN = Campaign(
     the border, or are a fault.""",
     {
         "doubtful": "share of the mechanisms of a case that are left to the mesh",
-        "event found": "where the search finds an event of a clear mechanism: the radicand's least value over the bound "
-        "of its greatest one, to 50 digits; below 1e-8 it is a fault",
+        "event found": "where the search finds an event of a clear mechanism: the radicand's least value over "
+        "the bound of its greatest one, to 50 digits; below 1e-8 it is a fault",
         "no event found": "where the search finds no event of an open mechanism: how far below zero a factor falls, "
         "over its greatest value",
         "doubt": f"how far from the border, as a share of the greatest value, a doubtful mechanism is; "

@@ -260,7 +260,7 @@ class EventScreening:
             return None
         low, high = self.covered
         count = int(np.ceil((high - low) / (WIDE * path.step)))
-        half = 0.5 * (high - low) / count
+        half = float(0.5 * (high - low) / count)
         bends = self.traced.bent.guards(half)
         slacks, values, parts = [], [], []
         for (kind, group), bent in bends.items():
@@ -273,8 +273,7 @@ class EventScreening:
             return None
         if values:
             parts.append(least(LOWEST, least_of(values)))
-        centres: Array = low + half * (2.0 * np.arange(count) + 1.0)
-        places = self._places(centres)
+        places = self._places(low + half * (2.0 * np.arange(count, dtype=np.float64) + 1.0))
         return Pass(together(*parts, least(SLACK, least_of(slacks))), self.names, places)
 
     def _on_the_mesh(self, values: Mapping[str, Array]) -> FoundClosure:
