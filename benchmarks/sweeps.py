@@ -35,6 +35,12 @@ MECHANISMS = {
 }
 """Dimensions that vary by one per cent, and the point that is looked at."""
 CRANKS = {"crank-rocker": "links.OA.length", "spherical-four-bar": "links.AB.length"}
+TARGETS, TRIED = 36, 2_000_000
+"""Of a path error: places of the drive, and candidates of a sweep."""
+CANDIDATES = {"crank-rocker": (4e6, 2e6), "spherical-four-bar": (2e6, 1e6)}
+"""Candidates a second and core, of a path error and of one with six derivatives."""
+SECONDS = 3.0
+"""In which a billion positions are reduced, of one core: two need half as long."""
 LONG = 4
 """How many times as many mechanisms two threads are given: what is done once should not count."""
 BILLION = 1_000_000_000
@@ -52,6 +58,8 @@ def sweeps() -> Iterator[Row]:
         yield _motions(name, paths)
         yield _gradient(name, point)
         yield _two_threads(name, paths, point)
+    for name, (value, gradient) in CANDIDATES.items():
+        yield _path_error(name, value, gradient)
     yield _on_the_sphere()
     yield from _with_events()
     yield _billion()
@@ -127,6 +135,29 @@ def _gradient(name: str, point: str) -> Row:
     return Row(f"{name}, gradient by six", numbers, promises=promises)
 
 
+def _path_error(name: str, value: float, gradient: float) -> Row:
+    """The error of a path over its targets, and its derivatives by six dimensions: candidates a second."""
+    point = MECHANISMS[name][1]
+    mechanism = ct.example(name)
+    axes = "xy" if mechanism.space == "plane" else "xyz"
+    drive = f"drive_{mechanism.drives[0].link}"
+    terms = " + ".join(f"(position_{point}_{axis} - 0.5 - 0.1 * cos({drive}))^2" for axis in axes)
+    run = functools.partial(
+        ct.sweep, mechanism, _values(name, SIX[name], TRIED), samples=TARGETS,
+        reduce={"error": f"mean({terms})"}, executor="machine code",
+    )  # fmt: skip
+    times = paired_times({"value": run, "gradient": functools.partial(run, gradient=True)}, ROUNDS)
+    rates = {label: TRIED / median(seconds) for label, seconds in times.items()}
+    return Row(
+        f"{name}, path error of {TARGETS} targets",
+        {f"{label}, millions a second": rate / 1e6 for label, rate in rates.items()},
+        promises=[
+            Promise(f"sweep, {name}, path error, {label}, candidates a second", rates[label], at_least=bound)
+            for label, bound in (("value", value), ("gradient", gradient))
+        ],
+    )
+
+
 def _on_the_sphere() -> Row:
     """The spherical four-bar linkage over the planar one: coupler and rocker vary, then the crank."""
     numbers = {}
@@ -192,15 +223,15 @@ def _motions(name: str, paths: tuple[str, ...]) -> Row:
 
 
 def _billion() -> Row:
-    """A billion positions reduced, in a process of its own: time by the clock and memory at most."""
+    """A billion positions reduced, in a process of its own: processor time of one thread and memory at most."""
     count = BILLION // SAMPLES
     program = f"""
 import numpy as np, resource, time
 import centrode as ct
 values = np.linspace(3.4, 3.6, {count})
-start = time.perf_counter()
+start = time.process_time()
 ct.sweep(ct.example("crank-rocker"), {{"links.AB.length": values}}, "position.B", {SAMPLES}, reduce="range")
-print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+print(time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     seconds, most = (float(word) for word in done.stdout.split())
@@ -208,7 +239,10 @@ print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_m
     return Row(
         "crank-rocker, a billion positions",
         {"s": seconds, "MB": memory / 1e6},
-        promises=[Promise("sweep, a billion positions, memory [MB]", memory / 1e6, MOST_MEMORY / 1e6)],
+        promises=[
+            Promise("sweep, a billion positions, memory [MB]", memory / 1e6, MOST_MEMORY / 1e6),
+            Promise("sweep, a billion positions, one core [s]", seconds, SECONDS),
+        ],
     )
 
 

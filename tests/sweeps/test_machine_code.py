@@ -86,6 +86,20 @@ def same(found: xr.Dataset, expected: xr.Dataset, outputs: list[str], gears: flo
             np.testing.assert_array_equal(a, b, err_msg=name)
 
 
+def same_residuals(found: xr.Dataset, mechanism: ct.Mechanism, vary: Any, samples: int) -> int:
+    """Bits of the worst residual of all samples, or where closed forms say that all close, of three of them.
+
+    Returns how many can only be of three.
+    """
+    residual = ct.sweep(mechanism, vary, "residual", samples, executor=ARRAYS)["residual"].to_numpy()
+    whole = np.isfinite(residual).all(axis=1)
+    worst = np.fmax.reduce(residual, axis=1)
+    some = residual[:, samples * np.arange(3) // 3].max(axis=1)
+    own = found["worst_residual"].to_numpy()
+    assert ((own == worst) | (np.isnan(own) & np.isnan(worst)) | (whole & (own == some))).all()
+    return int(np.count_nonzero(whole & (own == some) & (own != worst)))
+
+
 def both(
     mechanism: ct.Mechanism, vary: Any, outputs: list[str], samples: int, **more: Any
 ) -> tuple[xr.Dataset, xr.Dataset]:
@@ -169,8 +183,10 @@ def test_a_fifth_of_the_samples_open(reduce: str | None, monkeypatch: pytest.Mon
         same(*both(mechanism, vary, outputs, 37), outputs)
     else:
         found, expected = both(mechanism, vary, ["position", "velocity"], 37, reduce=reduce)
-        xr.testing.assert_equal(found, expected)
+        xr.testing.assert_equal(found.drop_vars("worst_residual"), expected.drop_vars("worst_residual"))
     assert counter.left == 300, "those of the comparison: machine code computes what has events too"
+    if reduce is not None:
+        same_residuals(found, mechanism, vary, 37)
 
 
 @pytest.mark.parametrize("reduce", [None, "mean", FORMULAS_WITH_EVENTS])
@@ -261,7 +277,7 @@ def test_reductions(name: str) -> None:
     outputs = ["position", "angular_velocity", "acceleration.B.x"]
     found, expected = both(mechanism, vary, outputs, 37, reduce=name)
     np.testing.assert_array_equal(found["samples_ok"], expected["samples_ok"])
-    np.testing.assert_array_equal(found["worst_residual"], expected["worst_residual"])
+    assert same_residuals(found, mechanism, vary, 37) > 10
     sizes = ct.sweep(mechanism, vary, outputs, 37, executor=ARRAYS)
     for output in outputs:
         # sums of n terms in another order
@@ -362,4 +378,4 @@ def test_what_is_clear_has_no_event_nearby(monkeypatch: pytest.MonkeyPatch) -> N
     ct.sweep(mechanism, {"links.AB.length": lengths}, "position.B", 37, executor=MACHINE)
     (clear,) = kept
     assert not clear[lengths <= 2.0].any()
-    assert clear[lengths > 2.001].all()
+    assert clear[lengths > 2.0 + 1e-6].all(), "closed forms need no more room than that"

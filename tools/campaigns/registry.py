@@ -11,6 +11,7 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.reactions import cases as reactions
+from tools.campaigns.rotatability import cases as rotatability
 from tools.campaigns.spheres import cases as spheres
 
 CAMPAIGNS: Mapping[str, Campaign] = {
@@ -19,6 +20,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         chains.CAMPAIGN,
         change_points.CAMPAIGN,
         gaps.CAMPAIGN,
+        rotatability.CAMPAIGN,
         spheres.CAMPAIGN,
         cams.CAMPAIGN,
         reactions.CAMPAIGN,

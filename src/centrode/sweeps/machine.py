@@ -8,7 +8,7 @@ groups of higher class they are computed by arrays), and what is requested is ta
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol, TypeAlias
@@ -35,6 +35,7 @@ from centrode.kinematics.machine_code.variables import (
     least,
     take_lanes,
     varied_of,
+    winding_of,
 )
 from centrode.kinematics.samples import CLOSED
 from centrode.locale import mark
@@ -293,6 +294,8 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = dict[str, Array]
 
 RESIDUAL, SLACK = "worst residual", "slack at samples"
+CHECKED = 3
+"""Samples at which residuals are looked at where closed forms say that a mechanism closes at all of them."""
 
 
 @dataclass(frozen=True)
@@ -380,6 +383,35 @@ class Expressed:
         slack = self.judging.slack_at_samples
         return judges if slack is None else {**judges, SLACK: slack}
 
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """All that may be known of mechanisms: their numbers, where angles stand, and what samples left behind."""
+        known = [*self.judging.names, *self.task.paths, RESIDUAL]
+        for link in self.judging.links:
+            known += [centre_of(link), *(winding_of(link, drive) for drive in self.traced.winders)]
+        known += [f"largest {group}" for group in self.traced.radicands]
+        for fold in self.folds.found.values():
+            known.append(fold.name)
+            if self.task.asked.slopes:
+                known += self.slopes.states_of(fold.name).parts
+        return tuple(dict.fromkeys(known))
+
+    def functions(self, rows: Mapping[str, Array]) -> Values:
+        """Functions of the numbers of mechanisms, which all passes over their samples have in common."""
+        return {} if self.traced.steps else self._over_some.functions(rows)
+
+    def check_some(self, rows: Mapping[str, Array]) -> Values:
+        """The greatest residual of a few samples, of mechanisms that are certain to close at all of them."""
+        return self._over_some.run(rows, self.kernels, self.threads)
+
+    @cached_property
+    def _over_some(self) -> Pass:
+        # the last sample of a whole turn is the first one again, so thirds count from the first
+        chosen = np.unique(self.samples * np.arange(CHECKED) // CHECKED)
+        residual = greatest(RESIDUAL, as_node(self.traced.solved.residual[0, 0]), 0.0)
+        names = (*self.judging.names, *self.task.paths)
+        return Pass(residual, names, {name: x[chosen] for name, x in self.inputs.items()})
+
     @property
     def samples(self) -> int:
         """Number of samples."""
@@ -418,11 +450,15 @@ Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 """Some mechanisms after the other, and where their samples go: (numbers, lanes, samples)."""
 
 
+Reducing: TypeAlias = Callable[[PassedValues], dict[str, Array]]
+"""From what is known of mechanisms to the states when all samples are passed."""
+
+
 class Passing(Protocol):
     """Way to pass the samples of mechanisms without events."""
 
-    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
-        """The states when all samples are passed."""
+    def reducing(self, reduction: Reduction) -> Reducing:
+        """A pass over all samples, for any number of batches."""
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         """Write every sample; returns what mechanisms are judged by."""
@@ -439,11 +475,19 @@ class EachForItself:
 
     asked: Expressed
 
-    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reducing(self, reduction: Reduction) -> Reducing:
         asked = self.asked
-        over_samples = Pass(reduction, tuple(rows), asked.inputs)
-        # where nothing moves the samples are counted all the same
-        return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
+        over_samples = Pass(reduction, asked.names, asked.inputs)
+
+        def reduce(rows: PassedValues) -> dict[str, Array]:
+            # where nothing moves the samples are counted all the same
+            return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
+
+        return reduce
+
+    @cached_property
+    def _judging(self) -> Reducing:
+        return self.reducing(judging_states(self.asked))
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
@@ -451,7 +495,7 @@ class EachForItself:
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
         for part, room in rooms:
             take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self.reduce(judging_states(self.asked), rows)
+        return self._judging(rows)
 
     @cached_property
     def _scan(self) -> Scan:
@@ -469,9 +513,14 @@ class Along:
 
     asked: Expressed
 
-    def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+    def reducing(self, reduction: Reduction) -> Reducing:
         asked = self.asked
-        return Walking(asked.judging.walk, reduction).reduce(asked.way, rows, asked.kernels, asked.threads)
+        walking = Walking(asked.judging.walk, reduction)
+
+        def reduce(rows: PassedValues) -> dict[str, Array]:
+            return walking.reduce(asked.way, rows, asked.kernels, asked.threads)
+
+        return reduce
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
@@ -596,6 +645,10 @@ class EverySample:
 Mask: TypeAlias = npt.NDArray[np.bool_]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 
+END = "end of "
+"""Before the name of a number of a column: what the last states make of it."""
+WORTH_A_KERNEL = 2_000_000
+"""Operations on numbers from which on what is left to do at the end is worth compiling."""
 COPIES = 4
 """Of what a mechanism has while samples are passed: before, after, as kernels are given it."""
 
@@ -616,6 +669,7 @@ class MachineCodeExecutor:
     asked: Expressed
     threads: int
     kernels: str
+    _foldings: dict[tuple[int, bool], Reducing] = field(default_factory=dict)
     blocks = designs.BLOCKS_OF_KERNELS
     arrays = ArraysExecutor()
 
@@ -662,15 +716,19 @@ class MachineCodeExecutor:
         rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
         if self.asked.traced.steps:
             rows |= beginnings(task.ready, numbers, len(next(iter(rows.values()))))
+        rows |= self.asked.functions(rows)
         judged = self.asked.judging.judge(rows)
         rows |= judged.values
         # mechanisms that turn out doubtful at a sample are taken out again below
         clear = judged.clear.copy()
-        if clear.any():
-            everywhere = bool(clear.all())
-            at: Any = slice(None) if everywhere else np.nonzero(clear)[0]
-            some = rows if everywhere else {name: row[at] for name, row in rows.items()}
-            clear[at] = self._without_events(some, at, results)
+        # every sample that is kept has its residual judged; of reduced ones that are certain a few do
+        certain = judged.certain if self.task.asked.is_reduced else np.zeros_like(clear)
+        for which, sure in ((certain, True), (judged.clear & ~certain, False)):
+            if which.any():
+                everywhere = bool(which.all())
+                at: Any = slice(None) if everywhere else np.nonzero(which)[0]
+                some = rows if everywhere else {name: row[at] for name, row in rows.items()}
+                clear[at] = self._without_events(some, at, results, sure)
         left = np.nonzero(~clear)[0]
         # few mechanisms with events are not worth a kernel of their own
         worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
@@ -714,10 +772,10 @@ class MachineCodeExecutor:
     def _passing(self) -> Passing:
         return passing_of(self.asked)
 
-    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
+    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         states = (
-            self._fill_reductions(rows, at, results)
+            self._fill_reductions(rows, at, results, certain)
             if self.task.asked.is_reduced
             else self._fill_samples(rows, at, results)
         )
@@ -730,29 +788,56 @@ class MachineCodeExecutor:
             clear &= states[slack] > 0.0
         return clear
 
-    def _fill_reductions(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_reductions(
+        self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool
+    ) -> Values:
         """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
         rows = dict(rows)
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows |= self._passing.reduce(self._states(depth), rows)
-        nodes = {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
-        values = evaluate(Graph(nodes), rows)
+            rows |= self._folding(depth, certain)(rows)
+        if certain:
+            rows |= self.asked.check_some(rows)
+        values = self._at_end(rows)
         for name, numbers in columns.items():
             flat = results[name].reshape(len(results[name]), len(numbers))
             for k in range(len(numbers)):
-                flat[at, k] = values[f"{name} {k}"]
+                flat[at, k] = values[f"{END}{name} {k}"]
         return rows
 
-    def _states(self, depth: int) -> Reduction:
+    def _at_end(self, rows: Values) -> Values:
+        """The numbers of all columns from the last states; by a kernel where that is worth compiling."""
+        graph, lanes = self._ends, len(next(iter(rows.values())))
+        if lanes * len(graph.order) < WORTH_A_KERNEL:
+            return evaluate(graph, rows)
+        return self._at_once.run(rows, self.kernels, self.threads)
+
+    @cached_property
+    def _at_once(self) -> Pass:
+        outputs = self._ends.outputs
+        return Pass(Reduction(outputs, dict.fromkeys(outputs, 0.0)), self.asked.names, {})
+
+    @cached_property
+    def _ends(self) -> Graph:
+        columns = self.asked.final.items()
+        return Graph({f"{END}{name} {k}": node for name, nodes in columns for k, node in enumerate(nodes)})
+
+    def _folding(self, depth: int, certain: bool) -> Reducing:
+        """One of the passes over the samples; the same for all batches."""
+        key = depth, certain
+        if key not in self._foldings:
+            self._foldings[key] = self._passing.reducing(self._states(depth, certain))
+        return self._foldings[key]
+
+    def _states(self, depth: int, certain: bool) -> Reduction:
         """States handed on in a pass over the samples."""
         folds = self.asked.folds.at_depth(depth)
         parts = [fold.state for fold in folds]
         if self.task.asked.slopes:
             parts += [self.asked.slopes.of_fold(fold) for fold in folds]
-        # judging costs little and is done with the first pass
-        if depth == 0:
+        # judging is done with the first pass; what is certain has no sample to be judged
+        if depth == 0 and not certain:
             parts.append(judging_states(self.asked))
         return together(*parts)
 

@@ -55,15 +55,36 @@ class _Bounding(EvaluationPolicy):
         return number if isinstance(number, Bent) else Bent(number, 0.0, 0.0, self.cells)
 
 
+@dataclass(frozen=True)
+class BentPlan:
+    """What a plan is run over again for bounds of second derivatives, see `bent_guards`."""
+
+    ready: Ready
+    span: SampleGrid
+    varied: Varied
+    signs: Mapping[int, Operand] | None
+
+    def guards(self, half: float | None = None) -> dict[tuple[str, int], Bent]:
+        """Radicands and divisors on cells of the mesh, or with one drive of another half width."""
+        return bent_guards(self.ready, self.span, self.varied, self.signs, half)
+
+
 def bent_guards(
-    ready: Ready, span: SampleGrid, varied: Varied, signs: Mapping[int, Operand] | None = None
+    ready: Ready,
+    span: SampleGrid,
+    varied: Varied,
+    signs: Mapping[int, Operand] | None = None,
+    width: float | None = None,
 ) -> dict[tuple[str, int], Bent]:
-    """(radicand or divisor, group) -> the number on a cell of the mesh, as far as its second derivative is bounded."""
+    """(radicand or divisor, group) -> the number on a cell, as far as its second derivative is bounded.
+
+    With one drive `width` is half the width of cells, that of the mesh if it is left out.
+    """
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, 2)
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
     # with one drive all cells of the mesh are equally wide, and the width is a constant of the kernel
-    half: Operand = variable(HALF) if path.by_time else 0.5 * path.step
+    half: Operand = variable(HALF) if path.by_time else width or 0.5 * path.step
     cells = Cells(half, EXPRESSIONS)
     place = NODE_BENDS.variable(variable(PARAMETER), half)
     drives = {drive: _driven(drive, x, cells) for drive, x in path.drive_values(NODE_BENDS, place).items()}

@@ -1,10 +1,11 @@
 """Which mechanisms of a batch have no events: judged on the mesh of events, along the path where that is needed.
 
-A mechanism is clear where every radicand stays above zero all over each cell of the mesh, and every divisor off it,
-by the bounds of `numerics.bends`: the search of `events` would find nothing. Behind a group of higher class nothing is
-bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut off, and the formulas of
-`traced` are the whole motion. What is not clear is left to the arrays; to call a clear mechanism unclear costs time and
-nothing else.
+Of the commonest groups closed forms tell that (`closure_conditions`). Others are looked at cell by cell, first in wide
+cells, then in those of the mesh. A mechanism is clear where every radicand stays above zero all over each cell, and
+every divisor off it, by the bounds of `numerics.bends`: the search of `events` would find nothing. Behind a group of
+higher class nothing is bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut
+off, and the formulas of `traced` are the whole motion. What is not clear is left to the arrays; to call a clear
+mechanism unclear costs time and nothing else.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy.typing as npt
 
 from centrode.kinematics.change_points import WINDOW
 from centrode.kinematics.machine_code.bends import DIVISOR, RADICAND, bends_of
+from centrode.kinematics.machine_code.closure_conditions import ClosureConditions, FoundClosure
 from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, way_of
 from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import (
@@ -151,14 +153,20 @@ SAFE = 2.0
 """Margins of the search are kept this many times over: the last bits may differ from those of the arrays."""
 ROOM = 1.0 + 1e-6
 """How much more than their bounds numbers may stray: the search's own comparisons are rounded otherwise."""
-SLACK, GAP = "slack", "gap"
+SLACK, GAP, LOWEST = "slack", "gap", "lowest"
+WIDE = 12
+"""Nodes of the mesh that a wide cell stands for: 6 degrees of an angle drive."""
 
 
 @dataclass(frozen=True)
 class ScreenedEvents:
-    """Of mechanisms (lanes,): which are clear, and further variables of their formulas."""
+    """Of mechanisms (lanes,): which are clear, and further variables of their formulas.
+
+    `certain` are those that closed forms show to be clear: no sample of them comes near to a limit.
+    """
 
     clear: Mask
+    certain: Mask
     values: Values
 
 
@@ -194,26 +202,91 @@ class EventScreening:
         """States handed on along the path, where there are groups of higher class."""
         return Walk(self.traced, self.links)
 
+    @cached_property
+    def closure(self) -> ClosureConditions | None:
+        """Closed forms that say whether groups close all along the cells of the mesh, where there are any."""
+        return ClosureConditions.of(self.traced, *self.covered, self.names)
+
+    @property
+    def covered(self) -> tuple[float, float]:
+        """Ends of the range that the cells of the mesh cover: half a step beyond the first and the last node."""
+        beyond = 0.5 * self._path.step
+        return float(self.mesh[0] - beyond), float(self.mesh[-1] + beyond)
+
     def judge(self, values: Mapping[str, Array]) -> ScreenedEvents:
         """Judge the mechanisms of a batch; with groups of higher class `values` have where walks begin.
 
         What a walk along the samples finds out about these groups themselves is not looked at here.
         """
-        events = self._events(values)
         lanes = len(next(iter(values.values())))
-        clear = np.ones(lanes, dtype=bool)
+        clear, certain = np.zeros(lanes, dtype=bool), np.zeros(lanes, dtype=bool)
+        further = {f"largest {group}": np.full(lanes, np.nan) for group in self.traced.radicands}
+        doubtful = ~clear
+        if self.closure is not None:
+            found = self.closure.judge(values, self.executor, self.threads)
+            clear, certain, doubtful = found.clear.copy(), found.clear, ~(found.clear | found.opens)
+            further |= found.largest
+        # each way looks at more places than the one before, and at fewer mechanisms
+        for look in (self._in_wide_cells, self._on_the_mesh):
+            left = np.nonzero(doubtful)[0]
+            if len(left):
+                some = values if len(left) == lanes else {name: x[left] for name, x in values.items()}
+                found = look(some)
+                for name, x in found.largest.items():
+                    further[name][left] = x
+                clear[left] = found.clear
+                doubtful[left] = ~(found.clear | found.opens)
+        if self.links and not self.traced.steps:
+            near, centres = self._centring.centres(values, self.executor, self.threads)
+            clear &= near
+            further |= centres
+        return ScreenedEvents(clear, certain & clear, further)
+
+    def _in_wide_cells(self, values: Mapping[str, Array]) -> FoundClosure:
+        """What bounds over few wide cells, and radicands in their middles, tell."""
+        if self._over_wide_cells is None:
+            nothing = np.zeros(len(next(iter(values.values()))), dtype=bool)
+            return FoundClosure(nothing, nothing, {})
+        events = self._over_wide_cells.run(values, self.executor, self.threads)
+        # NaN stands where a group before has no value
+        opens = ~(events[LOWEST] >= 0.0) if LOWEST in events else np.zeros(len(events[SLACK]), dtype=bool)
+        return FoundClosure(events[SLACK] > 0.0, opens, _largest_of(events))
+
+    @cached_property
+    def _over_wide_cells(self) -> Pass | None:
+        """A pass over cells that together cover those of the mesh; None where that is not what is asked."""
+        path = self._path
+        if path.by_time or self.traced.steps or len(self.mesh) < 2 * WIDE:
+            return None
+        low, high = self.covered
+        count = int(np.ceil((high - low) / (WIDE * path.step)))
+        half = float(0.5 * (high - low) / count)
+        bends = self.traced.bent.guards(half)
+        slacks, values, parts = [], [], []
+        for (kind, group), bent in bends.items():
+            size = as_node(m.abs(bent.value))
+            if kind == RADICAND:
+                values.append(as_node(bent.value))
+                parts.append(greatest(f"largest {group}", as_node(size + bent.strays)))
+            slacks.append(as_node((bent.value if kind == RADICAND else size) - ROOM * bent.strays))
+        if not slacks:
+            return None
+        if values:
+            parts.append(least(LOWEST, least_of(values)))
+        places = self._places(low + half * (2.0 * np.arange(count, dtype=np.float64) + 1.0))
+        return Pass(together(*parts, least(SLACK, least_of(slacks))), self.names, places)
+
+    def _on_the_mesh(self, values: Mapping[str, Array]) -> FoundClosure:
+        """The mechanisms of which nothing on the mesh says that they may have events."""
+        events = self._events(values)
+        clear = np.ones(len(next(iter(values.values()))), dtype=bool)
         for slack in {SLACK, SURE} & events.keys():
             clear &= events[slack] > 0.0
         for group in self.traced.divisors:
             if f"least {group}" in events:
                 # NaN fails both comparisons: what is not known is not clear
                 clear &= (events[f"least {group}"] > 0.0) | (events[f"most {group}"] < 0.0)
-        further = {name: array for name, array in events.items() if name.startswith("largest")}
-        if self.links and not self.traced.steps:
-            near, centres = self._centring.centres(values, self.executor, self.threads)
-            clear &= near
-            further |= centres
-        return ScreenedEvents(clear, further)
+        return FoundClosure(clear, ~clear, _largest_of(events))
 
     def _events(self, values: Mapping[str, Array]) -> Values:
         walk = Walk(self.traced)
@@ -283,6 +356,10 @@ class EventScreening:
             value = _with_slope(radicand)[0]
             slacks.append(as_node(value - SAFE * SUSPECT * variable(f"largest {group}")))
         return least_of(slacks) if slacks else None
+
+
+def _largest_of(events: Values) -> Values:
+    return {name: array for name, array in events.items() if name.startswith("largest")}
 
 
 def _with_slope(number: object) -> tuple[Operand, Operand]:

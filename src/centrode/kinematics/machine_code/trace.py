@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,7 +21,7 @@ from centrode.errors import Status
 from centrode.kinematics.angular_velocity import attitudes_of, spins_of
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.higher_class.system import LinkChain, pattern_of, plain
-from centrode.kinematics.machine_code.bends import bent_guards
+from centrode.kinematics.machine_code.bends import BentPlan
 from centrode.kinematics.machine_code.newton import NewtonStep, newton_step
 from centrode.kinematics.machine_code.variables import (
     NODE_JETS,
@@ -165,7 +166,7 @@ class Traced:
     ----------
     solved : arrays of nodes and floats, of one lane and one sample
     radicands, divisors : group -> jet of first order, or what does not move with the drive: events are their zeros
-    bends : the same over cells of the mesh, as far as they are bounded, see `bends`
+    bent : what bounds these over cells
     turning : link -> cosine and sine of its angle where its turns have to be found
     winders : drive -> its value, with which links may turn
     turns : link -> the turns that stand in its angle: a whole number
@@ -176,11 +177,16 @@ class Traced:
     solved: Solved
     radicands: Mapping[int, Number]
     divisors: Mapping[int, Number]
-    bends: Mapping[tuple[str, int], Bent]
+    bent: BentPlan
     turning: Mapping[str, tuple[Operand, Operand]]
     winders: Mapping[str, Operand]
     steps: Mapping[int, NewtonStep]
     counted: Mapping[str, tuple[Node, Node]]
+
+    @cached_property
+    def bends(self) -> Mapping[tuple[str, int], Bent]:
+        """Radicands and divisors over cells of the mesh, as far as they are bounded, see `bends`."""
+        return self.bent.guards()
 
     @property
     def turns(self) -> dict[str, Node]:
@@ -224,10 +230,8 @@ def trace_motion(
     winders = winders_of(path)
     angles, turning = _angles(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
     solved = _motion_of_parts(_Parts(ready, kinematics, layout, columns, angles), span, varied)
-    bends = bent_guards(ready, span, varied, signs)
-    return Traced(
-        solved, hooks.radicands, hooks.divisors, bends, turning, winders, hooks.steps, hooks.counted
-    )
+    bent = BentPlan(ready, span, varied, signs)
+    return Traced(solved, hooks.radicands, hooks.divisors, bent, turning, winders, hooks.steps, hooks.counted)
 
 
 def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:

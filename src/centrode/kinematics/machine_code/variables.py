@@ -15,9 +15,10 @@ from centrode.kinematics.path import JETS, Path, SampleGrid
 from centrode.kinematics.samples import ORDERS
 from centrode.numerics.executors import runner
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph
+from centrode.numerics.graphs import Graph, split_graph
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.numerics.scans import Reduction, Scan
+from centrode.numerics.machine_code.loops import FUNCTIONS
+from centrode.numerics.scans import Reduction, Scan, evaluate
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -262,6 +263,8 @@ Values: TypeAlias = Mapping[str, Array]
 
 m = EXPRESSIONS
 INFINITE = float("inf")
+FUNCTION = "function "
+"""Before the key of a function of what is known of mechanisms: its name among their values."""
 
 
 @dataclass(frozen=True)
@@ -279,26 +282,52 @@ class Pass:
     places: Values
 
     @cached_property
+    def _known(self) -> tuple[str, ...]:
+        """The names of what is known before this pass."""
+        return tuple(name for name in dict.fromkeys(self.names) if name not in self.reduction.state)
+
+    @cached_property
+    def _split(self) -> tuple[Graph, Graph]:
+        """Functions of what is known of mechanisms, and the states with these as variables."""
+        functions, rest = split_graph(Graph(self.reduction.state), self._known, "", FUNCTIONS)
+        # called by what they are, so that passes know them from one another
+        called = {name: FUNCTION + node.key.hex() for name, node in functions.outputs.items()}
+        named = Graph({called[name]: node for name, node in functions.outputs.items()})
+        return named, rest.substitute({name: variable(new) for name, new in called.items()})
+
+    @cached_property
     def scan(self) -> Scan:
         """The scan, with those of the names that are used."""
-        used = frozenset(Graph(self.reduction.state).variables)
+        functions, rest = self._split
+        used = frozenset(rest.variables)
         return Scan(
-            tuple(name for name in dict.fromkeys(self.names) if name in used),
+            tuple(name for name in (*self._known, *functions.outputs) if name in used),
             tuple(name for name in self.places if name in used),
             {},
-            self.reduction.state,
+            rest.outputs,
         )
 
+    def functions(self, values: Values) -> dict[str, Array]:
+        """Functions of what is known of mechanisms, as NumPy rounds them: those that are not among the values yet."""
+        missing = Graph({name: x for name, x in self._split[0].outputs.items() if name not in values})
+        lanes = len(next(iter(values.values())))
+        return {name: np.broadcast_to(x, (lanes,)) for name, x in evaluate(missing, values).items()}
+
     def run(self, values: Values, kernels: str, threads: int, steps: int = 1) -> dict[str, Array]:
-        """The states behind all places, name -> (lanes,); `steps` says how many there are where nothing tells."""
+        """The states behind all places, name -> (lanes,); `steps` says how many there are where nothing tells.
+
+        Functions that the values have already are not computed again, see `functions`.
+        """
         scan = self.scan
         if not scan.state:
             return {}
-        parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
+        known = {**values, **self.functions(values)}
+        parameters = np.stack([known[name] for name in scan.parameters]) if scan.parameters else None
         inputs = np.stack([self.places[name] for name in scan.inputs]) if scan.inputs else None
-        lanes = len(next(iter(values.values())))
-        # every lane starts alike
-        start = np.repeat([[value] for value in self.reduction.start.values()], lanes, axis=1)
+        # every lane starts alike; where no parameter tells how many there are, the start does
+        start = np.array([[value] for value in self.reduction.start.values()])
+        if parameters is None:
+            start = np.repeat(start, len(next(iter(values.values()))), axis=1)
         run = runner(scan, kernels, threads=threads)
         state = run(parameters, inputs, start, steps=None if scan.inputs else steps).state
         return dict(zip(scan.state, state, strict=True))

@@ -1,0 +1,1 @@
+"""Conditions of closure in closed form, against the search for events and 50 digits."""
