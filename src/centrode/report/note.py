@@ -22,6 +22,8 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
+from centrode.render.document.numbering import reference
+from centrode.report.citations import cite_sources
 from centrode.topics.order import PARTS
 
 CONCLUSIONS, CHECKS, SOURCES = "conclusions", "checks", "sources"
@@ -58,6 +60,7 @@ def as_note(report: Report, note: ExplanatoryNote, sections: Sections) -> Report
         *_sources(note.sources),
         *checks,
     )
+    chapters = cite_sources(chapters, len(note.sources))
     title = page.title if page is not None and page.title else report.title
     return replace(
         report,
@@ -139,7 +142,8 @@ def _referred(opening: tuple[Block, ...]) -> tuple[Block, ...]:
     figures = [block for block in opening if isinstance(block, Picture) and block.number]
     if not figures:
         return opening
-    return (ParagraphBlock(_("See figure {number}.").format(number=figures[0].number)), *opening)
+    number = figures[0].number
+    return (ParagraphBlock(reference("figure", number, number)), *opening)
 
 
 def _title_page(page: TitlePage, title: str) -> TitlePageBlocks:
