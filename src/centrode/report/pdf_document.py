@@ -52,8 +52,6 @@ LONGEST_WHOLE = 600
 """Characters from which on a cell may break between pages."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
-JOINER = "\u2060"
-"""No line ends here."""
 
 
 class Source:
@@ -163,8 +161,7 @@ class Source:
     @_shown.register
     def _reference(self, block: ReferenceBlock) -> str:
         pieces = (
-            f"#formula-number({one});" if isinstance(one, int) else f"#{quote(_unbroken(one))};"
-            for one in block.pieces
+            f"#formula-number({one});" if isinstance(one, int) else _joined(one) for one in block.pieces
         )
         return f"#par([{''.join(pieces)}])"
 
@@ -276,7 +273,7 @@ def _announces(blocks: Sequence[Block]) -> bool:
 def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
     parts = [
-        f"#{_inline(part.text)};" if part.mathematics else f"#{quote(_unbroken(part.text))};"
+        f"#{_inline(part.text)};" if part.mathematics else _joined(part.text)
         for part in parts_of(marked)
     ]
     return f"[{''.join(parts)}]"
@@ -291,19 +288,34 @@ def _measured_quantity(language: str) -> re.Pattern[str]:
     return re.compile(rf"(?<=[\d⁰¹²³⁴-⁹])([ \u00a0\u202f])({unit}(?:[·/]{unit})*)(?!\w)")
 
 
-def _unbroken(text: str) -> str:
-    """Text in which a number and its unit stay on one line, and the unit whole."""
+def _whole_units(text: str) -> list[str]:
+    """Pieces of a text as typst's strings: a number and its unit stay on one line, and a unit with a stroke is whole."""
+    found: list[str] = []
+    end = 0
+    for one in _measured_quantity(chosen_language()).finditer(text):
+        gap = NO_BREAK if one[1] == " " else one[1]
+        before = text[end : one.start()] + gap
+        if "/" in one[2]:
+            found += [quote(before), f"box({quote(one[2])})"]
+        else:
+            found.append(quote(before + one[2]))
+        end = one.end()
+    return [*found, quote(text[end:])] if end < len(text) or not found else found
 
-    def joined(found: re.Match[str]) -> str:
-        gap = NO_BREAK if found[1] == " " else found[1]
-        return gap + found[2].replace("/", f"/{JOINER}")
 
-    return _measured_quantity(chosen_language()).sub(joined, text)
+def _with_units(text: str) -> str:
+    """A text whose numbers keep their units."""
+    return _measured_quantity(chosen_language()).sub(lambda one: NO_BREAK + one[2], text)
+
+
+def _joined(text: str) -> str:
+    """A text as content between brackets."""
+    return "".join(f"#{piece};" for piece in _whole_units(text))
 
 
 def _span(span: Span) -> str:
     """A stretch of a user's text as content."""
-    shown = f"raw({quote(span.text)})" if span.code else f"text({quote(_unbroken(span.text))})"
+    shown = f"raw({quote(span.text)})" if span.code else f"[{_joined(span.text)}]"
     shown = f"emph({shown})" if span.emphasized else shown
     return f"#{f'strong({shown})' if span.strong else shown};"
 
@@ -321,7 +333,10 @@ def _inline(formula: str) -> str:
 def _cell(text: str) -> str:
     """A cell of a table: text without mathematics is a string, which typst reads much faster."""
     parts = parts_of(text)
-    return content(text) if any(part.mathematics for part in parts) else quote(_unbroken("".join(p.text for p in parts)))
+    if any(part.mathematics for part in parts):
+        return content(text)
+    pieces = _whole_units("".join(part.text for part in parts))
+    return pieces[0] if len(pieces) == 1 else content(text)
 
 
 def _caption(text: str) -> str:
@@ -372,7 +387,7 @@ def _words(text: str) -> list[str]:
         if part.mathematics:
             found.append(_math(part.text))
         else:
-            found += [quote(word) for word in re.split(r"[ \t\r\n]+", _unbroken(part.text)) if word]
+            found += [quote(word) for word in re.split(r"[ \t\r\n]+", _with_units(part.text)) if word]
     return found
 
 
