@@ -21,6 +21,7 @@ from centrode.render.document.blocks import (
     FormulaBlock,
     ItemsBlock,
     Moving,
+    ParagraphBlock,
     Picture,
     ProseBlock,
     Report,
@@ -270,7 +271,8 @@ def test_own_text_stands_before_and_after_its_chapter() -> None:
     assert [section.written for section in sections][:: len(sections) - 1] == ["before", "after"]
     aim = sections[0]
     assert aim.title == "Aim"
-    words, items, table = aim.blocks
+    words, items, named, table = aim.blocks
+    assert named == ParagraphBlock("See table 1.")
     assert isinstance(words, ProseBlock)
     assert isinstance(items, ProseBlock)
     assert isinstance(table, TableBlock)

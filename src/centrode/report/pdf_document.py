@@ -50,6 +50,8 @@ ANNOUNCEMENT = 160
 """Letters of a paragraph that may be there only for the formula, table or picture behind it."""
 LONGEST_WHOLE = 600
 """Characters from which on a cell may break between pages."""
+LONGEST_NUMBER = 24
+"""Characters of a number that is not parted from its unit."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 
@@ -273,44 +275,51 @@ def _announces(blocks: Sequence[Block]) -> bool:
 def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
     parts = [
-        f"#{_inline(part.text)};" if part.mathematics else _joined(part.text)
-        for part in parts_of(marked)
+        f"#{_inline(part.text)};" if part.mathematics else _joined(part.text) for part in parts_of(marked)
     ]
     return f"[{''.join(parts)}]"
 
 
 @functools.cache
 def _measured_quantity(language: str) -> re.Pattern[str]:
-    """A blank behind a number, and the unit behind it."""
+    """A number, the blank behind it, and its unit."""
     place = LANGUAGES.index(language)
     symbols = sorted({re.escape(names[place]) for names in UNIT_SYMBOLS.values()}, key=len, reverse=True)
     unit = f"(?:{'|'.join(symbols)})[²³⁴]?"
-    return re.compile(rf"(?<=[\d⁰¹²³⁴-⁹])([ \u00a0\u202f])({unit}(?:[·/]{unit})*)(?!\w)")
+    digits = "\\d⁰¹²³⁴-⁹"
+    number = rf"[−+-]?[{digits}.,·⁻]{{0,{LONGEST_NUMBER}}}[{digits}]"
+    return re.compile(rf"({number})([ \u00a0\u202f])({unit}(?:[·/]{unit})*)(?!\w)")
 
 
-def _whole_units(text: str) -> list[str]:
-    """Pieces of a text as typst's strings: a number and its unit stay on one line, and a unit with a stroke is whole."""
+def _whole_quantities(text: str) -> list[str]:
+    """Pieces of a text as typst's strings: a number stays on one line with its unit, a unit whole."""
     found: list[str] = []
     end = 0
     for one in _measured_quantity(chosen_language()).finditer(text):
-        gap = NO_BREAK if one[1] == " " else one[1]
-        before = text[end : one.start()] + gap
-        if "/" in one[2]:
-            found += [quote(before), f"box({quote(one[2])})"]
+        quantity = _kept_together(one)
+        before = text[end : one.start()]
+        if "/" in quantity:
+            found += [quote(before), f"box({quote(quantity)})"]
         else:
-            found.append(quote(before + one[2]))
+            found.append(quote(before + quantity))
         end = one.end()
     return [*found, quote(text[end:])] if end < len(text) or not found else found
 
 
+def _kept_together(quantity: re.Match[str]) -> str:
+    """A number and its unit without a blank at which a line may end."""
+    number, gap, unit = quantity.groups()
+    return f"{number}{NO_BREAK if gap == ' ' else gap}{unit}"
+
+
 def _with_units(text: str) -> str:
     """A text whose numbers keep their units."""
-    return _measured_quantity(chosen_language()).sub(lambda one: NO_BREAK + one[2], text)
+    return _measured_quantity(chosen_language()).sub(_kept_together, text)
 
 
 def _joined(text: str) -> str:
     """A text as content between brackets."""
-    return "".join(f"#{piece};" for piece in _whole_units(text))
+    return "".join(f"#{piece};" for piece in _whole_quantities(text))
 
 
 def _span(span: Span) -> str:
@@ -335,7 +344,7 @@ def _cell(text: str) -> str:
     parts = parts_of(text)
     if any(part.mathematics for part in parts):
         return content(text)
-    pieces = _whole_units("".join(part.text for part in parts))
+    pieces = _whole_quantities("".join(part.text for part in parts))
     return pieces[0] if len(pieces) == 1 else content(text)
 
 

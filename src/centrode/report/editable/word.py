@@ -23,8 +23,6 @@ from centrode.report.editable.tree import (
     Element,
     cell_of,
     displayed,
-    paragraph,
-    plain_text,
     raw_block,
     raw_inline,
     styled,
