@@ -200,6 +200,17 @@ def test_citations_are_read(text: str, numbers: list[int]) -> None:
 # PDF
 
 
+@pytest.mark.drawn
+@pytest.mark.parametrize("language", ["ru", "uk"])
+def test_no_page_of_a_note_is_half_empty_unless_a_chapter_ends(language: str) -> None:
+    chapters = ("data", "structure", "derivation", "tables", "plots", "positions", "rotatability", "flywheel")
+    mechanism = ct.read_mechanism(EXAMPLES / f"press-note-{language}.toml")
+    made = ct.report(mechanism, ct.ReportOptions(chapters=chapters, full=False), language=language)
+    found = PdfFile(pdf_document(made))
+    assert len(found.pages) > 15
+    assert found.half_empty_pages == []
+
+
 def test_the_title_page_has_what_is_given_and_no_number(pdf: PdfFile, note: Report) -> None:
     page = note.title_page
     assert page is not None

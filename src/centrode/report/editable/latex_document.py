@@ -83,6 +83,8 @@ STANDARD_PAGE = r"""\usepackage{setspace,indentfirst,fancyhdr,titlesec,caption}
 """
 """What notes by a standard have in their preamble besides: numbers of pages and headings, captions, spaces."""
 
+NUMBERED_PART = r"\titleformat{\section}[block]{\normalfont\bfseries}{\thesection}{1ex}{}"
+
 
 def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, bytes]]:
     """A report as LaTeX, and its figures as PDF by their names.
@@ -138,9 +140,12 @@ def _page(report: Report, words: Sequence[str]) -> str:
     style = page_style(report.standard)
     figure, table = words
     place = "\\fancyhead[R]{\\thepage}" if style.number == "top-right" else "\\fancyfoot[C]{\\thepage}"
+    preamble = STANDARD_PAGE
+    if style.capital_parts:
+        preamble = preamble.replace(NUMBERED_PART, f"{NUMBERED_PART[:-1]}\\MakeUppercase}}")
     return (
         f"\\geometry{{left={style.left:g}mm,right={style.right:g}mm,top={style.top:g}mm,bottom={style.bottom:g}mm}}\n"
-        f"\\setlength{{\\headheight}}{{17pt}}\n{STANDARD_PAGE}{place}\n"
+        f"\\setlength{{\\headheight}}{{17pt}}\n{preamble}{place}\n"
         f"\\setlength{{\\parindent}}{{{style.indent:g}mm}}\n"
         f"\\AtBeginDocument{{\\renewcommand{{\\figurename}}{{{figure}}}\\renewcommand{{\\tablename}}{{{table}}}}}\n"
     )

@@ -366,9 +366,9 @@ def styles_of(standard: Standard, is_note: bool) -> Mapping[str, str]:
             "TableCaption": _style(
                 "TableCaption", TABLE_CAPTION, "Caption", '<w:keepNext/><w:jc w:val="left"/>', "", own=True
             ),
-            "Heading1": _heading(1, style.size, 12).replace(
-                "<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>"
-            ),
+            "Heading1": _heading(1, style.size, 12)
+            .replace("<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>")
+            .replace("<w:b/>", "<w:b/><w:caps/>" if style.capital_parts else "<w:b/>"),
             "Heading2": _heading(2, style.size, 12),
             "Heading3": _heading(3, style.size, 12),
             "Table": styles["Table"]
