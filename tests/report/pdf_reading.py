@@ -65,9 +65,7 @@ class PdfFile:
             full = {number: _filled(page) for number, page in enumerate(document, start=1)}
         last = max(full)
         return [
-            number
-            for number in range(min(begins), last)
-            if full[number] < 0.5 and number + 1 not in begins
+            number for number in range(min(begins), last) if full[number] < 0.5 and number + 1 not in begins
         ]
 
     @cached_property
