@@ -240,6 +240,31 @@ def test_task_contents_and_chapters_follow_each_other(pdf: PdfFile, note: Report
     assert pages[0] == 1
 
 
+def test_titles_of_parts_are_in_capitals_by_dstu(pdf: PdfFile, note: Report) -> None:
+    capital, plain = {
+        "ru": ("1 ИСХОДНЫЕ ДАННЫЕ", "1 Исходные данные"),
+        "uk": ("1 ВИХІДНІ ДАНІ", "1 Вихідні дані"),
+    }[note.language]
+    chapter = next(page for page in pdf.pages[3:] if capital in page or f"{plain}\n" in page)
+    assert (capital in chapter) == (note.standard == "dstu")
+    styles = zipfile.ZipFile(io.BytesIO(word_document(by_hand(standard=note.standard)))).read(
+        "word/styles.xml"
+    )
+    (heading,) = re.findall(rb'<w:style [^>]*w:styleId="Heading1".*?</w:style>', styles, re.DOTALL)
+    assert bool(re.search(rb"<w:caps ?/>", heading)) == (note.standard == "dstu")
+    source = latex_document(by_hand(standard=note.standard), "figures")[0].decode()
+    assert (r"{\thesection}{1ex}{\MakeUppercase}" in source) == (note.standard == "dstu")
+
+
+def test_the_appendix_is_named_in_the_last_chapter(note: Report) -> None:
+    last = [chapter for chapter in note.chapters if chapter.role == "chapter"][-1].sections[-1].blocks[-1]
+    words = {
+        "ru": "Проверки результатов собраны в приложении А.",
+        "uk": "Перевірки результатів зібрано в додатку А.",
+    }
+    assert last == ParagraphBlock(words[note.language])
+
+
 def test_figures_and_tables_are_called_as_the_standards_call_them(pdf: PdfFile, note: Report) -> None:
     figure, table = {"ru": ("Рисунок", "Таблица"), "uk": ("Рисунок", "Таблиця")}[note.language]
     assert re.search(rf"{figure}\s1 – \S", pdf.text)
