@@ -10,9 +10,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pypdfium2
 from pypdfium2 import raw
 
+BAND = 1 / 12
+"""Of the height of a page: a blank band that belongs to what is around it."""
 STANDARD = re.compile(rb"<pdf(a|ua)id:(part|conformance)>(\w)<")
 
 
@@ -51,6 +54,21 @@ class PdfFile:
             return [entry.get_title() for entry in document.get_toc()]
 
     @cached_property
+    def half_empty_pages(self) -> list[int]:
+        """Numbers of the pages less than half full on which no chapter ends, of those from the first chapter on.
+
+        A page is as full as its text is high, blank bands of more than a twelfth of it left out.
+        """
+        with self._opened() as document:
+            entries = [one for one in document.get_toc(max_depth=15) if one.level == 0]
+            begins = {one.get_dest().get_index() + 1 for one in entries}
+            full = {number: _filled(page) for number, page in enumerate(document, start=1)}
+        last = max(full)
+        return [
+            number for number in range(min(begins), last) if full[number] < 0.5 and number + 1 not in begins
+        ]
+
+    @cached_property
     def title(self) -> str:
         with self._opened() as document:
             return str(document.get_metadata_value("Title"))
@@ -87,6 +105,18 @@ class PdfFile:
                 boxes = [text.get_rect(k) for k in range(text.count_rects())]
                 found += [(*box, text.get_text_bounded(*box)) for box in boxes]
         return found
+
+
+def _filled(page: Any) -> float:
+    """The share of the height of a page that is filled, its head and foot left out."""
+    grey = np.atleast_3d(page.render(scale=0.5, grayscale=True).to_numpy())[..., 0]
+    height = len(grey)
+    text = grey[int(height * 19 / 297) : int(height * 278 / 297)]
+    inked = np.flatnonzero((text < 200).any(axis=1))
+    if not inked.size:
+        return 0.0
+    gaps = np.diff(np.concatenate([[0], inked])) / len(text)
+    return float(inked[-1] / len(text) - (gaps - BAND)[gaps > BAND].sum())
 
 
 def _descriptions(page: Any, kind: str) -> Iterator[str]:

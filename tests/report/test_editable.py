@@ -18,12 +18,15 @@ import centrode as ct
 from centrode.errors import InputError
 from centrode.locale import speaking
 from centrode.render.document.blocks import (
+    ChapterBlocks,
     FormulaBlock,
     ItemsBlock,
     Moving,
+    ParagraphBlock,
     Picture,
     ProseBlock,
     Report,
+    SectionBlocks,
     SystemBlock,
     TableBlock,
     shown,
@@ -229,6 +232,34 @@ def test_wide_tables_are_dealt_to_several_that_begin_with_the_first_column() -> 
     assert [name for names in columns for name in names[1:]] == list(heads[1:])
 
 
+def test_further_parts_of_a_table_name_it_and_have_no_number() -> None:
+    head = tuple(f"long words {k}" for k in range(14))
+    wide = TableBlock(head, (("1234.5678",) * 14,) * 3, "Wide", (True,) * 14)
+    narrow = TableBlock(("a", "b"), (("1", "2"),), "Narrow")
+    report = Report(
+        "T", "", "en", (ChapterBlocks("one", "One", (SectionBlocks("", (wide, narrow)),)),), standard="gost"
+    )
+    document = docx.Document(io.BytesIO(word_document(report)))
+    captions = [
+        (one.text, "SEQ Table" in one._p.xml)
+        for one in document.paragraphs
+        if one.style is not None and one.style.name == "Table Caption"
+    ]
+    assert captions == [
+        ("Table  – Wide", True),
+        ("Table 1, continued", False),
+        ("Table  – Narrow", True),
+    ]
+    assert all(table.rows[0]._tr.xpath("w:trPr/w:tblHeader") for table in document.tables)
+    source = latex_document(report, "figures")[0].decode()
+    # what further pages repeat, of tables with numbers
+    assert re.findall(
+        r"\\endfirsthead\n\\multicolumn\{(\d+)\}\{@\{\}l@\{\}\}\{Table \\thetable\{\}, continued\}", source
+    ) == ["8", "2"]
+    assert source.count("Table 1, continued") == 1
+    assert source.count(r"\caption{") == 2
+
+
 def test_the_same_report_gives_the_same_bytes() -> None:
     report = crank_rocker("en")
     first = word_document(report)
@@ -270,7 +301,8 @@ def test_own_text_stands_before_and_after_its_chapter() -> None:
     assert [section.written for section in sections][:: len(sections) - 1] == ["before", "after"]
     aim = sections[0]
     assert aim.title == "Aim"
-    words, items, table = aim.blocks
+    words, items, named, table = aim.blocks
+    assert named == ParagraphBlock("See table 1.")
     assert isinstance(words, ProseBlock)
     assert isinstance(items, ProseBlock)
     assert isinstance(table, TableBlock)

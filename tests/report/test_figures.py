@@ -51,9 +51,9 @@ def test_numbers_have_the_mark_of_the_language(language: str, mark: str) -> None
     assert figure.get_suptitle() == TITLE  # what a user wrote
 
 
-@pytest.mark.parametrize("rows", [1, 2, 3])
+@pytest.mark.parametrize("rows", [1, 2, 3, 4])
 @pytest.mark.parametrize("label", ["v, m/s", "moment that the drive gives for the inertia of all links, N m"])
-def test_curves_are_half_a_page_high_and_their_labels_apart(rows: int, label: str) -> None:
+def test_curves_leave_room_for_others_and_their_labels_are_apart(rows: int, label: str) -> None:
     figure = curves(rows, label)
     picture(figure, "")
     width, height = figure.get_size_inches()
@@ -71,7 +71,7 @@ def test_drawings_and_many_panels_keep_their_size() -> None:
     drawing = curves(1)
     drawing.set_figheight(7.0)
     drawing.axes[0].set_aspect("equal")
-    many = curves(4)
+    many = curves(5)
     for figure in (drawing, many):
         before = tuple(figure.get_size_inches())
         picture(figure, "")

@@ -135,6 +135,17 @@ def test_formulas_are_those_of_the_equations() -> None:
         assert told == systems
 
 
+@pytest.mark.parametrize("name", ["six-bar-press", "slider-between-cranks", "geared-five-bar", "wiper"])
+def test_each_rate_is_given_once(name: str) -> None:
+    mechanism = ct.example(name)
+    found = chapter("derivation", mechanism, instants=(mechanism.motion_parameter.drives[0].value_of(0.3),))
+    numbers = next(section for section in found.sections if section.title.startswith("Numbers at"))
+    lefts = [line[0] for block in numbers.blocks if isinstance(block, FormulaBlock) for line in block.lines]
+    rates = [left for left in lefts if left.startswith("omega_")]
+    assert rates
+    assert len(set(rates)) == len(rates)
+
+
 def test_angles_stand_in_degrees_where_these_are_shown() -> None:
     lines = lines_of(chapter("derivation", ct.example("six-bar-press")))
     rates = [line[-1] for line in lines if line[0] == "omega_(2)" and "rad/s" in line[-1]]

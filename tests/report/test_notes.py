@@ -16,19 +16,24 @@ import centrode as ct
 from centrode.model.cam_files import cam_text
 from centrode.render.document.blocks import (
     ChapterBlocks,
+    Moving,
     ParagraphBlock,
     Picture,
+    ProseBlock,
+    ReferenceBlock,
     Report,
     SectionBlocks,
     TableBlock,
     TitlePageBlocks,
 )
 from centrode.render.document.outline import outline_of
+from centrode.report.citations import cited_numbers
 from centrode.report.editable.latex_document import latex_document
 from centrode.report.editable.word import word_document
 from centrode.report.html.page import html_page
 from centrode.report.notebook_document import notebook_document
 from centrode.report.pdf_document import pdf_document
+from centrode.report.texts import blocks_of
 
 from .made import svg
 from .pdf_reading import PdfFile
@@ -132,7 +137,78 @@ def test_headings_are_numbered_through_parts() -> None:
     ]
 
 
+# What the text names
+
+
+def test_every_table_and_figure_is_named_in_the_text(note: Report) -> None:
+    text = " ".join(re.sub(r"\s+", " ", one) for one in told(note))
+    blocks = list(blocks_of(note))
+    for kind, word in ((TableBlock, "табли"), ((Picture, Moving), "рисун")):
+        numbers = {block.number for block in blocks if isinstance(block, kind) and block.number}
+        named = set()
+        for first, joint, last in re.findall(rf"{word}\w+ (\d+)(?:( і | и |–)(\d+))?", text):
+            named |= (
+                set(range(int(first), int(last) + 1)) if joint == "–" else {int(first), int(last or first)}
+            )
+        assert numbers
+        assert named >= numbers, numbers - named
+
+
+def told(report: Report) -> list[str]:
+    """What sentences say."""
+    return [block.text for block in blocks_of(report) if isinstance(block, ParagraphBlock | ReferenceBlock)]
+
+
+def test_every_source_is_cited(note: Report) -> None:
+    (listed,) = next(chapter for chapter in note.chapters if chapter.name == "sources").sections[0].blocks
+    assert isinstance(listed, ProseBlock)
+    spans = (
+        span.text
+        for block in blocks_of(note)
+        if isinstance(block, ProseBlock)
+        for one in block.paragraphs
+        for span in one
+    )
+    text = " ".join([*told(note), *spans])
+    assert {number for number in cited_numbers(text)} == set(range(1, len(listed.paragraphs) + 1))
+    # its author cites them all, so that no sentence has to
+    assert not re.search("Использованная литература|Використана література", text)
+
+
+def test_sources_that_the_author_does_not_cite_are_named_after_the_introduction() -> None:
+    note = "".join(f'"Book {k}.", ' for k in range(1, 5))
+    text = ct.mechanism_text(ct.example("crank-rocker")) + (
+        f'\n[report]\nintroduction = "As [2] and [4, p. 7] have it."\nsources = [{note}]\n'
+    )
+    made = ct.report(ct.parse_mechanism(text), ct.ReportOptions(chapters=("structure",)), language="en")
+    assert made.chapters[0].name == "introduction"
+    last = made.chapters[0].sections[-1].blocks[-1]
+    assert last == ParagraphBlock("Literature used: [1], [3].")
+    without = text.replace('introduction = "As [2] and [4, p. 7] have it."', "")
+    made = ct.report(ct.parse_mechanism(without), ct.ReportOptions(chapters=("structure",)), language="en")
+    assert made.chapters[0].sections[0].blocks == (ParagraphBlock("Literature used: [1], [2], [3], [4]."),)
+
+
+@pytest.mark.parametrize(
+    ("text", "numbers"),
+    [("[1]", [1]), ("[1, 3]", [1, 3]), ("[2, с. 15]", [2]), ("[1–3; 5]", [1, 2, 3, 5]), ("x[i] [a1]", [])],
+)
+def test_citations_are_read(text: str, numbers: list[int]) -> None:
+    assert list(cited_numbers(text)) == numbers
+
+
 # PDF
+
+
+@pytest.mark.drawn
+@pytest.mark.parametrize("language", ["ru", "uk"])
+def test_no_page_of_a_note_is_half_empty_unless_a_chapter_ends(language: str) -> None:
+    chapters = ("data", "structure", "derivation", "tables", "plots", "positions", "rotatability", "flywheel")
+    mechanism = ct.read_mechanism(EXAMPLES / f"press-note-{language}.toml")
+    made = ct.report(mechanism, ct.ReportOptions(chapters=chapters, full=False), language=language)
+    found = PdfFile(pdf_document(made))
+    assert len(found.pages) > 15
+    assert found.half_empty_pages == []
 
 
 def test_the_title_page_has_what_is_given_and_no_number(pdf: PdfFile, note: Report) -> None:
@@ -162,6 +238,31 @@ def test_task_contents_and_chapters_follow_each_other(pdf: PdfFile, note: Report
     pages = [next(k for k, page in enumerate(pdf.pages) if word in page) for word in words]
     assert pages == sorted(set(pages))
     assert pages[0] == 1
+
+
+def test_titles_of_parts_are_in_capitals_by_dstu(pdf: PdfFile, note: Report) -> None:
+    capital, plain = {
+        "ru": ("1 ИСХОДНЫЕ ДАННЫЕ", "1 Исходные данные"),
+        "uk": ("1 ВИХІДНІ ДАНІ", "1 Вихідні дані"),
+    }[note.language]
+    chapter = next(page for page in pdf.pages[3:] if capital in page or f"{plain}\n" in page)
+    assert (capital in chapter) == (note.standard == "dstu")
+    styles = zipfile.ZipFile(io.BytesIO(word_document(by_hand(standard=note.standard)))).read(
+        "word/styles.xml"
+    )
+    (heading,) = re.findall(rb'<w:style [^>]*w:styleId="Heading1".*?</w:style>', styles, re.DOTALL)
+    assert bool(re.search(rb"<w:caps ?/>", heading)) == (note.standard == "dstu")
+    source = latex_document(by_hand(standard=note.standard), "figures")[0].decode()
+    assert (r"{\thesection}{1ex}{\MakeUppercase}" in source) == (note.standard == "dstu")
+
+
+def test_the_appendix_is_named_in_the_last_chapter(note: Report) -> None:
+    last = [chapter for chapter in note.chapters if chapter.role == "chapter"][-1].sections[-1].blocks[-1]
+    words = {
+        "ru": "Проверки результатов собраны в приложении А.",
+        "uk": "Перевірки результатів зібрано в додатку А.",
+    }
+    assert last == ParagraphBlock(words[note.language])
 
 
 def test_figures_and_tables_are_called_as_the_standards_call_them(pdf: PdfFile, note: Report) -> None:
@@ -200,7 +301,7 @@ def test_enumerations_have_brackets_and_sources_full_stops(pdf: PdfFile, note: R
 def test_units_of_the_conclusions_are_whole(pdf: PdfFile, note: Report) -> None:
     title = {"ru": "ЗАКЛЮЧЕНИЕ", "uk": "ВИСНОВКИ"}[note.language]
     page = next(page for page in pdf.pages if title in page).replace("\r", "")
-    assert re.search(r"\d\u00a0м/\u2060с", page)
+    assert re.search(r"\d[\u00a0\u202f ]м/с", page)
     assert not re.search(r"/\s*\n|\d\s*\n\s*(м|Н|кг|рад|Дж)\b", page)
 
 

@@ -13,6 +13,8 @@ from centrode.locale import speaking
 from centrode.model.settings import Display
 from centrode.quantities import spelled_unit
 from centrode.render.document.numbers import MINUS, Numbers
+from centrode.render.document.spelling import DocumentSpelling
+from centrode.sheets.texts import Number
 
 FINITE = st.floats(-1e9, 1e9, allow_subnormal=False)
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -95,3 +97,17 @@ def test_names_of_units() -> None:
     assert [spelled_unit(unit) for unit in ("kg m^2", "deg/s", "1", "", "um")] == [
         *("kg·m²", "°/s", "", "", "µm"),
     ]
+
+
+@given(st.floats(1.0, 9.9), st.integers(2, 5))
+def test_one_number_is_rounded_once_wherever_it_stands(value: float, digits: int) -> None:
+    spelling = DocumentSpelling(numbers(digits))
+    told = spelling.number(Number(value, "1", digits=".7f"))  # more digits than the document has
+    assert told == spelling.number(Number(value, "1", digits=""))
+
+
+def test_an_angle_on_the_edge_of_two_roundings_is_the_same_everywhere() -> None:
+    place = 114.84500001  # 114.845 to six digits, which as a float is rounded down
+    spelling = DocumentSpelling(numbers(5))
+    assert spelling.number(Number(place, "1", digits=".6g")) == spelling.number(Number(place, "1", digits=""))
+    assert spelling.number(Number(place, "1", digits=".6g")) == "114.85"

@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from centrode.model.page_standards import Standard
 from centrode.render.document.blocks import (
     ChapterBlocks,
     FormulaBlock,
     ParagraphBlock,
+    Picture,
     ReferenceBlock,
     Report,
     SectionBlocks,
@@ -20,7 +22,7 @@ from centrode.render.document.blocks import (
 )
 from centrode.report.pdf_document import Source, pdf_document
 
-from .made import HOSTILE, report
+from .made import HOSTILE, report, svg
 from .pdf_reading import PdfFile
 
 WIDTH, HEIGHT, MARGIN = 595.28, 841.89, 56.69
@@ -63,7 +65,7 @@ def test_heads_of_tables_are_repeated_and_columns_shared_out(document: PdfFile) 
 @pytest.mark.parametrize(("language", "word"), [("ru", "механизм"), ("uk", "механізм")])
 def test_text_can_be_searched(language: str, word: str) -> None:
     chapter = ChapterBlocks("a", word.capitalize(), (SectionBlocks("", (ParagraphBlock(f"Це {word}."),)),))
-    (_contents, page) = pages_of(chapter, title=word, language=language)
+    (page,) = pages_of(chapter, title=word, language=language)
     assert word in page
     assert "Таблица" not in page
 
@@ -80,15 +82,76 @@ def test_the_bytes_repeat_in_another_process() -> None:
     assert done.stdout == pdf_document(report())
 
 
-def test_long_contents_share_a_page_with_the_first_chapter() -> None:
-    for count, page in ((3, 1), (60, 1)):
+def test_contents_share_their_last_page_with_the_first_chapter() -> None:
+    for count, page in ((3, 0), (60, 1)):
         chapters = tuple(
             ChapterBlocks(f"c{k}", f"Chapter {k}", (SectionBlocks("", (ParagraphBlock(f"begin{k}"),)),))
             for k in range(count)
         )
         pages = pages_of(*chapters)
         assert "begin0" in pages[page], count
-        assert bool(re.search(r"Chapter 59\s*\.", pages[page])) == (count > 50)  # the end of the contents
+        assert re.search(rf"Chapter {count - 1}\s*\.", pages[page])  # the end of the contents
+
+
+def rows_of(page: str) -> list[int]:
+    return [int(number) for number in re.findall(r"\brow(\d+)\b", page)]
+
+
+@pytest.mark.parametrize(
+    ("language", "line"),
+    [("en", "Table 1, continued"), ("ru", "Продолжение таблицы 1"), ("uk", "Продовження таблиці 1")],
+)
+@pytest.mark.parametrize("standard", ["plain", "gost", "dstu"])
+def test_a_table_that_runs_over_a_page_is_continued_by_name(
+    language: str, line: str, standard: Standard
+) -> None:
+    rows = tuple((f"row{k}", "1") for k in range(120))
+    table = TableBlock(("head", "b"), rows, "Rows", number=1)
+    chapter = ChapterBlocks("a", "A", (SectionBlocks("", (ParagraphBlock("Words."), table)),))
+    report = Report("T", "", language, (chapter,), standard=standard)
+    pages = [page for page in PdfFile(pdf_document(report)).pages if rows_of(page)]
+    assert len(pages) > 1
+    assert [page.count(line) for page in pages] == [0] + [1] * (len(pages) - 1)
+    assert all("head" in page for page in pages)
+    assert [row for page in pages for row in rows_of(page)] == list(range(120))
+    assert all(page.index(line) < page.index("head") for page in pages[1:])
+
+
+def test_parts_of_a_wide_table_are_continued_by_name() -> None:
+    table = TableBlock(
+        tuple(f"column{k}" for k in range(30)), (("123.4567",) * 30,) * 3, "Wide", (True,) * 30, number=1
+    )
+    (page,) = pages_of(ChapterBlocks("a", "A", (SectionBlocks("", (table,)),)))
+    parts = len(re.findall(r"\bcolumn0\b", page))
+    assert parts > 1
+    assert page.count("Table 1, continued") == parts - 1
+
+
+def test_no_row_stands_alone_on_the_last_page_of_a_table() -> None:
+    for count in range(34, 48):
+        rows = tuple((f"row{k}", "1") for k in range(count))
+        table = TableBlock(("a", "b"), rows, "Rows", number=1)
+        pages = pages_of(ChapterBlocks("a", "A", (SectionBlocks("", (ParagraphBlock("Words."), table)),)))
+        assert all(len(rows_of(page)) != 1 for page in pages), count
+
+
+def test_figures_stand_before_the_next_chapter() -> None:
+    tall = Picture(svg(400, 420), "Tall", 6.0)
+    words = ParagraphBlock("word " * 350)
+    chapters = (
+        ChapterBlocks("a", "First", (SectionBlocks("", (words, tall, tall)),)),
+        ChapterBlocks("b", "Second", (SectionBlocks("", (ParagraphBlock("after " * 100),)),)),
+    )
+    text = "\n".join(pages_of(*chapters))
+    assert text.rindex("Tall") < text.index("after")
+
+
+def test_a_number_and_its_unit_stay_on_one_line() -> None:
+    for width in range(1, 40):
+        words = "a" * width + " " + " ".join(f"{k} 1.5 rad/s" for k in range(60))
+        (page,) = pages_of(ChapterBlocks("a", "A", (SectionBlocks("", (ParagraphBlock(words),)),)))
+        assert not re.search(r"1\.5\s*\n\s*rad|rad/\s*\n", page), width
+        assert re.search(r"1\.5\Drad/s", page)
 
 
 @pytest.mark.parametrize("titled", [True, False])

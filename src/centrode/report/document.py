@@ -18,7 +18,7 @@ from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import ChapterText
 from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
-from centrode.render.document.numbering import caption_blocks, number_blocks, refer_to_figures
+from centrode.render.document.numbering import caption_blocks, number_blocks, refer_to_captions
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
@@ -99,7 +99,7 @@ def report_of_study(study: ReportStudy, name: str = "", said: Said | None = None
     subtitle = _("Computed by centrode {version}").format(version=__version__)
     language = chosen_language()
     made = Report(title, subtitle, language, caption_blocks(chapters), opening, _description_text(study))
-    made = refer_to_figures(number_blocks(made))
+    made = refer_to_captions(number_blocks(made))
     if is_note:
         made = as_note(made, note, functools.partial(_prose_sections, place="before"))
     settled = standard_of(standard, is_note, language)

@@ -22,6 +22,9 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
+from centrode.render.document.numbering import reference
+from centrode.render.document.outline import letters_of
+from centrode.report.citations import cite_sources
 from centrode.topics.order import PARTS
 
 CONCLUSIONS, CHECKS, SOURCES = "conclusions", "checks", "sources"
@@ -58,6 +61,7 @@ def as_note(report: Report, note: ExplanatoryNote, sections: Sections) -> Report
         *_sources(note.sources),
         *checks,
     )
+    chapters = _with_reference_to_checks(cite_sources(chapters, len(note.sources)), report.language)
     title = page.title if page is not None and page.title else report.title
     return replace(
         report,
@@ -67,6 +71,20 @@ def as_note(report: Report, note: ExplanatoryNote, sections: Sections) -> Report
         title_page=None if page is None else _title_page(page, title),
         is_note=True,
     )
+
+
+def _with_reference_to_checks(
+    chapters: tuple[ChapterBlocks, ...], language: str
+) -> tuple[ChapterBlocks, ...]:
+    """Chapters whose last numbered one says where the checks are; as they are without the appendix."""
+    places = [place for place, chapter in enumerate(chapters) if chapter.role == "chapter"]
+    if not places or not any(chapter.role == "appendix" for chapter in chapters):
+        return chapters
+    text = _("Appendix {letter} gathers the checks of the results.").format(letter=letters_of(language)[0])
+    last = places[-1]
+    chapter = chapters[last]
+    sections = (*chapter.sections, SectionBlocks("", (ParagraphBlock(text),)))
+    return (*chapters[:last], replace(chapter, sections=sections), *chapters[last + 1 :])
 
 
 def with_capital_heads(report: Report) -> Report:
@@ -139,7 +157,8 @@ def _referred(opening: tuple[Block, ...]) -> tuple[Block, ...]:
     figures = [block for block in opening if isinstance(block, Picture) and block.number]
     if not figures:
         return opening
-    return (ParagraphBlock(_("See figure {number}.").format(number=figures[0].number)), *opening)
+    number = figures[0].number
+    return (ParagraphBlock(reference("figure", number, number)), *opening)
 
 
 def _title_page(page: TitlePage, title: str) -> TitlePageBlocks:

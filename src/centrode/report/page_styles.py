@@ -21,6 +21,7 @@ class PageStyle:
     leading : between lines, in sizes of letters
     number : where the number of a page stands
     by_standard : headings and captions as the standards have them
+    capital_parts : titles of numbered parts are set in capitals, as those without numbers are
     """
 
     left: float
@@ -33,6 +34,7 @@ class PageStyle:
     leading: float
     number: Literal["bottom", "top-right"]
     by_standard: bool = True
+    capital_parts: bool = False
 
     @property
     def separator(self) -> str:
@@ -54,13 +56,14 @@ class PageStyle:
             "number-place": f'"{self.number}"',
             "caption-separator": f'"{self.separator}"',
             "by-standard": "true" if self.by_standard else "false",
+            "capital-parts": "true" if self.capital_parts else "false",
         }
         return "".join(f"#let {name} = {value}\n" for name, value in values.items())
 
 
 PLAIN = PageStyle(20, 20, 17, 20, 10, (8.6, 8.2, 7.5), 0, 0.6, "bottom", by_standard=False)
 GOST = PageStyle(30, 15, 20, 20, 14, (12, 11, 10), 12.5, 1.05, "bottom")
-DSTU = PageStyle(30, 10, 20, 20, 14, (12, 11, 10), 12.5, 1.05, "top-right")
+DSTU = PageStyle(30, 10, 20, 20, 14, (12, 11, 10), 12.5, 1.05, "top-right", capital_parts=True)
 
 
 def page_style(standard: Standard) -> PageStyle:

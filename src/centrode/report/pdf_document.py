@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -12,7 +13,8 @@ from typing import Any
 
 import typst
 
-from centrode.locale import _, speaking
+from centrode.locale import LANGUAGES, _, chosen_language, speaking
+from centrode.quantities import UNIT_SYMBOLS
 from centrode.render.document.blocks import (
     Block,
     CheckBlock,
@@ -32,6 +34,7 @@ from centrode.render.document.blocks import (
 )
 from centrode.render.document.figures import picture_width
 from centrode.render.document.numbering import number_blocks
+from centrode.render.document.numbers import NO_BREAK
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.render.document.typst import quote
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
@@ -47,8 +50,8 @@ ANNOUNCEMENT = 160
 """Letters of a paragraph that may be there only for the formula, table or picture behind it."""
 LONGEST_WHOLE = 600
 """Characters from which on a cell may break between pages."""
-FIRST_PAGE, TITLE_LINE = 38, 30
-"""Lines of contents that the first page holds below a title, and letters of a line of the title."""
+LONGEST_NUMBER = 24
+"""Characters of a number that is not parted from its unit."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 
@@ -84,8 +87,7 @@ class Source:
         yield (
             f"#show: document.with(title: {quote(report.title)}, subtitle: {quote(report.subtitle)},"
             f" language: {quote(report.language)}, contents: {quote(contents)},"
-            f" opening: {opening},"
-            f" long: {'true' if _lines_of_contents(report) > FIRST_PAGE else 'false'}"
+            f" opening: {opening}"
             f"{note})"
         )
         for one in outline:
@@ -161,7 +163,7 @@ class Source:
     @_shown.register
     def _reference(self, block: ReferenceBlock) -> str:
         pieces = (
-            f"#formula-number({one});" if isinstance(one, int) else f"#{quote(one)};" for one in block.pieces
+            f"#formula-number({one});" if isinstance(one, int) else _joined(one) for one in block.pieces
         )
         return f"#par([{''.join(pieces)}])"
 
@@ -174,7 +176,9 @@ class Source:
         rows = [_array([_cell(cell) for cell in row]) for row in block.rows]
         # A row that no page could hold has to be torn.
         whole = "true" if all(len(cell) < LONGEST_WHOLE for row in block.rows for cell in row) else "false"
-        return f"#data-table({_array(columns)}, {_array(rows)}, {_caption(block.caption)}, {block.number}, {whole})"
+        continued = quote(_("Table {number}, continued").format(number=block.number))
+        given = (_array(columns), _array(rows), _caption(block.caption), f"{block.number}", whole, continued)
+        return f"#data-table({', '.join(given)})"
 
     @_shown.register
     def _picture(self, block: Picture, floats: bool = True) -> str:
@@ -250,12 +254,6 @@ def _cover(page: TitlePageBlocks | None) -> str:
     return f"title-page({_strings(page.head)}, {', '.join(map(quote, lines))}, {people}, {quote(page.foot)})"
 
 
-def _lines_of_contents(report: Report) -> int:
-    """About how many lines the contents have; a line of the title takes the room of two."""
-    sections = sum(bool(section.title) for chapter in report.chapters for section in chapter.sections)
-    return len(report.chapters) + sections + 2 * (len(report.title) // TITLE_LINE)
-
-
 def _announces(blocks: Sequence[Block]) -> bool:
     """Whether the first of these is a line that would be lost at the foot of a page without what it announces.
 
@@ -277,15 +275,56 @@ def _announces(blocks: Sequence[Block]) -> bool:
 def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
     parts = [
-        f"#{_inline(part.text)};" if part.mathematics else f"#{quote(part.text)};"
-        for part in parts_of(marked)
+        f"#{_inline(part.text)};" if part.mathematics else _joined(part.text) for part in parts_of(marked)
     ]
     return f"[{''.join(parts)}]"
 
 
+@functools.cache
+def _measured_quantity(language: str) -> re.Pattern[str]:
+    """A number, the blank behind it, and its unit."""
+    place = LANGUAGES.index(language)
+    symbols = sorted({re.escape(names[place]) for names in UNIT_SYMBOLS.values()}, key=len, reverse=True)
+    unit = f"(?:{'|'.join(symbols)})[²³⁴]?"
+    digits = "\\d⁰¹²³⁴-⁹"
+    number = rf"[−+-]?[{digits}.,·⁻]{{0,{LONGEST_NUMBER}}}[{digits}]"
+    return re.compile(rf"({number})([ \u00a0\u202f])({unit}(?:[·/]{unit})*)(?!\w)")
+
+
+def _whole_quantities(text: str) -> list[str]:
+    """Pieces of a text as typst's strings: a number stays on one line with its unit, a unit whole."""
+    found: list[str] = []
+    end = 0
+    for one in _measured_quantity(chosen_language()).finditer(text):
+        quantity = _kept_together(one)
+        before = text[end : one.start()]
+        if "/" in quantity:
+            found += [quote(before), f"box({quote(quantity)})"]
+        else:
+            found.append(quote(before + quantity))
+        end = one.end()
+    return [*found, quote(text[end:])] if end < len(text) or not found else found
+
+
+def _kept_together(quantity: re.Match[str]) -> str:
+    """A number and its unit without a blank at which a line may end."""
+    number, gap, unit = quantity.groups()
+    return f"{number}{NO_BREAK if gap == ' ' else gap}{unit}"
+
+
+def _with_units(text: str) -> str:
+    """A text whose numbers keep their units."""
+    return _measured_quantity(chosen_language()).sub(_kept_together, text)
+
+
+def _joined(text: str) -> str:
+    """A text as content between brackets."""
+    return "".join(f"#{piece};" for piece in _whole_quantities(text))
+
+
 def _span(span: Span) -> str:
     """A stretch of a user's text as content."""
-    shown = f"raw({quote(span.text)})" if span.code else f"text({quote(span.text)})"
+    shown = f"raw({quote(span.text)})" if span.code else f"[{_joined(span.text)}]"
     shown = f"emph({shown})" if span.emphasized else shown
     return f"#{f'strong({shown})' if span.strong else shown};"
 
@@ -303,7 +342,10 @@ def _inline(formula: str) -> str:
 def _cell(text: str) -> str:
     """A cell of a table: text without mathematics is a string, which typst reads much faster."""
     parts = parts_of(text)
-    return content(text) if any(part.mathematics for part in parts) else quote("".join(p.text for p in parts))
+    if any(part.mathematics for part in parts):
+        return content(text)
+    pieces = _whole_quantities("".join(part.text for part in parts))
+    return pieces[0] if len(pieces) == 1 else content(text)
 
 
 def _caption(text: str) -> str:
@@ -348,13 +390,13 @@ def _column(head: str, cells: Sequence[str], number: bool) -> str:
 
 
 def _words(text: str) -> list[str]:
-    """Words of a text, and its formulas, each as content."""
+    """What of a text stands on one line: words, numbers with their units, formulas, each as content."""
     found = []
     for part in parts_of(text):
         if part.mathematics:
             found.append(_math(part.text))
         else:
-            found += [quote(word) for word in re.split(r"\s+", part.text) if word]
+            found += [quote(word) for word in re.split(r"[ \t\r\n]+", _with_units(part.text)) if word]
     return found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -499,12 +499,16 @@ class _Numbers:
         equations, instant = self.equations, self.instant
         yield Formula(tuple(self.angles()))
         if equations.together is not None and instant.together is not None:
-            yield from self.solved(equations.together, instant.together)
+            solutions = [(equations.together, instant.together)]
         else:
-            for group, solved in zip(equations.groups, instant.velocities, strict=True):
-                yield from self.solved(group.velocities, solved)
+            velocities = [group.velocities for group in equations.groups]
+            solutions = list(zip(velocities, instant.velocities, strict=True))
+        for solution, solved in solutions:
+            yield from self.solved(solution, solved)
+        # what determinants have given is not given again by the normal form
+        known = {letter for solution, _solved in solutions for letter in _given_by_determinants(solution)}
         for lines in (
-            [line for group in equations.groups for line in self.rates(group)],
+            [line for group in equations.groups for line in self.rates(group, known)],
             [line for group in equations.groups for line in self.accelerations(group)],
             [line for point in equations.points for line in self.velocity(point)],
         ):
@@ -579,11 +583,11 @@ class _Numbers:
             return ()
         return (FactoredFormula(formula, differences_first, turned, values),)
 
-    def rates(self, group: GroupEquations) -> Iterator[Line]:
-        """Cauchy's normal form with numbers."""
+    def rates(self, group: GroupEquations, known: Collection[Letter]) -> Iterator[Line]:
+        """Cauchy's normal form with numbers, of the rates that are not known yet."""
         for unknown, formula in zip(group.unknowns, group.normal_form or (), strict=False):
             inside = self.with_numbers(formula)
-            if inside:
+            if inside and unknown.rate not in known:
                 yield (_letter(unknown.rate), *inside, self.value(unknown.rate))
 
     def accelerations(self, group: GroupEquations) -> Iterator[Line]:
@@ -606,6 +610,13 @@ class _Numbers:
         for name, formula in parts:
             number = Number(self.instant.number(formula), f"{self.length}/s", unit_fixed=True)
             yield (_letter(name), *self.with_numbers(formula, turned=formula.single), number)
+
+
+def _given_by_determinants(solution: GroupSolution) -> tuple[Letter, ...]:
+    """The rates whose quotients of determinants a document shows with numbers."""
+    system = solution.system
+    shown = len(system.unknowns) > 1 and system.determinant is not None and system.numerators is not None
+    return tuple(system.unknowns) if shown else ()
 
 
 def _letters_in(term: SumTerm) -> int:

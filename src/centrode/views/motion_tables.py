@@ -168,7 +168,8 @@ def _coefficients_of_links(here: xarray.Dataset) -> Table:
         values = here[f"angular_{kind}_coefficient"]
         columns.append(_column(Expression("phi" + order * "'"), values, _unit(values), _greatest(values)))
     caption = Sentence(
-        "Kinematic coefficients of the links: derivatives of their angles by the value of the drive"
+        "Kinematic coefficients of the links: derivatives of their angles with respect to "
+        "the generalised coordinate"
     )
     return Table(tuple(columns), caption)
 
@@ -181,7 +182,8 @@ def _coefficients_of_points(here: xarray.Dataset) -> Table:
             head = Expression(axis + order * "'")
             columns.append(_column(head, values.sel(axis=axis), _unit(values), _greatest(values)))
     caption = Sentence(
-        "Kinematic coefficients of the points: derivatives of their coordinates by the value of the drive"
+        "Kinematic coefficients of the points: derivatives of their coordinates with respect to "
+        "the generalised coordinate"
     )
     return Table(tuple(columns), caption)
 

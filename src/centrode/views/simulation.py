@@ -92,17 +92,17 @@ PANELS = {
 }
 TITLES = {
     "simulation-speed": Sentence("Speed of the drive and the moments on it"),
-    "simulation-phase": Sentence("Speed over the value of the drive"),
+    "simulation-phase": Sentence("Speed over the generalised coordinate"),
     "simulation-energies": Sentence("Energies and works"),
     "simulation-angles": Sentence("Speed of the drive and angles over its value"),
 }
 CAPTIONS: dict[str, Text] = {
     "simulation-speed": Sentence("Speed and acceleration of the drive, and the moments on it, over time"),
-    "simulation-phase": Sentence("Speed over the value of the drive"),
+    "simulation-phase": Sentence("Speed over the generalised coordinate"),
     "simulation-energies": Sentence("Energies and works over time"),
     "simulation-angles": Sentence(
         "Speed of the drive, angle $gamma$ of the coupler to the path of its hinge and angle $psi$ of the driven link "
-        "over the value of the drive"
+        "over the generalised coordinate"
     ),
 }
 

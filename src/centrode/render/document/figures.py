@@ -23,9 +23,10 @@ from centrode.render.drawing.style import house_style
 from centrode.render.figures.document_canvas import DocumentCanvas
 from centrode.render.figures.files import METADATA, spell_decimals
 
-FLAT = {1: 0.33, 2: 0.42, 3: 0.5}
+FLAT = {1: 0.33, 2: 0.42, 3: 0.46, 4: 0.72}
 """Height of curves by their width, by the number of panels above each other: of one panel three figures with their
-captions find room on a page, of three panels two and some text. More panels could not be read at such a height."""
+captions find room on a page, of three panels three too, of four panels two. More panels could not be
+read at such a height."""
 LETTER_WITH_INDEX = re.compile(
     r"\{?(?P<letter>[A-Za-zΑ-ω]+)(?P<primes>'*)\}?(?:_(?:\{(?P<index>[^{}]+)\}|(?P<short>\w)))?"
 )

@@ -1,4 +1,4 @@
-"""Captions and numbers of tables, figures and formulas, and the sentences that refer to figures and formulas."""
+"""Captions and numbers of tables, figures and formulas, and the sentences that refer to them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import count, groupby
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from centrode.locale import _
 from centrode.render.document.blocks import (
@@ -25,6 +25,7 @@ from centrode.render.document.blocks import (
 )
 
 Captioned: TypeAlias = TableBlock | Picture | Moving
+Kind: TypeAlias = Literal["figure", "table"]
 
 
 def number_blocks(report: Report) -> Report:
@@ -144,29 +145,58 @@ def captioned_blocks(chapters: Sequence[ChapterBlocks]) -> Iterator[Captioned]:
             yield from (block for block in section.blocks if isinstance(block, Captioned))
 
 
-def refer_to_figures(report: Report) -> Report:
-    """The report with a sentence before each run of figures that names their numbers.
+def refer_to_captions(report: Report) -> Report:
+    """The report with a sentence before each run of tables, and of figures, that names their numbers.
 
-    On paper figures stand where there is room, so the text has to say which belong to it.
+    On paper figures stand where there is room, so the text has to say which belong to it; standards demand the same of
+    tables.
     """
     chapters = _change_sections(report.chapters, lambda section, _chapter: _with_references(section.blocks))
     return replace(report, chapters=chapters)
 
 
-def _with_references(blocks: Sequence[Block]) -> Iterator[Block]:
-    for figures, run in groupby(
-        blocks, lambda block: isinstance(block, Picture | Moving) and block.number > 0
-    ):
-        found = list(run)
-        if figures:
-            numbers = [block.number for block in found if isinstance(block, Picture | Moving)]
-            yield ParagraphBlock(_reference(numbers[0], numbers[-1]))
-        yield from found
+def _with_references(blocks: Sequence[Block]) -> list[Block]:
+    found: list[Block] = []
+    for kind, run in groupby(blocks, _captioned_kind):
+        members = list(run)
+        numbers = [block.number for block in members if isinstance(block, Captioned)]
+        if kind is not None:
+            found = _with_sentence(found, kind, numbers[0], numbers[-1])
+        found += members
+    return found
 
 
-def _reference(first: int, last: int) -> str:
+def _captioned_kind(block: Block) -> Kind | None:
+    """What a numbered block is called in the text."""
+    if not isinstance(block, Captioned) or not block.number:
+        return None
+    return "table" if isinstance(block, TableBlock) else "figure"
+
+
+def _with_sentence(blocks: Sequence[Block], kind: Kind, first: int, last: int) -> list[Block]:
+    """Blocks with a reference: behind the last sentence, in brackets before its colon, or as a sentence of its own."""
+    told, before = list(blocks[:-1]), blocks[-1] if blocks else None
+    if isinstance(before, ParagraphBlock | ReferenceBlock):
+        if before.text.endswith("."):
+            return [*told, replace(before, text=f"{before.text} {reference(kind, first, last)}")]
+        if before.text.endswith(":"):
+            see = _("see {what}").format(what=_numbers(kind, first, last))
+            return [*told, replace(before, text=f"{before.text[:-1]} ({see}):")]
+    return [*blocks, ParagraphBlock(reference(kind, first, last))]
+
+
+def reference(kind: Kind, first: int, last: int) -> str:
+    """A sentence that names the numbers of a run."""
+    return _("See {what}.").format(what=_numbers(kind, first, last))
+
+
+def _numbers(kind: Kind, first: int, last: int) -> str:
+    """Whom to see: "table 3", "figures 2 and 3", "tables 4 to 7"."""
     if first == last:
-        return _("See figure {number}.").format(number=first)
+        what = _("figure {number}") if kind == "figure" else _("table {number}")
+        return what.format(number=first)
     if last == first + 1:
-        return _("See figures {first} and {last}.").format(first=first, last=last)
-    return _("See figures {first} to {last}.").format(first=first, last=last)
+        pair = _("figures {first} and {last}") if kind == "figure" else _("tables {first} and {last}")
+        return pair.format(first=first, last=last)
+    several = _("figures {first} to {last}") if kind == "figure" else _("tables {first} to {last}")
+    return several.format(first=first, last=last)

@@ -52,7 +52,7 @@ class OutlinedChapter:
 
 def outline_of(report: Report) -> Iterator[OutlinedChapter]:
     """The chapters of a document in their order, with the headings that stand before them and in them."""
-    numbers, letters = count(1), iter(LETTERS.get(report.language, LETTERS["en"]))
+    numbers, letters = count(1), iter(letters_of(report.language))
     part, number, within = "", 0, count(1)
     opened = not report.is_note
     for chapter in report.chapters:
@@ -75,6 +75,11 @@ def outline_of(report: Report) -> Iterator[OutlinedChapter]:
         opens = not opened and chapter.role == "chapter"
         opened = opened or opens
         yield OutlinedChapter(chapter, (*headings, own), tuple(_sections(chapter, own)), opens)
+
+
+def letters_of(language: str) -> str:
+    """The letters of appendices, in their order."""
+    return LETTERS.get(language, LETTERS["en"])
 
 
 def _sections(chapter: ChapterBlocks, above: Heading) -> Iterator[tuple[Heading | None, SectionBlocks]]:

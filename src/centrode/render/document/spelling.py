@@ -76,7 +76,8 @@ class DocumentSpelling(Spelling):
         sign = text[0] if text[0] in "+-" else ""
         body, percent = (text[len(sign) :].removesuffix("%"), "%" if text.endswith("%") else "")
         mantissa, exponent, power = body.partition("e")
-        mantissa = shorten(mantissa, self.numbers.digits)
+        exact = abs(value) * (100.0 if percent else 1.0) / 10.0 ** int(power or 0)
+        mantissa = shorten(mantissa, self.numbers.digits, exact)
         spelled = spelled_number(("-" if sign == "-" else "") + mantissa + (f"e{power}" if exponent else ""))
         return ("+" if sign == "+" else "") + spelled + percent
 
@@ -170,9 +171,9 @@ def spelled_functions(notation: str) -> str:
     return notation if chosen_language() == "en" else TANGENT.sub(r'op("\1tg")', notation)
 
 
-def shorten(mantissa: str, digits: int) -> str:
-    """A decimal with at most so many digits; its whole part stays."""
+def shorten(mantissa: str, digits: int, exact: float) -> str:
+    """A decimal with at most so many digits, its whole part kept; rounded once, from the number it spells."""
     whole = len(mantissa.partition(".")[0])
     if "." not in mantissa or len(mantissa.replace(".", "").lstrip("0")) <= digits:
         return mantissa
-    return f"{float(mantissa):.0f}" if whole >= digits else f"{float(mantissa):.{digits}g}"
+    return f"{exact:.0f}" if whole >= digits else f"{exact:.{digits}g}"

@@ -27,6 +27,8 @@ GREEK = frozenset(
         "pi/2",
     )
 )
+GAPS = "\u00a0\u202f"
+"""Blanks at which no line ends, a wide and a narrow one."""
 DOTS = {"dot": "dot", "ddot": "dot.double"}
 LONG = 110
 """Letters of typst in a numerator beyond which it is written behind its fraction, where it can be broken."""
@@ -118,7 +120,7 @@ def shown(text: str) -> str:
 
 def quote(text: str) -> str:
     """Text that typst shows as it is, wherever a string may stand."""
-    safe = "".join(letter if letter.isprintable() else " " for letter in text)
+    safe = "".join(letter if letter.isprintable() or letter in GAPS else " " for letter in text)
     for letter, code in (("\\", "\\\\"), ('"', '\\"'), ("$", r"\u{24}")):  # mathematics ends at a dollar sign
         safe = safe.replace(letter, code)
     return f'"{safe}"'

@@ -10,7 +10,7 @@ from centrode.render.document.blocks import Report, TitlePageBlocks
 from centrode.render.latex import escape
 from centrode.report.editable.pandoc import run_pandoc
 from centrode.report.editable.pictures import convert_pictures
-from centrode.report.editable.tree import Element, raw_block, raw_inline, tree_of
+from centrode.report.editable.tree import Element, continued_table, raw_block, raw_inline, tree_of
 from centrode.report.page_styles import page_style
 
 LANGUAGES = {"en": "english", "ru": "russian", "uk": "ukrainian"}
@@ -83,6 +83,8 @@ STANDARD_PAGE = r"""\usepackage{setspace,indentfirst,fancyhdr,titlesec,caption}
 """
 """What notes by a standard have in their preamble besides: numbers of pages and headings, captions, spaces."""
 
+NUMBERED_PART = r"\titleformat{\section}[block]{\normalfont\bfseries}{\thesection}{1ex}{}"
+
 
 def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, bytes]]:
     """A report as LaTeX, and its figures as PDF by their names.
@@ -106,8 +108,9 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
             contents=lambda: [raw_block("latex", TABLE_OF_CONTENTS)],
         )
         words = (_("Figure {number}"), _("Table {number}"))
+        continued = continued_table("\\thetable{}")
     body = run_pandoc(tree, "--from=json", "--to=latex-smart-auto_identifiers", "--wrap=preserve").decode()
-    body = _in_folder(body, pictures, figures)
+    body = _with_continuations(_in_folder(body, pictures, figures), continued)
     letters = "".join(
         f"\\newunicodechar{{{letter}}}{{{code}}}\n" for letter, code in LETTERS.items() if letter in body
     )
@@ -137,9 +140,12 @@ def _page(report: Report, words: Sequence[str]) -> str:
     style = page_style(report.standard)
     figure, table = words
     place = "\\fancyhead[R]{\\thepage}" if style.number == "top-right" else "\\fancyfoot[C]{\\thepage}"
+    preamble = STANDARD_PAGE
+    if style.capital_parts:
+        preamble = preamble.replace(NUMBERED_PART, f"{NUMBERED_PART[:-1]}\\MakeUppercase}}")
     return (
         f"\\geometry{{left={style.left:g}mm,right={style.right:g}mm,top={style.top:g}mm,bottom={style.bottom:g}mm}}\n"
-        f"\\setlength{{\\headheight}}{{17pt}}\n{STANDARD_PAGE}{place}\n"
+        f"\\setlength{{\\headheight}}{{17pt}}\n{preamble}{place}\n"
         f"\\setlength{{\\parindent}}{{{style.indent:g}mm}}\n"
         f"\\AtBeginDocument{{\\renewcommand{{\\figurename}}{{{figure}}}\\renewcommand{{\\tablename}}{{{table}}}}}\n"
     )
@@ -184,6 +190,19 @@ def _in_folder(body: str, pictures: Mapping[str, bytes], folder: str) -> str:
         return body
     found = re.compile(rf"(\\includegraphics(?:\[(?:[^\[\]{{}}]|\{{[^{{}}]*\}})*\])?)\{{({names})\}}")
     return found.sub(lambda one: f"{one[1]}{{{folder}/{one[2]}}}", body)
+
+
+_LONG_TABLE = re.compile(r"(- (\d+)\\tabcolsep\)(?:(?!\\end\{longtable\}).)*?\\endfirsthead\n)", re.DOTALL)
+"""A table up to the head of its further pages; between n columns there is 2 (n - 1) times the space of one side."""
+
+
+def _with_continuations(body: str, continued: str) -> str:
+    """Tables with a line above the head that further pages repeat."""
+
+    def add_line(found: re.Match[str]) -> str:
+        return f"{found[1]}\\multicolumn{{{int(found[2]) // 2 + 1}}}{{@{{}}l@{{}}}}{{{continued}}} \\\\\n"
+
+    return _LONG_TABLE.sub(add_line, body)
 
 
 def _numbered_formula(latex: str, number: int) -> list[Element]:

@@ -41,6 +41,8 @@ API = (1, 23, 1)
 NO_ATTRIBUTES: tuple[str, tuple[str, ...], tuple[tuple[str, str], ...]] = ("", (), ())
 ROOM = 104
 """Letters that the cells of a row may have beside each other on the width of a page."""
+TABLE_CAPTION = "Table Caption"
+"""Name of the style of lines above tables."""
 LEAST, SENTENCE, GAP = 3, 24, 3
 """Letters of a column of words at least and where it is broken into lines, and between two columns."""
 
@@ -196,13 +198,15 @@ class DocumentTree:
         return self._picture(replace(block.still, caption=block.caption or block.still.caption))
 
     def _tables(self, block: TableBlock) -> Iterator[Element]:
-        """A table, dealt to several where a page is not wide enough; each begins with the first column."""
+        """A table, dealt to several where a page is not wide enough; each begins with the first column.
+
+        Further parts have no number of their own: they stand below a line that names the table.
+        """
         widths = [_width(block, column) for column in range(len(block.head))]
-        groups = _dealt(widths)
-        for number, chosen in enumerate(groups):
-            caption = self.inlines(block.caption) if block.caption else []
-            if caption and number:
-                caption = [_text(_("continued: {caption}").format(caption=_plain(block.caption)))]
+        for number, chosen in enumerate(_dealt(widths)):
+            caption = self.inlines(block.caption) if block.caption and not number else []
+            if block.caption and number:
+                yield styled(TABLE_CAPTION, continued_table(str(block.number)))
             yield self._grid(block, chosen, widths, caption)
 
     def _grid(
@@ -236,6 +240,16 @@ class DocumentTree:
 def cell_of(inlines: list[Element], alignment: str = "AlignDefault") -> list[Any]:
     """A cell of a table."""
     return [NO_ATTRIBUTES, {"t": alignment}, 1, 1, [_node("Plain", inlines)] if inlines else []]
+
+
+def continued_table(number: str) -> str:
+    """What stands above a further part of a table."""
+    return _("Table {number}, continued").format(number=number)
+
+
+def styled(style: str, text: str) -> Element:
+    """A paragraph with a style of its own, where the writer knows styles."""
+    return _node("Div", [["", [], [["custom-style", style]]], [paragraph([plain_text(text)])]])
 
 
 def tree_of(
@@ -319,11 +333,6 @@ def _list(items: Sequence[list[Element]], numbered: bool) -> Element:
 
 def _caption(inlines: list[Element]) -> list[Any]:
     return [None, [_node("Plain", inlines)] if inlines else []]
-
-
-def _plain(marked: str) -> str:
-    """A text without its mathematics, for those who do not see a picture."""
-    return "".join(part.text for part in parts_of(marked))
 
 
 def _width(block: TableBlock, column: int) -> int:

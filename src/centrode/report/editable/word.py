@@ -19,13 +19,13 @@ from centrode.report.editable.pandoc import run_pandoc
 from centrode.report.editable.pictures import convert_pictures
 from centrode.report.editable.tree import (
     NO_ATTRIBUTES,
+    TABLE_CAPTION,
     Element,
     cell_of,
     displayed,
-    paragraph,
-    plain_text,
     raw_block,
     raw_inline,
+    styled,
     tree_of,
 )
 from centrode.report.page_styles import page_style
@@ -109,25 +109,20 @@ def _referred(number: int) -> Element:
     return raw_inline("openxml", field)
 
 
-def _styled(style: str, text: str) -> Element:
-    """A paragraph with a style of its own."""
-    return {"t": "Div", "c": [["", [], [["custom-style", style]]], [paragraph([plain_text(text)])]]}
-
-
 def _heading_without_number(heading: Heading, role: str) -> Element:
     """A heading without a number: of an element, which contents list unless it stands before them, or in one."""
     level = ELEMENT_SECTION if heading.level > 1 else ELEMENT_FRONT if role == "front" else ELEMENT
-    return _styled(level, heading.title)
+    return styled(level, heading.title)
 
 
 def _cover(page: TitlePageBlocks) -> list[Element]:
     """The title page, and what ends it."""
-    middle = [_styled(COVER, one) for one in (page.course, page.variant) if one]
-    found = [_styled(COVER, line) for line in page.head]
-    found += [_styled(COVER_WORK, page.work)] if page.work else []
-    found += [*middle[: bool(page.course)], _styled("Title", page.title), *middle[bool(page.course) :]]
-    found += [_styled(COVER_PEOPLE, f"{label}: {name}") for label, name in page.people]
-    found += [_styled(COVER_FOOT, page.foot)] if page.foot else []
+    middle = [styled(COVER, one) for one in (page.course, page.variant) if one]
+    found = [styled(COVER, line) for line in page.head]
+    found += [styled(COVER_WORK, page.work)] if page.work else []
+    found += [*middle[: bool(page.course)], styled("Title", page.title), *middle[bool(page.course) :]]
+    found += [styled(COVER_PEOPLE, f"{label}: {name}") for label, name in page.people]
+    found += [styled(COVER_FOOT, page.foot)] if page.foot else []
     return [*found, raw_block("openxml", '<w:p><w:r><w:br w:type="page"/></w:r></w:p>')]
 
 
@@ -369,11 +364,11 @@ def styles_of(standard: Standard, is_note: bool) -> Mapping[str, str]:
             ),
             "ImageCaption": _style("ImageCaption", "Image Caption", "Caption", "", "", own=True),
             "TableCaption": _style(
-                "TableCaption", "Table Caption", "Caption", '<w:keepNext/><w:jc w:val="left"/>', "", own=True
+                "TableCaption", TABLE_CAPTION, "Caption", '<w:keepNext/><w:jc w:val="left"/>', "", own=True
             ),
-            "Heading1": _heading(1, style.size, 12).replace(
-                "<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>"
-            ),
+            "Heading1": _heading(1, style.size, 12)
+            .replace("<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>")
+            .replace("<w:b/>", "<w:b/><w:caps/>" if style.capital_parts else "<w:b/>"),
             "Heading2": _heading(2, style.size, 12),
             "Heading3": _heading(3, style.size, 12),
             "Table": styles["Table"]
