@@ -119,8 +119,9 @@ def test_a_machine_of_four_strokes_has_a_cycle_of_two_turns() -> None:
         force = -4e6 * AREA * np.interp(np.degrees(phi), angle, share)
         work += 0.5 * (high - low) * float(weights @ (force * slide_rate(phi)))
     wheel = ct.flywheel(engine(load, machine=machine))
-    # the crank turns clockwise: the work of the load over a cycle is minus the integral over growing angles
-    assert wheel.driving_moment == pytest.approx(work / (4 * math.pi), rel=1e-11)
+    # the crank turns clockwise: the work of the load over a cycle is minus the integral over growing angles, and the
+    # moment that makes up for it acts clockwise
+    assert wheel.driving_moment == pytest.approx(-work / (4 * math.pi), rel=1e-11)
 
 
 def test_a_torque_over_the_drive_is_its_formula() -> None:

@@ -15,6 +15,7 @@ from centrode.errors import CentrodeError
 from centrode.model.reading import FRAME
 from centrode.sheets.sheet import Block, Chapter, Check, Items, Section
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Text
+from centrode.views.drive_balance import driving_terms, factor_text
 from centrode.views.instants import place_number
 from centrode.views.reaction_names import reaction_text
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     from centrode.dynamics.bearings.extremes import BearingLoad
     from centrode.dynamics.motion_results import MotionResults
-    from centrode.dynamics.steady_motion.closing_balance import ClosingBalance
     from centrode.dynamics.steady_motion.machine import MachineResults
 
 Array: TypeAlias = NDArray[np.float64]
@@ -32,8 +32,6 @@ STILL = 1e-9
 """Radians, or part of the greatest length, by which what stands still may move."""
 GREATEST = 3
 """Reactions that are named."""
-BALANCES = 1e-9
-"""Part of the driving moment by which both sides may differ: the works of the cycle bound it."""
 
 
 def conclusions_chapter(results: MotionResults) -> Chapter:
@@ -314,26 +312,27 @@ def _size(load: BearingLoad) -> tuple[float, float]:
     return greatest if greatest[0] >= least[0] else least
 
 
-def _balance(results: MotionResults, balance: ClosingBalance) -> Text:
+def _balance(results: MotionResults, here: xarray.Dataset) -> Text:
     """The closing balance with its numbers."""
-    numbers = {
-        "links": Number(balance.links, "N m", ".6g", unit_hidden=True),
-        "inertia": Number(balance.inertia, "kg m^2", ".6g", unit_hidden=True),
-        "acceleration": Number(balance.acceleration, "1", ".5g"),
-        "driving": Number(balance.links + balance.inertia * balance.acceleration, "N m", ".5g"),
+    links, inertia, acceleration, _driving = driving_terms(here)
+    numbers: dict[str, Text] = {
+        "links": Number(links, "N m", ".6g", unit_hidden=True),
+        "inertia": Number(inertia, "kg m^2", ".6g", unit_hidden=True),
+        "acceleration": factor_text(Number(acceleration, "1", ".5g")),
+        "driving": Number(links + inertia * acceleration, "N m", ".5g"),
     }
     return Sentence(
         "The machine closes at {place}: the balancing moment of the links and the inertia moment of what turns with the"
-        " drive are the driving moment, {links} + {inertia} · ({acceleration}) = {driving}.",
-        place=_at(results, balance.at),
+        " drive are the driving moment, {links} + {inertia} · {acceleration} = {driving}.",
+        place=_at(results, float(here["drive_value"].values[0])),
         **numbers,
     )
 
 
-def _balance_check(balance: ClosingBalance) -> Check:
+def _balance_check(here: xarray.Dataset) -> Check:
     statement = Sentence(
         "The balancing moment of the links, by the equilibrium of each, and the inertia moment of the flywheel are the"
         " driving moment, by the work of a cycle, within {share}."
     )
-    size = max(abs(balance.links), abs(balance.driving))
-    return Check(statement, abs(balance.difference), size, BALANCES)
+    residual, error = (float(here.attrs[f"driving_{name}"]) for name in ("residual", "error"))
+    return Check(statement, residual, 1.0, error + float(here["reaction_loss"]))
