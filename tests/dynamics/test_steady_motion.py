@@ -153,7 +153,7 @@ def test_energy_closes_over_the_cycle(mechanism: ct.Mechanism) -> None:
     assert abs(balance[-1]) <= 1e-9 * np.ptp(energy) + lost * (turned[1] / 2) ** 2
     away = np.abs(balance[1:] - balance[:-1])
     assert np.median(away) <= 1e-11 * np.abs(energy).max(), "exact but for the steps over a turning point"
-    np.testing.assert_allclose(np.hypot(*data.velocity.sel(point="A").values.T), data.drive_speed * np.hypot(
+    np.testing.assert_allclose(np.hypot(*data.velocity.sel(point="A").values.T), abs(data.drive_speed) * np.hypot(
         *data.velocity_coefficient.sel(point="A").values.T), rtol=64 * EPS)  # fmt: skip
 
 
