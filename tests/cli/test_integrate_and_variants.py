@@ -286,7 +286,16 @@ def test_variants_with_reports_and_an_analysis(centrode: Centrode, folder: Path)
     answers = (folder / "r" / "answers.html").read_text(encoding="utf-8")
     assert "Analysis: flywheel" in answers and refusal in answers
     spoken = centrode(
-        "variants", "t.csv", "--topology", "six-bar-press.toml", "--out", "r2", "--compute", "flywheel", "--lang", "ru"
+        "variants",
+        "t.csv",
+        "--topology",
+        "six-bar-press.toml",
+        "--out",
+        "r2",
+        "--compute",
+        "flywheel",
+        "--lang",
+        "ru",
     )
     assert "b: [machine]: " in spoken.out and "it is missing" not in spoken.out
 

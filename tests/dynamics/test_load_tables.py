@@ -106,11 +106,15 @@ def test_an_indicator_diagram_of_four_strokes() -> None:
 def test_the_stroke_of_a_drive_that_does_not_turn_fully_is_that_of_the_range() -> None:
     """A rod shorter than the crank: between -0.5 and 0.4 rad the piston goes from the farther end to the dead point."""
     load = along(table=[[0.0, 1.0], [1.0, 3.0]], over="stroke")
-    with pytest.raises(ct.InputError, match=r"does not turn fully; give the range of the motion in \[study\]"):
+    with pytest.raises(
+        ct.InputError, match=r"does not turn fully; give the range of the motion in \[study\]"
+    ):
         ct.reduce(engine(load, rod=0.04), at=[0.1])
     ranged = engine(load, rod=0.04, speed=1.0, study={"from": -0.5, "to": 0.4})
     least, greatest = ends_of_stroke(ranged, "B", "")
-    ends = [RADIUS * math.cos(phi) + math.sqrt(0.04**2 - (RADIUS * math.sin(phi)) ** 2) for phi in (-0.5, 0.0)]
+    ends = [
+        RADIUS * math.cos(phi) + math.sqrt(0.04**2 - (RADIUS * math.sin(phi)) ** 2) for phi in (-0.5, 0.0)
+    ]
     assert [least, greatest] == pytest.approx(ends, rel=64 * EPS)
     here = RADIUS * math.cos(0.1) + math.sqrt(0.04**2 - (RADIUS * math.sin(0.1)) ** 2)
     share = (here - least) / (greatest - least)

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.kinematics.hinge_angles import HINGE_ANGLES
 from centrode.kinematics.machine_code.event_screening import EventScreening
 from centrode.kinematics.preparation import ready
 from centrode.numerics import machine_code
@@ -18,7 +19,6 @@ from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor
-from centrode.kinematics.hinge_angles import HINGE_ANGLES
 from centrode.sweeps.outputs import DERIVED
 from growing import mechanism_of
 from growing_sphere import grown
@@ -65,7 +65,11 @@ def everything(mechanism: ct.Mechanism) -> list[str]:
     """All quantities that a motion has at each sample."""
     motion = ct.motion(mechanism, 2)
     named = [name for name in QUANTITIES if name in motion.data_vars and "sample" in motion[name].dims]
-    return [name for name in named if name != "status" and name not in (*DERIVED, *HINGE_ANGLES) and motion[name].size]
+    return [
+        name
+        for name in named
+        if name != "status" and name not in (*DERIVED, *HINGE_ANGLES) and motion[name].size
+    ]
 
 
 def same(found: xr.Dataset, expected: xr.Dataset, outputs: list[str], gears: float = 0.0) -> None:

@@ -81,7 +81,9 @@ def factor_text(number: Number) -> Text:
 def printed_balance(links: float, inertia: float, acceleration: float, driving: float) -> Section:
     """The same as a terminal prints it."""
     letters = Joined((Symbol("M", "b"), Joined((Symbol("J", "I"), Symbol("ε")), "·")), " + ")
-    numbers = Joined((Number(links), Joined((Number(inertia), factor_text(Number(acceleration))), "·")), " + ")
+    numbers = Joined(
+        (Number(links), Joined((Number(inertia), factor_text(Number(acceleration))), "·")), " + "
+    )
     total = Joined((letters, numbers, Number(links + inertia * acceleration, "N m")), " = ")
     driven = Joined((Symbol("M", "d"), Number(driving, "N m")), " = ")
     return Section(SENSE, (Paragraph(Joined((total, driven))),))

@@ -459,7 +459,10 @@ def _work_relations(results: MachineResults) -> Iterator[tuple[Leaf, ...]]:
     work, moment = _works(flywheel)
     turn = "2 pi" if flywheel.turns == 1 else f"2 pi dot.op {flywheel.turns}"
     # moments count along the coordinate: where it falls, the work is not theirs over the angle turned
-    falls, coordinate = float(results.steady["drive_speed"][0]) < 0.0, results.mechanism.motion_parameter.drives[0]
+    falls, coordinate = (
+        float(results.steady["drive_speed"][0]) < 0.0,
+        results.mechanism.motion_parameter.drives[0],
+    )
     minus, letter, first = "-", "phi", "0"
     if falls:
         letter = "phi" if coordinate.is_chosen else "q"
