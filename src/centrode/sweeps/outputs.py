@@ -89,7 +89,9 @@ class Output:
     def _at_hinges(self, solved: Solved) -> Array:
         orders = hinge_orders(solved)
         assert orders is not None, "expressions know no turns: such outputs are left to the arrays"
-        value, first, second = (None if x is None else x[:, :, *self.where] for x in orders)
+        value, first, second = orders
+        assert value is not None
+        value, first, second = (x[:, :, *self.where] for x in (value, first, second))
         found = by_time((value, first, second), HINGE_ANGLES.index(self.quantity), solved.span)
         assert found is not None
         return found

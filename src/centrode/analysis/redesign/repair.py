@@ -369,8 +369,8 @@ class RepairSearch:
 
 LEAST_ANGLES = tuple(map(radians, (20.0, 10.0, 5.0, 2.0, 1.0)))
 """Least transmission angles [rad] that are requested one after the other where none is given, of one dimension and of
-several: the first one within reach. Less than 20 degrees jams by the friction of ordinary hinges, a good transmission of
-forces needs some 30 to 40; 0 would be a mechanism at the brink of locking."""
+several: the first one within reach. Less than 20 degrees jams by the friction of ordinary hinges, a good transmission
+of forces needs some 30 to 40; 0 would be a mechanism at the brink of locking."""
 CANDIDATES = 3072
 """Candidates of the first spread."""
 TIGHTENINGS = 4
