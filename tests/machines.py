@@ -73,6 +73,81 @@ sides = {{ B = "ahead" }}
 """
 STROKE = 0.4
 
+GAS_ENGINE = """\
+gravity = [0, -9.81]
+[frame.points]
+O = [0, 0]
+[links.OA]
+length = 0.05
+[links.AB]
+length = 0.2
+mass = 0.8
+centre = [0.06, 0.01]
+inertia = 0.004
+[links.piston]
+points = ["B"]
+mass = 0.6
+[[guides]]
+point = "B"
+on = "frame"
+through = [0, 0.004]
+direction = [1, 0]
+link = "piston"
+[[drives]]
+link = "OA"
+start = 0.2
+speed = 100
+[[loads]]
+kind = "force"
+guide = "B"
+table = [[0.1, -1000, -4000], [0.2, -900, -500], [0.3, 2500, -200]]
+[[loads]]
+kind = "torque"
+link = "OA"
+value = "-40 - 0.1*v"
+[machine]
+mean_speed = 100
+fluctuation = 0.02
+shafts = [{ inertia = 0.02 }]
+[assembly]
+sides = { B = "ahead" }
+"""
+
+BACKWARD_ROCKER = """\
+gravity = [0, -9.81]
+[frame.points]
+O = [0, 0]
+C = [0.4, 0]
+[links.OA]
+length = 0.1
+mass = 2
+centre = [0.03, 0]
+inertia = 0.01
+[links.AB]
+length = 0.4
+mass = 3
+centre = [0.2, 0.05]
+inertia = 0.05
+[links.CB]
+length = 0.3
+mass = 4
+centre = [0.1, 0]
+inertia = 0.06
+[[drives]]
+link = "OA"
+start = 1
+speed = -1
+[[loads]]
+kind = "torque"
+link = "CB"
+value = "-5*v"
+[machine]
+mean_speed = 12
+fluctuation = 0.1
+[assembly]
+sides = { B = "left" }
+"""
+
 
 def crank(load: str, fluctuation: float = 0.1, speed: float = 1.0) -> ct.Mechanism:
     """A crank of inertia 2 kg m^2 about its bearing, resisted by a torque."""

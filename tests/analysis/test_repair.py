@@ -14,8 +14,7 @@ import pytest
 
 import centrode as ct
 from centrode.analysis.redesign.candidates import Candidates, impossible, varyings
-from centrode.analysis.redesign.repair import ANGLES as LEAST_ANGLES
-from centrode.analysis.redesign.repair import ENOUGH, Repair
+from centrode.analysis.redesign.repair import ENOUGH, LEAST_ANGLES, Repair
 from centrode.kinematics.preparation import ready
 from centrode.model.examples import example_text
 from centrode.render.terminal import plain_text

@@ -11,9 +11,9 @@ from scipy.optimize import brentq
 
 import centrode as ct
 from centrode.analysis.redesign.proposal import propose
+from centrode.analysis.redesign.repair import LEAST_ANGLES
 from centrode.analysis.redesign.results import RotatabilityResults, rotatability_results
 from centrode.analysis.redesign.single_changes import (
-    MARGINS,
     SingleChange,
     SingleChanges,
     dimensions_of_design,
@@ -25,7 +25,7 @@ from centrode.model.placement import replace_placed
 from mechanisms import four_bar
 
 DISPLAY = {"length": "mm", "angle": "deg"}
-TEN = MARGINS[1:]
+TEN = LEAST_ANGLES[1:]
 """From 10 degrees on."""
 NODES = 1e-9
 """What parabolas between 720 nodes of the turn leave of a limiting value: a fourth power of their step, in parts of the
@@ -231,8 +231,8 @@ def test_what_is_placed_is_placed_anew() -> None:
 def test_twenty_degrees_are_kept_where_one_dimension_brings_them_about() -> None:
     """Else the greatest that any dimension brings about is told: of the source's locked mechanism OA does it."""
     found = single_changes("slider-between-cranks-locked")
-    assert found is not None and found.margin == MARGINS[0] and found.greatest is None
-    assert all(change.least_angle >= MARGINS[0] - 1e-9 for change in found.changes)
+    assert found is not None and found.margin == LEAST_ANGLES[0] and found.greatest is None
+    assert all(change.least_angle >= LEAST_ANGLES[0] - 1e-9 for change in found.changes)
     # row 19 of the source's table: the crank at a fifth of its length is the best that one dimension does
     numbers = {"links.BD.length": 0.5, "links.CB.length": 1.0}
     numbers |= {"links.AC.angle": 2.1, "links.CB.angle": 0.5, "links.BD.angle": 4.7}
@@ -247,7 +247,7 @@ def test_a_report_proposes_initial_angles_before_lengths() -> None:
     found = single_changes(mechanism)
     assert found is not None
     proposed = propose(found)
-    assert proposed is not None and proposed.angle == proposed.wanted == MARGINS[0]
+    assert proposed is not None and proposed.angle == proposed.wanted == LEAST_ANGLES[0]
     assert {one.kind for one in proposed.dimensions} == {"angle"}
     assert all(change.after == round(change.after, 3) for change in proposed.changes)
     phi2, phi3, phi4 = (proposed.repaired.initial_angle(link) for link in ("AC", "CB", "BD"))
@@ -258,7 +258,7 @@ def test_a_report_proposes_initial_angles_before_lengths() -> None:
     between = (1.2**2 + 0.8**2 - np.abs(c - d) ** 2) / (2 * 1.2 * 0.8)
     sines = np.sqrt(1.0 - np.array([(0.5 * np.sin(turn) - height) ** 2, between**2]))
     assert sines.min() == pytest.approx(math.sin(proposed.least_angle), abs=1e-5)
-    assert proposed.least_angle >= MARGINS[0] - 1e-9
+    assert proposed.least_angle >= LEAST_ANGLES[0] - 1e-9
 
 
 def test_a_named_angle_and_a_greatest_change_bound_the_proposal() -> None:

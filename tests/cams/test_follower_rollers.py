@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.cams.followers.base_circle import least_cam
 
 EPS = float(np.finfo(float).eps)
 SEGMENT = '[[segments]]\nangle = "{angle} deg"\ncurve = "{curve}"\n'
@@ -26,8 +27,7 @@ def cam_text(roller: float, lift: float, angle: float, bounds: str, curve: str =
 def body_of(text: str) -> tuple[ct.PlateCam, float, str]:
     cam = ct.parse_cam(text)
     assert isinstance(cam, ct.PlateCam)
-    least = ct.choose_base_radius(cam).least
-    assert least is not None
+    least = least_cam(cam)
     body = ct.follower_cam(cam)
     assert body.base_radius == least.base_radius and not body.undercuts
     return cam, body.base_radius, least.by
@@ -71,6 +71,8 @@ def test_what_the_description_bounds_stands_in_place_of_the_ratios() -> None:
     bounds = 'pressure_angle = "60 deg"\ncurvature_radius = 0.001'
     cam, found, by = body_of(cam_text(0.01, 0.01, 40.0, bounds))
     assert by == "curvature" and found == pytest.approx(tip(1 / 1.1, 0.01, 0.01, 40.0), rel=1e-9)
+    chosen = ct.choose_base_radius(cam).least
+    assert chosen is not None and (chosen.base_radius, chosen.by) == (found, by)
     assert "radius up to 0.4 of the least radius of its path" in ct.summary(ct.choose_base_radius(cam))
 
 

@@ -137,11 +137,11 @@ def test_a_run_computes_the_machine(centrode: Centrode, folder: Path) -> None:
     (instant,) = rows(folder / "r" / "flywheel" / "machine-instants.csv")
     assert float(instant["turned [deg]"]) == pytest.approx(99.1, abs=1e-9)
     assert float(instant["drive_acceleration_first_order [deg/s^2]"]) == pytest.approx(
-        math.degrees(-2.768), abs=0.03
+        math.degrees(2.768), abs=0.03
     )
     assert len(rows(folder / "r" / "flywheel" / "machine.csv")) == 361
     summary = json.loads((folder / "r" / "summary.json").read_text())
-    assert summary["machine_driving_moment"]["value"] == pytest.approx(2263.03, abs=0.005)
+    assert summary["machine_driving_moment"]["value"] == pytest.approx(-2263.03, abs=0.005)
     assert summary["samples_ok"]["value"] == 361
 
 

@@ -260,6 +260,46 @@ def test_variants_with_reports(centrode: Centrode, folder: Path, table: Path, sh
     assert (folder / "r" / "variant-1" / "variant.json").stat().st_mtime_ns == marker
 
 
+def test_variants_with_reports_and_an_analysis(centrode: Centrode, folder: Path) -> None:
+    """A press has its flywheel, a linkage without a machine has none: both have a report, and the answers say so."""
+    chapter = '[report]\nchapters = ["structure"]\n'
+    for name in ("six-bar-press", "crank-rocker"):
+        text = ct.mechanism_text(ct.example(name))
+        assert "[report]" not in text
+        (folder / f"{name}.toml").write_text(f"{text}\n{chapter}", encoding="utf-8")
+    (folder / "t.csv").write_text("variant,topology\na,\nb,crank-rocker.toml\n", encoding="utf-8")
+    done = centrode(
+        *("variants", "t.csv", "--topology", "six-bar-press.toml", "--out", "r"),
+        *("--compute", "flywheel", "--report", "--format", "html"),
+    )
+    assert (done.code, done.err) == (0, "")
+    refusal = "b: [machine]: it is missing"
+    assert "1 variant has no numbers:" in done.out and refusal in done.out and "2 variants: ok 2" in done.out
+    assert {"report.html", "answers.json", "machine.csv"} <= {
+        path.name for path in (folder / "r" / "variant-a").iterdir()
+    }
+    assert not (folder / "r" / "variant-b" / "machine.csv").exists()
+    with (folder / "r" / "summary.csv").open(encoding="utf-8", newline="") as file:
+        first, second = csv.DictReader(file)
+    assert first["inertia [kg m^2]"] and (first["cause"], first["status"]) == ("", "ok")
+    assert second["cause"].startswith("flywheel: [machine]: it is missing") and second["status"] == "ok"
+    answers = (folder / "r" / "answers.html").read_text(encoding="utf-8")
+    assert "Analysis: flywheel" in answers and refusal in answers
+    spoken = centrode(
+        "variants",
+        "t.csv",
+        "--topology",
+        "six-bar-press.toml",
+        "--out",
+        "r2",
+        "--compute",
+        "flywheel",
+        "--lang",
+        "ru",
+    )
+    assert "b: [machine]: " in spoken.out and "it is missing" not in spoken.out
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

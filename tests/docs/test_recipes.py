@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import re
@@ -10,6 +11,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from math import acos, degrees
 from pathlib import Path
 
@@ -51,8 +53,28 @@ def follow(text: str, root: Path) -> list[str]:
     return commands
 
 
+WORKER = """\
+import io, json, sys
+from contextlib import redirect_stderr, redirect_stdout
+import numpy as np
+import centrode as ct
+from centrode.cli.main import main
+
+for line in sys.stdin:
+    task, printed, code = json.loads(line), io.TextIOWrapper(io.BytesIO(), encoding="utf-8"), 0
+    with redirect_stdout(printed), redirect_stderr(printed):
+        if "expression" in task:
+            mechanism, samples = ct.read_mechanism(task["file"]), task["samples"]
+            print(json.dumps(np.asarray(eval(task["expression"])).tolist()))
+        else:
+            code = main(task["arguments"])
+    printed.flush()
+    print(json.dumps([code, printed.buffer.getvalue().decode("utf-8")]), flush=True)
+"""
+
+
 class Copy:
-    """A copy of the package in a folder, in which recipes are followed."""
+    """A copy of the package in a folder, in which recipes are followed and one process runs what they say."""
 
     def __init__(self, root: Path) -> None:
         package = Path(ct.__file__).parent
@@ -62,11 +84,43 @@ class Copy:
         self.environment = os.environ | {
             "PYTHONPATH": str(root / "src"),
             "LANG": "C.UTF-8",
+            "LANGUAGE": "en",
             "MPLBACKEND": "agg",
         }
 
-    def run(self, *arguments: str) -> str:
-        """What Python prints for these arguments."""
+    @functools.cached_property
+    def worker(self) -> subprocess.Popen[str]:
+        """Runs commands and expressions one after the other: most of what a process takes is its start."""
+        return subprocess.Popen(
+            [sys.executable, "-c", WORKER],
+            cwd=self.root,
+            env=self.environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+        )
+
+    def close(self) -> None:
+        """End the process, where there is one."""
+        if "worker" in vars(self):
+            self.worker.communicate()
+
+    def ask(self, **task: object) -> str:
+        """What the process prints for a task."""
+        assert self.worker.stdin is not None and self.worker.stdout is not None
+        self.worker.stdin.write(json.dumps(task) + "\n")
+        self.worker.stdin.flush()
+        code, printed = json.loads(self.worker.stdout.readline())
+        assert code == 0, printed
+        return str(printed)
+
+    def centrode(self, *arguments: str) -> str:
+        """What the command prints for these arguments."""
+        return self.ask(arguments=arguments)
+
+    def python(self, *arguments: str) -> str:
+        """What Python prints for these arguments, in a process of its own."""
         done = subprocess.run(
             [sys.executable, *arguments],
             cwd=self.root,
@@ -80,13 +134,7 @@ class Copy:
 
     def compute(self, file: str, samples: int, expression: str) -> npt.NDArray[np.float64]:
         """An array by an expression of the `mechanism` of a file and of a number of `samples`."""
-        lines = (
-            "import json, numpy as np, centrode as ct",
-            f"mechanism = ct.read_mechanism({file!r})",
-            f"samples = {samples}",
-            f"print(json.dumps(np.asarray({expression}).tolist()))",
-        )
-        return np.array(json.loads(self.run("-c", "\n".join(lines))))
+        return np.array(json.loads(self.ask(file=file, samples=samples, expression=expression)))
 
 
 def transmission_angles_of_the_report(copy: Copy) -> None:
@@ -142,7 +190,7 @@ def motion_of_the_boom(copy: Copy) -> None:
         " ('position', 'velocity', 'acceleration')])(ct.motion(mechanism, samples=samples))",
     )
     np.testing.assert_allclose(motion[..., 0] + 1j * motion[..., 1], expected, rtol=0, atol=1e-14)
-    assert "higher class" not in copy.run("-m", "centrode", "check", "boom.toml")
+    assert "higher class" not in copy.centrode("check", "boom.toml")
 
 
 TRUTHS: Mapping[str, Callable[[Copy], None]] = {
@@ -157,15 +205,16 @@ def test_a_recipe_is_complete(name: str, tmp_path: Path) -> None:
     copy = Copy(tmp_path)
     commands = follow(RECIPES[name], tmp_path)
     assert commands
-    for block in commands:
-        for said in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
-            line, _newline, printed = said.partition("\n")
-            program, *arguments = shlex.split(line)
-            output = copy.run(*arguments) if program == "python" else copy.run("-m", "centrode", *arguments)
-            pattern = re.escape(printed.rstrip("\n")).replace(re.escape("..."), ".*")
-            assert not printed or re.fullmatch(pattern, output.rstrip("\n"), re.DOTALL)
-    if name in TRUTHS:
-        TRUTHS[name](copy)
+    with closing(copy):
+        for block in commands:
+            for said in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+                line, _newline, printed = said.partition("\n")
+                program, *arguments = shlex.split(line)
+                output = (copy.python if program == "python" else copy.centrode)(*arguments)
+                pattern = re.escape(printed.rstrip("\n")).replace(re.escape("..."), ".*")
+                assert not printed or re.fullmatch(pattern, output.rstrip("\n"), re.DOTALL)
+        if name in TRUTHS:
+            TRUTHS[name](copy)
 
 
 def test_truths_belong_to_recipes() -> None:

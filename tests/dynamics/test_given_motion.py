@@ -66,8 +66,9 @@ def test_the_source_s_own_instant(press: ct.Mechanism) -> None:
 
 def test_real_speed_and_acceleration_give_the_forces_of_the_steady_motion(press: ct.Mechanism) -> None:
     steady = ct.steady_motion(press, at=[AT[1]])
-    speed = abs(float(steady.drive_speed.values.ravel()[0]))
-    acceleration = float(steady.drive_acceleration.values.ravel()[0])
+    # what is given counts in the drive's own sense, which is clockwise here, what is shown along its value
+    speed = -float(steady.drive_speed.values.ravel()[0])
+    acceleration = -float(steady.drive_acceleration.values.ravel()[0])
     real = ct.reactions(press, at=[AT[1]], motion="real").balancing.values
     given = ct.reactions(press, at=[AT[1]], speed=speed, acceleration=acceleration).balancing.values
     assert given == pytest.approx(real, rel=1e-9)

@@ -19,15 +19,16 @@ AREA = math.pi * 0.09**2 / 4
 
 
 def engine(
-    *loads: dict[str, Any], machine: dict[str, Any] | None = None, speed: float = -20.0
-) -> ct.Mechanism:
+    *loads: dict[str, Any], machine: dict[str, Any] | None = None, speed: float = -20.0, rod: float = ROD,
+    **given: Any,
+) -> ct.Mechanism:  # fmt: skip
     """A crank and a piston on the x axis, at crank angle 0 farthest from the crank."""
-    given: dict[str, Any] = {} if machine is None else {"machine": machine}
+    given |= {} if machine is None else {"machine": machine}
     return ct.Mechanism(
         frame={"points": {"O": [0, 0]}},
         links={
             "crank": {"points": {"O": [0, 0], "A": [RADIUS, 0]}},
-            "rod": {"points": {"A": [0, 0], "B": [ROD, 0]}},
+            "rod": {"points": {"A": [0, 0], "B": [rod, 0]}},
             "piston": {"points": ["B"], "mass": 0.5},
         },
         guides=[{"point": "B", "on": "frame", "through": [0, 0], "direction": [1, 0], "link": "piston"}],
@@ -102,6 +103,25 @@ def test_an_indicator_diagram_of_four_strokes() -> None:
     )
 
 
+def test_the_stroke_of_a_drive_that_does_not_turn_fully_is_that_of_the_range() -> None:
+    """A rod shorter than the crank: between -0.5 and 0.4 rad the piston goes from the farther end to the dead point."""
+    load = along(table=[[0.0, 1.0], [1.0, 3.0]], over="stroke")
+    with pytest.raises(
+        ct.InputError, match=r"does not turn fully; give the range of the motion in \[study\]"
+    ):
+        ct.reduce(engine(load, rod=0.04), at=[0.1])
+    ranged = engine(load, rod=0.04, speed=1.0, study={"from": -0.5, "to": 0.4})
+    least, greatest = ends_of_stroke(ranged, "B", "")
+    ends = [
+        RADIUS * math.cos(phi) + math.sqrt(0.04**2 - (RADIUS * math.sin(phi)) ** 2) for phi in (-0.5, 0.0)
+    ]
+    assert [least, greatest] == pytest.approx(ends, rel=64 * EPS)
+    here = RADIUS * math.cos(0.1) + math.sqrt(0.04**2 - (RADIUS * math.sin(0.1)) ** 2)
+    share = (here - least) / (greatest - least)
+    (slope,) = ct.motion(ranged, at=[0.1]).slide_velocity_coefficient.values.ravel()
+    assert float(moments(ranged, np.array([0.1]))[0]) == pytest.approx((1 + 2 * share) * slope, rel=1e-12)
+
+
 def test_a_machine_of_four_strokes_has_a_cycle_of_two_turns() -> None:
     """The mean driving moment takes the work of the gas: the integral of p dV over both turns."""
     machine = {"mean_speed": 150, "fluctuation": 0.05}
@@ -119,8 +139,9 @@ def test_a_machine_of_four_strokes_has_a_cycle_of_two_turns() -> None:
         force = -4e6 * AREA * np.interp(np.degrees(phi), angle, share)
         work += 0.5 * (high - low) * float(weights @ (force * slide_rate(phi)))
     wheel = ct.flywheel(engine(load, machine=machine))
-    # the crank turns clockwise: the work of the load over a cycle is minus the integral over growing angles
-    assert wheel.driving_moment == pytest.approx(work / (4 * math.pi), rel=1e-11)
+    # the crank turns clockwise: the work of the load over a cycle is minus the integral over growing angles, and the
+    # moment that makes up for it acts clockwise
+    assert wheel.driving_moment == pytest.approx(-work / (4 * math.pi), rel=1e-11)
 
 
 def test_a_torque_over_the_drive_is_its_formula() -> None:

@@ -259,7 +259,6 @@ def test_the_mean_of_the_balancing_moment_is_that_of_the_driving_moment() -> Non
     places = (middle[:, None] + half[:, None] * x).ravel()
     found = ct.reactions(press, at=places)
     mean = float(np.sum((half[:, None] * w).ravel() * found.balancing.to_numpy()[:, 0])) / (2 * np.pi)
-    # the drive turns backwards, and counts positive in the sense in which it turns
-    assert abs(-mean - ct.flywheel(press).driving_moment) <= len(places) * EPS * float(
+    assert abs(mean - ct.flywheel(press).driving_moment) <= len(places) * EPS * float(
         abs(found.balancing).max()
     )

@@ -367,6 +367,6 @@ def test_the_steady_motion_gives_the_driving_moment() -> None:
     assert found.attrs["rate_from"] == "steady"
     assert np.array_equal(found.drive_value, steady.drive_value)
     needed = steady.driving_moment - steady.attrs["inertia"] * steady.drive_acceleration
-    # the drive turns backwards; loads and speed of the cycle are made to agree to SETTLED
+    # loads and speed of the cycle are made to agree to SETTLED
     size = float(abs(steady.driving_moment).max() + abs(steady.moment_of_loads).max())
-    assert abs(-found.balancing[:, 0] - needed).max() <= 16 * SETTLED * size
+    assert abs(found.balancing[:, 0] - needed).max() <= 16 * SETTLED * size

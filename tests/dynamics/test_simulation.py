@@ -134,17 +134,18 @@ def test_energy_balance_with_friction(tolerance: float) -> None:
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_run_up_in_either_sense(sense: float) -> None:
-    """J v' = a - b v: everything counts in the sense of the drive."""
+    """J v' = a - b v in the sense of the drive; what is found counts along its value."""
     found = ct.simulate(
         rotor(sense=sense), ct.Simulation(driving="3 - 0.5*v", duration=4, tolerance=TIGHT, samples=50)
     )
     t = found.time.values
     speed = 6 * (1 - np.exp(-t))
-    assert found.drive_speed.values == pytest.approx(speed, abs=grown(TIGHT, 6 * found.evaluations))
+    assert found.drive_speed.values == pytest.approx(sense * speed, abs=grown(TIGHT, 6 * found.evaluations))
     turned = 6 * (t + np.exp(-t) - 1)
     assert found.turned.values == pytest.approx(turned, abs=grown(TIGHT, 24 * found.evaluations))
     assert sense * found.drive_value.values[-1, 0] > 0.0
-    assert found.driving_moment.values == pytest.approx(3 - 0.5 * found.drive_speed.values, rel=8 * EPS)
+    driving = 3 - 0.5 * sense * found.drive_speed.values
+    assert found.driving_moment.values == pytest.approx(sense * driving, rel=8 * EPS)
 
 
 def test_the_steady_motion_by_the_energy_equation() -> None:
@@ -154,10 +155,11 @@ def test_the_steady_motion_by_the_energy_equation() -> None:
     assert press.machine is not None
     shaft = press.machine.shafts[0].model_copy(update={"inertia": steady.attrs["inertia"]})
     machine = press.machine.model_copy(update={"shafts": (shaft,)})
-    moment = float(steady.driving_moment[0])
+    # given in the sense of the drive, which turns against its value
+    moment = -float(steady.driving_moment[0])
     settings = ct.Simulation(
         driving=repr(moment),
-        speed=float(steady.drive_speed[0]),
+        speed=-float(steady.drive_speed[0]),
         duration=1.1 * float(steady.time[-1]),
         tolerance=TIGHT,
     )
@@ -176,7 +178,7 @@ def test_the_regime_of_the_run_up() -> None:
     assert press.simulation is not None
     # six periods after the multiplier 0.276 has worn off the start
     later = ct.simulate(press, press.simulation.model_copy(update={"duration": 25.0, "samples": 20001}))
-    last = later.drive_speed.values[later.time.values > 25.0 - regime.time]
+    last = -later.drive_speed.values[later.time.values > 25.0 - regime.time]
     step = 25.0 / 20000
     curved = float(np.max(np.abs(np.diff(last, 2))))
     assert last.max() == pytest.approx(regime.greatest_speed, abs=curved + 1e-7)
@@ -186,7 +188,7 @@ def test_the_regime_of_the_run_up() -> None:
     assert regime.multiplier == pytest.approx(0.276, abs=0.001)
     # the loads do not depend on the speed: their work is that of a cycle at any
     assert regime.driving_moment == pytest.approx(
-        -ct.flywheel(ct.example("six-bar-press")).work_of_loads / (2 * math.pi), rel=1e-9
+        ct.flywheel(ct.example("six-bar-press")).work_of_loads / (2 * math.pi), rel=1e-9
     )
 
 

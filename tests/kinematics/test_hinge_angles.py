@@ -62,12 +62,51 @@ def test_rates_are_derivatives_of_the_angle(name: str) -> None:
             assert np.abs(series.deriv(order)(found.time.to_numpy()) - values).max() <= allowed
 
 
-def test_turns_are_counted_from_sample_to_sample() -> None:
-    """The crank turns fully against the coupler, however few samples there are."""
-    few = ct.motion(ct.example("spherical-crank-rocker"), 9, stop=4 * np.pi)
-    angle = few.hinge_angle.sel(hinge="AB-BC").to_numpy()
-    assert abs(angle[-1] - angle[0] + 4 * np.pi) <= 64 * EPS * 4 * np.pi
-    assert (np.diff(angle) < 0).all()
+def test_turns_do_not_depend_on_samples() -> None:
+    """The crank turns fully against the coupler: two samples three turns apart know as much as 1081."""
+    mechanism = ct.example("spherical-crank-rocker")
+    many = ct.motion(mechanism, 1081, stop=6 * np.pi).hinge_angle
+    assert np.abs(np.diff(many, axis=0)).max() < 0.1
+    for count in (2, 4, 7):
+        few = ct.motion(mechanism, count, stop=6 * np.pi).hinge_angle
+        assert np.allclose(few, many[:: 1080 // (count - 1)], rtol=0, atol=64 * EPS * 6 * np.pi)
+    turning = many.sel(hinge="AB-BC").to_numpy()
+    assert abs(turning[-1] - turning[0] + 6 * np.pi) <= 64 * EPS * 6 * np.pi
+    # samples out of order, and one alone
+    at = np.array([5 * np.pi, 0.1, -3 * np.pi, 2.5 * np.pi])
+    mixed = ct.motion(mechanism, at=at).hinge_angle
+    for k, value in enumerate(at):
+        assert np.array_equal(ct.motion(mechanism, at=[value]).hinge_angle[0], mixed[k])
+
+
+def test_angles_begin_as_the_initial_position() -> None:
+    """In (-pi, pi] there, whatever range is asked for."""
+    mechanism = ct.example("spherical-crank-rocker")
+    first = ct.motion(mechanism, at=[0.0]).hinge_angle
+    assert (np.abs(first) <= np.pi).all()
+    later = ct.motion(mechanism, 3, start=4 * np.pi, stop=6 * np.pi).hinge_angle.sel(hinge="AB-BC")
+    begun = float(first.sel(hinge="AB-BC")[0])
+    assert np.allclose(later, begun - np.array([4, 5, 6]) * np.pi, rtol=0, atol=0.6 * np.pi)
+    assert abs(float(later[0]) - begun + 4 * np.pi) <= 64 * EPS * 4 * np.pi
+
+
+def test_sweeps_have_them_with_their_turns() -> None:
+    """Of everything, of one hinge, reduced, and in formulas: those of the motion."""
+    mechanism, lengths = ct.example("spherical-crank-rocker"), [BC, 0.9]
+    motion = ct.motion(mechanism, 9, vary={"links.BC.length": lengths})
+    swept = ct.sweep(
+        mechanism, {"links.BC.length": lengths}, outputs=["hinge_angle", "hinge_velocity.AB-BC"], samples=9
+    )
+    assert np.array_equal(swept["hinge_angle"], motion.hinge_angle)
+    assert np.array_equal(swept["hinge_velocity.AB-BC"], motion.hinge_velocity.sel(hinge="AB-BC"))
+    folded = ct.sweep(mechanism, {"links.BC.length": lengths}, outputs="hinge_angle.BC-DC", reduce="range")
+    # of the thesis: sin gamma = sin AB / sin BC on both sides
+    expected = [2 * math.asin(math.sin(AB) / math.sin(length)) for length in lengths]
+    assert np.allclose(folded["hinge_angle.BC-DC"], expected, rtol=0, atol=1e-3)
+    with pytest.raises(ct.InputError, match="angles at hinges, whose turns are counted on the mesh"):
+        ct.sweep(
+            mechanism, {"links.BC.length": lengths}, outputs="hinge_angle", samples=9, executor="machine code"
+        )
 
 
 def test_spherical_coordinates_are_those_of_the_places(thesis: xr.Dataset) -> None:

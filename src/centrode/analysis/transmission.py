@@ -22,6 +22,7 @@ from centrode.analysis.instant_centres.bodies import TurningBodies, pole_of, tur
 from centrode.analysis.rotatability.causes import least_of, transmission_at_ends, watched_dyads
 from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, monitored_function
 from centrode.errors import InputError
+from centrode.kinematics.hinge_angles import HINGE_ANGLES
 from centrode.kinematics.motion import dataset_of, vocabulary_variable
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
@@ -185,8 +186,6 @@ def _passes(number: Array, other: Array) -> bool:
     return bool(((number[:-1] * number[1:] <= 0.0) & (other[:-1] * other[1:] > 0.0)).any())
 
 
-HINGE_ANGLES = ("hinge_angle", "hinge_velocity", "hinge_acceleration")
-"""Of all moving hinges of a linkage on the sphere, dyads or not."""
 Lines: TypeAlias = npt.NDArray[np.complex128]
 
 

@@ -119,6 +119,7 @@ class VariantRow:
     limit : value of the drive at which the variant locks first [rad or m]
     unit : of the limit
     group, cause : which group locks, and the sentence that tells it; why a variant was not computed
+    refusal : why the analysis of each variant was refused for this one; empty where it was not
     status : "ok", "locks" (within the range of the study), "refused" (it is no mechanism that moves), "fault"
     numbers : name -> value and SI unit, of an analysis of each variant; empty without one, or where it is refused
     """
@@ -131,6 +132,7 @@ class VariantRow:
     cause: str
     status: str
     numbers: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    refusal: str = ""
 
     @property
     def is_computed(self) -> bool:
@@ -169,6 +171,7 @@ class Variants(PrintsSummary):
     rows : one a variant, in the order of the table
     results : everything about each, where it is kept in memory; empty of variants that are written into folders
     answers : name of a variant -> what a teacher checks of it, where reports have been written
+    compute : the analysis whose numbers the rows have; None without one
     """
 
     mechanism: Mechanism
@@ -176,6 +179,7 @@ class Variants(PrintsSummary):
     rows: tuple[VariantRow, ...]
     results: tuple[VariantResults, ...] = ()
     answers: Mapping[str, VariantAnswers] = field(default_factory=dict)
+    compute: str | None = None
 
 
 def variants(
@@ -215,7 +219,8 @@ def variants(
         results.append(compute_variant(topology, variant, compute))
         if progress is not None:
             progress(number, len(given))
-    return Variants(topology, given, tuple(result.row for result in results), tuple(results))
+    rows = tuple(result.row for result in results)
+    return Variants(topology, given, rows, tuple(results), compute=compute)
 
 
 def compute_variant(topology: Mechanism, variant: Variant, compute: str | None = None) -> VariantResults:
@@ -241,7 +246,7 @@ def _with_numbers(row: VariantRow, mechanism: Mechanism, compute: str) -> Varian
     try:
         return replace(row, numbers=_studies().study_numbers(mechanism, compute))
     except CentrodeError as refusal:
-        return replace(row, cause="; ".join(filter(None, (row.cause, f"{compute}: {refusal}"))))
+        return replace(row, refusal=str(refusal))
 
 
 def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, MotionResults, Rotation]:
@@ -270,17 +275,20 @@ def cause_of(rotation: Rotation) -> str:
 def spoken_variants(variants: Variants) -> Variants:
     """The same with the groups and causes of its rows in the language that is spoken.
 
-    Why a variant was refused, and where it locks, is computed anew: some 0.1 s each. Faults of the program stay
-    English.
+    Why a variant or its analysis was refused, and where it locks, is computed anew: some 0.1 s each. Faults of the
+    program stay English.
     """
     if chosen_language() == "en":
         return variants
     given = {variant.name: variant for variant in variants.given}
-    rows = (_spoken(variants.mechanism, given[row.variant], row) for row in variants.rows)
+    rows = (_spoken(variants, given[row.variant], row) for row in variants.rows)
     return replace(variants, rows=tuple(rows))
 
 
-def _spoken(topology: Mechanism, variant: Variant, row: VariantRow) -> VariantRow:
+def _spoken(variants: Variants, variant: Variant, row: VariantRow) -> VariantRow:
+    topology = variants.mechanism
+    if row.refusal and variants.compute is not None:
+        row = _with_numbers(row, variant.of(topology), variants.compute)
     if row.status == REFUSED:
         try:
             study_variant(topology, variant)

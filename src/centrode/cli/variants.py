@@ -65,9 +65,6 @@ def variants(
     """Compute and write; exit code 3 if a variant was refused (the others are written)."""
     if formats is not None and not reports:
         raise InputError("--format", _("this option is used with --report only"), _("give that option too"))
-    if compute is not None and reports:
-        what = _("an analysis is not computed beside reports")
-        raise InputError("--compute", what, _("omit one of the two options"))
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
     spelling = asked_spelling()
     description = library.load(topology)
@@ -80,7 +77,15 @@ def variants(
 
             if reports:
                 found = library.write_variant_reports(
-                    description, table, folder, jobs, figures, formats=kinds, progress=tell, spelling=spelling
+                    description,
+                    table,
+                    folder,
+                    jobs,
+                    figures,
+                    formats=kinds,
+                    progress=tell,
+                    spelling=spelling,
+                    compute=compute,
                 )
             else:
                 found = ct.write_variants(

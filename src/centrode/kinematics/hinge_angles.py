@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
+from centrode.structure.constraints import Positions
+from centrode.structure.dimensions import Dimensions
+
+if TYPE_CHECKING:
+    from centrode.kinematics.solve import Solved
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
+
+HINGE_ANGLES = ("hinge_angle", "hinge_velocity", "hinge_acceleration")
+"""Of all moving hinges of a linkage on the sphere, dyads or not: the angle and two derivatives by time."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +62,19 @@ def moving_hinges(mechanism: Mechanism) -> tuple[MovingHinge, ...]:
     )
 
 
-def hinge_orders(solved: Solved, hinges: tuple[MovingHinge, ...]) -> tuple[Array, Array, Array]:
-    """Angle (lanes, n, hinges) [rad] of each hinge with two derivatives by the path's parameter.
+def rotor_of_hinge(hinge: MovingHinge, _numbers: Dimensions, at: Positions) -> tuple[Number, Number]:
+    """Cosine and sine of the angle of a hinge, over any algebra, times a positive number that stays the same.
 
-    Counter-clockwise seen from outside, from the arc of the first link to that of the second. The turns of a link that
-    goes on turning against another are counted from sample to sample.
+    Counter-clockwise seen from outside, from the arc of the first link to that of the second.
+    """
+    (x, y, z), (a, b, c), (d, e, f) = (at.points[name] for name in (hinge.point, *hinge.ends))
+    sine = x * (b * f - c * e) + y * (c * d - a * f) + z * (a * e - b * d)
+    cosine = (a * d + b * e + c * f) - (x * a + y * b + z * c) * (x * d + y * e + z * f)
+    return cosine, sine
+
+
+def hinge_rates(solved: Solved, hinges: tuple[MovingHinge, ...]) -> tuple[Array, Array]:
+    """Two derivatives (lanes, n, hinges) of the angle of each hinge by the path's parameter.
 
     Notes
     -----
@@ -70,38 +86,13 @@ def hinge_orders(solved: Solved, hinges: tuple[MovingHinge, ...]) -> tuple[Array
         name: k for k, name in enumerate((*solved.ready.structure.dimensions.frame, *solved.layout.points))
     }
     links = {name: k for k, name in enumerate(solved.layout.links)}
-    places = solved.all_points[0]
-    at = places[:, :, [points[hinge.point] for hinge in hinges]]
-    one, other = (places[:, :, [points[hinge.ends[k]] for hinge in hinges]] for k in (0, 1))
+    at = solved.all_points[0][:, :, [points[hinge.point] for hinge in hinges]]
+    first, second = ([links[hinge.links[k]] for hinge in hinges] for k in (0, 1))
     with np.errstate(invalid="ignore"):
-        sine = np.einsum("...i,...i", at, np.cross(one, other))
-        cosine = np.einsum("...i,...i", one, other) - np.einsum("...i,...i", at, one) * np.einsum(
-            "...i,...i", at, other
+        one, two = (
+            np.einsum("...i,...i", at, spin[:, :, second] - spin[:, :, first]) for spin in solved.spins
         )
-        first, second = ([links[hinge.links[k]] for hinge in hinges] for k in (0, 1))
-        rates = [
-            np.einsum("...i,...i", at, spin[:, :, second] - spin[:, :, first])
-            for spin in (*solved.spins[:2],)
-        ]
-    return (
-        _with_turns(np.arctan2(sine, cosine), rates[0], rates[1], solved.span.parameter),
-        rates[0],
-        rates[1],
-    )
-
-
-def _with_turns(angles: Array, rates: Array, slopes: Array, parameter: Array) -> Array:
-    """Angles with whole turns such that from sample to sample they grow as their two derivatives say."""
-    if angles.shape[1] < 2:
-        return angles
-    step = np.diff(parameter)[:, None]
-    with np.errstate(invalid="ignore"):
-        # by both derivatives at both ends, to the fifth order of the step
-        grown = step * (rates[:, :-1] + rates[:, 1:]) / 2 + step**2 * (slopes[:, :-1] - slopes[:, 1:]) / 12
-        turns = np.round((grown - np.diff(angles, axis=1)) / (2.0 * np.pi))
-    # behind a gap counting begins anew
-    counted = np.cumsum(np.where(np.isfinite(turns), turns, 0.0), axis=1)
-    return np.concatenate([angles[:, :1], angles[:, 1:] + 2.0 * np.pi * counted], axis=1)
+    return one, two
 
 
 def spherical_coordinates(places: Array) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from centrode.errors import STATUSES_OF_MOTION, InputError
-from centrode.kinematics.hinge_angles import hinge_orders, moving_hinges, spherical_coordinates
+from centrode.kinematics.hinge_angles import HINGE_ANGLES, hinge_rates, moving_hinges, spherical_coordinates
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
@@ -137,6 +137,12 @@ def kinds_of(solved: Solved) -> list[VariableKind]:
     return [*kinds, VariableKind(slides, "slide_", ("guide",), orders(solved.slides))]
 
 
+def hinge_orders(solved: Solved) -> Orders | None:
+    """Angles at the moving hinges with two derivatives by the path's parameter; None where there are none."""
+    hinges = moving_hinges(solved.ready.mechanism) if solved.hinges is not None else ()
+    return (solved.hinges, *hinge_rates(solved, hinges)) if hinges else None
+
+
 def spherical_variables(
     solved: Solved, front: tuple[str, ...] = (), *, coordinates: bool = True
 ) -> dict[str, Variable]:
@@ -144,12 +150,11 @@ def spherical_variables(
     if solved.spins is None:
         return {}
     variables: dict[str, Variable] = {}
-    hinges = moving_hinges(solved.ready.mechanism)
-    if hinges:
-        orders = hinge_orders(solved, hinges)
-        for order, name in enumerate(("hinge_angle", "hinge_velocity", "hinge_acceleration")):
-            values = _lanes(by_time(orders, order, solved.span), front)
-            variables[name] = vocabulary_variable(name, (*front, "sample", "hinge"), values)
+    orders = hinge_orders(solved)
+    for order, name in enumerate(HINGE_ANGLES if orders is not None else ()):
+        assert orders is not None
+        values = _lanes(by_time(orders, order, solved.span), front)
+        variables[name] = vocabulary_variable(name, (*front, "sample", "hinge"), values)
     if coordinates:
         polar, azimuth = spherical_coordinates(_lanes(solved.all_points[0], front))
         for name, values in (("polar_angle", polar), ("azimuth", azimuth)):

@@ -26,6 +26,7 @@ from centrode.kinematics.angular_velocity import (
 from centrode.kinematics.change_points import BranchedPlan, Smooth
 from centrode.kinematics.events import EventScan, guard_with_bound
 from centrode.kinematics.higher_class.evaluation import ConvergedPlaces
+from centrode.kinematics.hinge_angles import moving_hinges, rotor_of_hinge
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import JETS, nearest_node
 from centrode.kinematics.plan_evaluation import (
@@ -366,6 +367,28 @@ def _initial(course: UnwoundAngle, guide: str, point: str) -> float:
     at, numbers = course.ready.assembled.positions, course.ready.kinematics.numbers
     slide = at.drives.get(guide, slide_of(ARRAYS, numbers, at, guide, point))
     return float(slide * TURN / numbers.space.period(ARRAYS, numbers.curve(guide)))
+
+
+def hinge_angles_at(course: UnwoundAngle, at: Positions, samples: Samples, parameter: Array) -> Array | None:
+    """Angles (lanes, n, hinges) [rad] at the moving hinges of a linkage on the sphere; None in the plane.
+
+    In the initial position they lie in (-pi, pi].
+    """
+    if samples.layout.runs_on:
+        return None
+    hinges = moving_hinges(course.ready.mechanism)
+    angles, nearest, start = (
+        np.empty((*samples.status.shape, len(hinges))),
+        course.nearest(parameter),
+        course.ready.assembled.positions,
+    )
+    for k, hinge in enumerate(hinges):
+        rotor = partial(rotor_of_hinge, hinge)
+        initial = float(_angle_of(rotor(course.ready.kinematics.numbers, start)))
+        cosine, sine = np.broadcast_arrays(*rotor(course.numbers, at))
+        turns = course.turns(rotor, initial).at(nearest, cosine, sine, parameter)
+        angles[..., k] = np.arctan2(sine, cosine) + TURN * turns
+    return angles
 
 
 # Where rolling wheels touch their tracks: the instant centre of each wheel against the body it rolls on.

@@ -17,7 +17,15 @@ from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import SampleGrid, even_grid, grid_at, places_of
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
 from centrode.kinematics.preparation import Ready
-from centrode.kinematics.samples import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
+from centrode.kinematics.samples import (
+    Kept,
+    MotionOnPath,
+    ResultArrays,
+    Samples,
+    contacts_at,
+    hinge_angles_at,
+    start_of,
+)
 from centrode.locale import _
 from centrode.model.motion_parameter import MotionVariable
 from centrode.model.settings import REACHABLE
@@ -50,7 +58,8 @@ class Solved:
     (lanes, n). `all_points` has the frame's points before the moving ones. `spins` (2, lanes, n, links, 3) are
     rotation vectors [rad] by the parameter and their derivatives, `attitudes` (3, lanes, n, links, 3, 3) their axes in
     those of the frame; neither where angles say it all. `contacts`
-    (lanes, n, rolling wheels, axes) are the places where wheels touch their tracks.
+    (lanes, n, rolling wheels, axes) are the places where wheels touch their tracks, `hinges` (lanes, n, hinges) the
+    angles [rad] at the moving hinges on the sphere, with their turns; None where these are not counted.
     """
 
     ready: Ready
@@ -67,6 +76,7 @@ class Solved:
     residual: Array
     worst_constraint: Kept
     contacts: Array
+    hinges: Array | None = None
 
     def events(self, lane: int = 0) -> list[Event]:
         """Events between the ends of the span and the initial position, in the order of the path."""
@@ -152,6 +162,7 @@ def solve(
         # the first of equal parts: the same constraint whatever the parts
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
         np.concatenate([part.contacts for part in parts]),
+        None if parts[0].hinges is None else np.concatenate([part.hinges for part in parts]),
     )
 
 
@@ -233,6 +244,7 @@ class _Part:
     residual: Array
     worst_constraint: Kept
     contacts: Array
+    hinges: Array | None
 
 
 def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples: Samples) -> _Part:
@@ -240,7 +252,8 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples:
     places = MotionOnPath.along(ready, kinematics, span.parameter, samples.status.shape[0])
     outcome = places.fill(span.parameter, samples)
     contacts = contacts_at(kinematics, outcome.at, samples)
-    return _Part(places.continuation.branches, outcome.residual, outcome.worst_constraint, contacts)
+    hinges = hinge_angles_at(places.course, outcome.at, samples, span.parameter)
+    return _Part(places.continuation.branches, outcome.residual, outcome.worst_constraint, contacts, hinges)
 
 
 def _join_branches(parts: Sequence[Branches]) -> Branches:

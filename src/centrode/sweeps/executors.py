@@ -10,7 +10,7 @@ from typing import Protocol
 
 from centrode.errors import InputError
 from centrode.kinematics.machine_code.trace import Untraceable
-from centrode.locale import _
+from centrode.locale import _, mark
 from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
@@ -87,6 +87,8 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
 def _machine_code_executor(
     task: SweepTask, design: Design, threads: int, kernels: str
 ) -> MachineCodeExecutor:
+    if task.asked.has_hinge_angles:
+        raise Untraceable(mark("angles at hinges, whose turns are counted on the mesh"))
     # one mechanism shows which numbers vary, and by what algebra
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)

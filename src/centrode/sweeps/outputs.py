@@ -13,7 +13,8 @@ import xarray as xr
 
 from centrode.dynamics.reduction import REDUCED, Values, reduced_number
 from centrode.errors import InputError
-from centrode.kinematics.motion import by_time, kinds_of
+from centrode.kinematics.hinge_angles import HINGE_ANGLES
+from centrode.kinematics.motion import by_time, hinge_orders, kinds_of
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.reading import nearest, value_text
@@ -27,8 +28,8 @@ from centrode.sweeps.designs import MECHANISM, Design, Rows
 Array: TypeAlias = npt.NDArray[np.float64]
 
 COEFFICIENTS = ("velocity_coefficient", "acceleration_coefficient")
-DERIVED = ("hinge_angle", "hinge_velocity", "hinge_acceleration", "polar_angle", "azimuth")
-"""Quantities that a motion derives from its places and spins: sweeps have those instead."""
+DERIVED = ("polar_angle", "azimuth")
+"""Quantities that a motion derives from its places: sweeps have those instead."""
 RESIDUAL, CONTACT = "residual", "contact"
 _LENGTH = 200
 
@@ -66,6 +67,8 @@ class Output:
             return reduced_number(self.quantity, solved, values)
         if self.quantity == CONTACT:
             return solved.contacts[:, :, *self.where]
+        if self.quantity in HINGE_ANGLES:
+            return self._at_hinges(solved)
         for kind in kinds_of(solved):
             orders = [None if x is None else x[:, :, *self.where] for x in kind.orders]
             # only the part that is wanted is turned into rates by time: of a view nothing is copied
@@ -82,6 +85,16 @@ class Output:
             if self.quantity in by_drive:
                 return (first, second)[by_drive.index(self.quantity)]
         raise InputError("outputs", _("there is no {name} here").format(name=self.name))
+
+    def _at_hinges(self, solved: Solved) -> Array:
+        orders = hinge_orders(solved)
+        assert orders is not None, "expressions know no turns: such outputs are left to the arrays"
+        value, first, second = orders
+        assert value is not None
+        value, first, second = (x[:, :, *self.where] for x in (value, first, second))
+        found = by_time((value, first, second), HINGE_ANGLES.index(self.quantity), solved.span)
+        assert found is not None
+        return found
 
 
 def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, ...]:
@@ -416,6 +429,13 @@ class SweepOutputs:
     def is_reduced(self) -> bool:
         """Whether a mechanism has one number of its samples."""
         return bool(self.reduction or self.formulas)
+
+    @property
+    def has_hinge_angles(self) -> bool:
+        """Whether an angle at a hinge is requested, whose turns are counted on the mesh of the path."""
+        of_formulas = (x.output for formula in self.formulas for x in formula.variables.values())
+        asked = (*self.outputs, *(output for output in of_formulas if output is not None))
+        return any(output.quantity in HINGE_ANGLES for output in asked)
 
     def results(self, solved: Solved, values: Rows, ok: npt.NDArray[np.bool_]) -> dict[str, AnyArray]:
         """The columns of some mechanisms (lanes, ...) from their motion, but for those of JUDGED."""

@@ -7,14 +7,15 @@ from math import isfinite, tau
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from centrode.dynamics.bearings.reaction_series import ReactionKind
+from centrode.dynamics.motion_extremes import extremes_of_motion
 from centrode.dynamics.steady_motion.closing_balance import closing_balance
 from centrode.errors import CentrodeError
 from centrode.model.reading import FRAME
 from centrode.sheets.sheet import Block, Chapter, Check, Items, Section
 from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Text
+from centrode.views.drive_balance import driving_terms, factor_text
 from centrode.views.instants import place_number
 from centrode.views.reaction_names import reaction_text
 
@@ -23,25 +24,24 @@ if TYPE_CHECKING:
 
     from centrode.dynamics.bearings.extremes import BearingLoad
     from centrode.dynamics.motion_results import MotionResults
-    from centrode.dynamics.steady_motion.closing_balance import ClosingBalance
     from centrode.dynamics.steady_motion.machine import MachineResults
+    from centrode.numerics.search import Extremes
 
-Array: TypeAlias = NDArray[np.float64]
+Found: TypeAlias = "Mapping[tuple[str, str], Extremes]"
 
 STILL = 1e-9
 """Radians, or part of the greatest length, by which what stands still may move."""
 GREATEST = 3
 """Reactions that are named."""
-BALANCES = 1e-9
-"""Part of the driving moment by which both sides may differ: the works of the cycle bound it."""
 
 
 def conclusions_chapter(results: MotionResults) -> Chapter:
     """What follows from the results, a sentence each."""
     machine = results.machine
     data = results.motion if machine is None else machine.steady
-    texts = [*_turning(results), *_strokes(results, data), *_swings(results, data)]
-    texts += _angles_on_sphere(results, data)
+    extremes = extremes_of_motion(results, data)
+    texts = [*_turning(results), *_strokes(results, extremes), *_swings(results, extremes)]
+    texts += _angles_on_sphere(results, data, extremes)
     checks: list[Block] = []
     if machine is not None:
         texts += _flywheel(machine)
@@ -58,12 +58,6 @@ def conclusions_chapter(results: MotionResults) -> Chapter:
     return Chapter(
         Sentence("Conclusions"), (Section(NOTHING, (Items(tuple(texts), numbered=True), *checks)),)
     )
-
-
-def _place(results: MotionResults, data: xarray.Dataset, sample: int) -> Number:
-    """What states the instant of a sample."""
-    parameter = results.mechanism.motion_parameter
-    return _at(results, float(parameter.instants(data)[sample]))
 
 
 def _at(results: MotionResults, place: float) -> Number:
@@ -101,27 +95,24 @@ def _turning(results: MotionResults) -> Iterator[Text]:
         )
 
 
-def _greatest(values: Array) -> tuple[float, int] | None:
-    """The value that is greatest in size and its sample; None where all is still or nothing known."""
-    known = np.abs(np.nan_to_num(np.where(np.isfinite(values), values, 0.0)))
-    sample = int(np.argmax(known))
-    return (float(values[sample]), sample) if known[sample] > 0 else None
-
-
-def _rates(
-    results: MotionResults, data: xarray.Dataset, velocity: Array, acceleration: Array
-) -> dict[str, Text] | None:
+def _rates(results: MotionResults, velocity: Extremes, acceleration: Extremes) -> dict[str, Text] | None:
     """Greatest velocity and acceleration with their places; None where one of them is nothing."""
-    fastest, steepest = _greatest(velocity), _greatest(acceleration)
-    if fastest is None or steepest is None:
+    (speed, faster), (rise, steeper) = _in_size(velocity), _in_size(acceleration)
+    if not (isfinite(speed) and isfinite(rise) and speed and rise):
         return None
-    (speed, faster), (rise, steeper) = fastest, steepest
     return {
-        "at": _place(results, data, faster),
-        "there": _place(results, data, steeper),
+        "at": _at(results, faster),
+        "there": _at(results, steeper),
         "v": Number(speed, digits=".4g"),
         "a": Number(rise, digits=".4g"),
     }
+
+
+def _in_size(found: Extremes) -> tuple[float, float]:
+    """The value that is greatest in size, and its place."""
+    if abs(found.least) > abs(found.greatest):
+        return found.least, found.at_least
+    return found.greatest, found.at_greatest
 
 
 def _of_unit(values: dict[str, Text], **units: str) -> dict[str, Text]:
@@ -133,16 +124,16 @@ def _of_unit(values: dict[str, Text], **units: str) -> dict[str, Text]:
     }
 
 
-def _strokes(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
+def _strokes(results: MotionResults, extremes: Found) -> Iterator[Text]:
     """Of each slider on a guide of the frame: stroke, greatest velocity and acceleration with their places."""
     unit = "m" if results.mechanism.space == "plane" else "rad"
     for guide in results.mechanism.guides:
-        if guide.on != FRAME or guide.id not in data["guide"].values:
+        if guide.on != FRAME or ("slide", guide.id) not in extremes:
             continue
-        one = data.sel(guide=guide.id)
-        slide = one["slide"].values
-        stroke = float(np.nanmax(slide) - np.nanmin(slide)) if np.isfinite(slide).any() else 0.0
-        rates = _rates(results, data, one["slide_velocity"].values, one["slide_acceleration"].values)
+        stroke = extremes["slide", guide.id].range
+        rates = _rates(
+            results, extremes["slide_velocity", guide.id], extremes["slide_acceleration", guide.id]
+        )
         if results.unreached and stroke > STILL:  # towards a limit velocities may grow beyond all bounds
             yield Sentence(
                 "Point {name} travels {stroke} along its guide in the part of the motion that is reached.",
@@ -159,7 +150,7 @@ def _strokes(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
             )
 
 
-def _swings(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
+def _swings(results: MotionResults, extremes: Found) -> Iterator[Text]:
     """Of each link that swings about a point of the frame: its angle, greatest rates with their places."""
     mechanism = results.mechanism
     driven = {drive.link for drive in mechanism.drives}
@@ -167,12 +158,10 @@ def _swings(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
     if mechanism.space != "plane" or results.unreached:
         return
     for name, link in mechanism.links.items():
-        if name in driven or not fixed & set(link.points) or name not in data["link"].values:
+        if name in driven or not fixed & set(link.points) or ("angle", name) not in extremes:
             continue
-        one = data.sel(link=name)
-        angle = one["angle"].values
-        swing = float(np.nanmax(angle) - np.nanmin(angle)) if np.isfinite(angle).any() else 0.0
-        rates = _rates(results, data, one["angular_velocity"].values, one["angular_acceleration"].values)
+        swing = extremes["angle", name].range
+        rates = _rates(results, extremes["angular_velocity", name], extremes["angular_acceleration", name])
         if not STILL < swing < tau - STILL or rates is None:
             continue
         yield Sentence(
@@ -184,29 +173,28 @@ def _swings(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
         )
 
 
-def _angles_on_sphere(results: MotionResults, data: xarray.Dataset) -> Iterator[Text]:
+def _angles_on_sphere(results: MotionResults, data: xarray.Dataset, extremes: Found) -> Iterator[Text]:
     """Of each link that swings about a hinge of the frame, and of each hinge of moving links: extremes of the angle."""
     if results.mechanism.space != "sphere" or results.unreached:
         return
     driven = {drive.link for drive in results.mechanism.drives}
     for kind in ("joint", "hinge"):
         for name in data[kind].values.tolist() if kind in data else ():
-            one = data.sel({kind: name})
-            angle = one[f"{kind}_angle"].values
-            if (kind == "joint" and name in driven) or not np.isfinite(angle).all():
+            if kind == "joint" and name in driven:
                 continue
-            angle = np.unwrap(angle)
-            low, high = int(np.argmin(angle)), int(np.argmax(angle))
-            rates = _rates(results, data, one[f"{kind}_velocity"].values, one[f"{kind}_acceleration"].values)
-            if not STILL < angle[high] - angle[low] < tau - STILL or rates is None:
+            angle, *derivatives = (
+                extremes[f"{kind}_{word}", name] for word in ("angle", "velocity", "acceleration")
+            )
+            rates = _rates(results, *derivatives)
+            if not STILL < angle.range < tau - STILL or rates is None:
                 continue
             yield _ANGLES[kind].fill(
                 name=Name(name),
-                swing=Number(float(angle[high] - angle[low]), "rad", ".4g"),
-                least=Number(float(angle[low]), "rad", ".4g"),
-                at_least=_place(results, data, low),
-                greatest=Number(float(angle[high]), "rad", ".4g"),
-                at_greatest=_place(results, data, high),
+                swing=Number(angle.range, "rad", ".4g"),
+                least=Number(angle.least, "rad", ".4g"),
+                at_least=_at(results, angle.at_least),
+                greatest=Number(angle.greatest, "rad", ".4g"),
+                at_greatest=_at(results, angle.at_greatest),
                 **_of_unit(rates, v="rad/s", a="rad/s^2"),
             )
 
@@ -314,26 +302,27 @@ def _size(load: BearingLoad) -> tuple[float, float]:
     return greatest if greatest[0] >= least[0] else least
 
 
-def _balance(results: MotionResults, balance: ClosingBalance) -> Text:
+def _balance(results: MotionResults, here: xarray.Dataset) -> Text:
     """The closing balance with its numbers."""
-    numbers = {
-        "links": Number(balance.links, "N m", ".6g", unit_hidden=True),
-        "inertia": Number(balance.inertia, "kg m^2", ".6g", unit_hidden=True),
-        "acceleration": Number(balance.acceleration, "1", ".5g"),
-        "driving": Number(balance.links + balance.inertia * balance.acceleration, "N m", ".5g"),
+    links, inertia, acceleration, _driving = driving_terms(here)
+    numbers: dict[str, Text] = {
+        "links": Number(links, "N m", ".6g", unit_hidden=True),
+        "inertia": Number(inertia, "kg m^2", ".6g", unit_hidden=True),
+        "acceleration": factor_text(Number(acceleration, "1", ".5g")),
+        "driving": Number(links + inertia * acceleration, "N m", ".5g"),
     }
     return Sentence(
         "The machine closes at {place}: the balancing moment of the links and the inertia moment of what turns with the"
-        " drive are the driving moment, {links} + {inertia} · ({acceleration}) = {driving}.",
-        place=_at(results, balance.at),
+        " drive are the driving moment, {links} + {inertia} · {acceleration} = {driving}.",
+        place=_at(results, float(here["drive_value"].values[0])),
         **numbers,
     )
 
 
-def _balance_check(balance: ClosingBalance) -> Check:
+def _balance_check(here: xarray.Dataset) -> Check:
     statement = Sentence(
         "The balancing moment of the links, by the equilibrium of each, and the inertia moment of the flywheel are the"
         " driving moment, by the work of a cycle, within {share}."
     )
-    size = max(abs(balance.links), abs(balance.driving))
-    return Check(statement, abs(balance.difference), size, BALANCES)
+    residual, error = (float(here.attrs[f"driving_{name}"]) for name in ("residual", "error"))
+    return Check(statement, residual, 1.0, error + float(here["reaction_loss"]))

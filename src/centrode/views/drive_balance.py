@@ -6,16 +6,23 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from centrode.sheets.sheet import Block, Check, Formula, Paragraph, Section
-from centrode.sheets.texts import Expression, Factor, Joined, Leaf, Name, Number, Sentence, Symbol
+from centrode.sheets.texts import Expression, Factor, Joined, Leaf, Name, Number, Sentence, Symbol, Text
 
 if TYPE_CHECKING:
     import xarray
 
-SENSE = Sentence("Moments on the drive, positive in the sense in which it turns:")
+SENSE = Sentence("Moments on the drive, positive in the sense in which its coordinate grows:")
 REAL_MOTION = Sentence(
     "The forces are those of the real motion: the drive has the angular velocity $omega$ and the angular acceleration "
     "$epsilon$ of the steady motion."
 )
+
+
+def driving_terms(here: xarray.Dataset) -> tuple[float, float, float, float]:
+    """Moment of the links, inertia of group I, acceleration, and driving moment of reactions at a real sample."""
+    names = ("moment_of_links", "drive_acceleration", "driving_moment")
+    links, acceleration, driving = (float(here[name]) for name in names)
+    return links, float(here.attrs["inertia"]), acceleration, driving
 
 
 def moment_of_links(steady: xarray.Dataset) -> float:
@@ -66,13 +73,17 @@ def driving_lines(
     )
 
 
+def factor_text(number: Number) -> Text:
+    """A number behind a sign of multiplication: in brackets where it is negative."""
+    return Joined((Name("("), number, Name(")")), "") if number.value < 0 else number
+
+
 def printed_balance(links: float, inertia: float, acceleration: float, driving: float) -> Section:
     """The same as a terminal prints it."""
-    times = (
-        Joined((Name("("), Number(acceleration), Name(")")), "") if acceleration < 0 else Number(acceleration)
-    )
     letters = Joined((Symbol("M", "b"), Joined((Symbol("J", "I"), Symbol("ε")), "·")), " + ")
-    numbers = Joined((Number(links), Joined((Number(inertia), times), "·")), " + ")
+    numbers = Joined(
+        (Number(links), Joined((Number(inertia), factor_text(Number(acceleration))), "·")), " + "
+    )
     total = Joined((letters, numbers, Number(links + inertia * acceleration, "N m")), " = ")
     driven = Joined((Symbol("M", "d"), Number(driving, "N m")), " = ")
     return Section(SENSE, (Paragraph(Joined((total, driven))),))
@@ -83,12 +94,12 @@ def drive_balance(
 ) -> Iterator[Block]:
     """The closing check of an instant: what the links need, with what the flywheel takes, beside the driving moment.
 
-    Moments [N m] and accelerations are positive in the sense in which the drive turns. Both sides may differ by the
-    share `bound` of `size` [N m].
+    Moments [N m] and accelerations count along the coordinate of the drive. Both sides may differ by the share `bound`
+    of `size` [N m].
     """
     yield Paragraph(
         Sentence(
-            "In the sense in which the drive turns, the balancing moment $M_upright(b)$ of the links and the moment "
+            "Along the coordinate of the drive, the balancing moment $M_upright(b)$ of the links and the moment "
             "$J_upright(I) epsilon$ that accelerates flywheel and shafts add up to the driving moment $M_upright(d)$:"
         )
     )

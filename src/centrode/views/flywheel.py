@@ -440,10 +440,10 @@ def _moments_alone(results: MachineResults) -> Illustration:
 def _groups(flywheel: Flywheel) -> tuple[Block, ...]:
     """What counts as what; the cycle."""
     cycle = Counted(
-        "A cycle has {n} turn of the drive; angles turned $phi$, works and moments are positive in the sense of "
-        "the drive.",
-        "A cycle has {n} turns of the drive; angles turned $phi$, works and moments are positive in the sense of "
-        "the drive.",
+        "A cycle has {n} turn of the drive; angles turned $phi$ count in the sense in which the drive turns, moments, "
+        "speeds and accelerations along its coordinate.",
+        "A cycle has {n} turns of the drive; angles turned $phi$ count in the sense in which the drive turns, moments, "
+        "speeds and accelerations along its coordinate.",
         flywheel.turns,
     )
     groups = Sentence(
@@ -458,22 +458,31 @@ def _work_relations(results: MachineResults) -> Iterator[tuple[Leaf, ...]]:
     flywheel, machine = results.flywheel, results.mechanism.machine
     work, moment = _works(flywheel)
     turn = "2 pi" if flywheel.turns == 1 else f"2 pi dot.op {flywheel.turns}"
+    # moments count along the coordinate: where it falls, the work is not theirs over the angle turned
+    falls, coordinate = (
+        float(results.steady["drive_speed"][0]) < 0.0,
+        results.mechanism.motion_parameter.drives[0],
+    )
+    minus, letter, first = "-", "phi", "0"
+    if falls:
+        letter = "phi" if coordinate.is_chosen else "q"
+        minus, first = "", f"({letter}_0)"
     mean = "overline(M)_upright(d)" if machine is not None and machine.driving else "M_upright(d)"
     yield (
         "A_upright(c)",
-        "integral.cont M_upright(c) thin d phi",
+        f"integral.cont M_upright(c) thin d {letter}",
         Number(work, "J"),
     )
     yield (
         Expression(mean),
-        f"-frac(A_upright(c), {turn})",
-        Expression(f"-frac({{work}}, {turn})", work=Number(work, "J", unit_hidden=True)),
+        f"{minus}frac(A_upright(c), {turn})",
+        Expression(f"{minus}frac({{work}}, {turn})", work=Number(work, "J", unit_hidden=True)),
         Number(moment, "N m"),
     )
     yield 'T_upright("II")', '1/2 J_upright("II") omega_upright(m)^2'
     yield (
         "Delta T_upright(I)",
-        'integral_0^phi (M_upright(d) + M_upright(c)) thin d phi - T_upright("II")',
+        f'integral_{first}^{letter} (M_upright(d) + M_upright(c)) thin d {letter} - T_upright("II")',
     )
     for name, value, at in (
         ("max", flywheel.energy_greatest, flywheel.greatest_at),

@@ -104,9 +104,8 @@ def _printed_instant(found: ForcePolygons, place: float | str) -> Iterator[Block
 
 
 def _driving_terms(found: ForcePolygons, group: DriveGroup) -> tuple[float, float, float, float]:
-    """Moment of the links, inertia of group I, acceleration, and driving moment, in the sense of turning."""
-    (balancing,) = found.balancing.values()
-    links = group.sense * balancing
+    """Moment of the links, inertia of group I, acceleration, and driving moment, along the coordinate of the drive."""
+    (links,) = found.balancing.values()
     return links, group.inertia, float(group.acceleration[0]), float(group.driving[0])
 
 

@@ -50,6 +50,7 @@ from centrode.views.columns import force_columns, status_column
 from centrode.views.drive_balance import (
     REAL_MOTION,
     drive_balance,
+    driving_terms,
     moment_of_links,
     printed_balance,
     terms_of_links,
@@ -371,14 +372,7 @@ def _printed_parts(results: ReactionResults) -> Iterator[Table | Section]:
 def _printed_balance(here: xarray.Dataset) -> Iterator[Section]:
     """What drives, with its numbers, where the reactions of the sample are known."""
     if np.isfinite(float(here["moment_of_links"])):
-        yield printed_balance(*_driving_terms(here))
-
-
-def _driving_terms(here: xarray.Dataset) -> tuple[float, float, float, float]:
-    """Moment of the links, inertia of group I, acceleration, and driving moment at a sample of the real motion."""
-    names = ("moment_of_links", "drive_acceleration", "driving_moment")
-    links, acceleration, driving = (float(here[name]) for name in names)
-    return links, float(here.attrs["inertia"]), acceleration, driving
+        yield printed_balance(*driving_terms(here))
 
 
 def _first_columns(reactions: Iterable[ReactionSeries | BearingLoad]) -> tuple[Column, Column]:
@@ -613,7 +607,7 @@ def _chapter(results: ReactionResults, loads: Sequence[BearingLoad]) -> Chapter:
         # where friction jams every sample nothing is determined
         Section(Sentence("Greatest reactions"), (*((extremes, note) if loads else ()), *losses)),
         Section(Sentence("Checks"), tuple(_checks(reactions))),
-        # in the real motion the balance shows the moment of the links, in the sense of the drive
+        # in the real motion the balance shows the moment of the links
         illustrations(
             captions, captions, (*DETAILS, "balancing") if "driving_moment" in reactions else DETAILS
         ),
@@ -699,8 +693,7 @@ def _second_rate(here: xarray.Dataset) -> float:
     """Second derivative of the drive's value by time at a sample; 0 at a constant rate."""
     if "drive_acceleration" not in here:
         return 0.0
-    # the acceleration counts in the sense in which the drive turns
-    return float(np.copysign(1.0, here["drive_rate"]) * here["drive_acceleration"])
+    return float(here["drive_acceleration"])
 
 
 def _accelerations(mechanism: Mechanism, here: xarray.Dataset, rate: float, second: float) -> list[Column]:
@@ -753,7 +746,7 @@ def _virtual_work(mechanism: Mechanism, instants: ReactionsAtInstants, k: int) -
 
 def _real_balance(here: xarray.Dataset, steady: xarray.Dataset) -> Iterator[Block]:
     """In the real motion: the links' moment by virtual work, and with the flywheel's the driving moment."""
-    terms = _driving_terms(here)
+    terms = driving_terms(here)
     size = terms_of_links(steady) + abs(terms[1] * terms[2]) + abs(terms[3])
     bound = float(here["reaction_loss"]) + float(here.attrs["driving_error"])
     yield Check(

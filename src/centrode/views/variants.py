@@ -19,6 +19,7 @@ from centrode.sheets.sheet import (
     Column,
     Deferred,
     Failure,
+    Items,
     Paragraph,
     Section,
     Sheet,
@@ -26,7 +27,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Text
 from centrode.views.instants import place_title
-from centrode.views.parameter_studies import number_title
+from centrode.views.parameter_studies import ANALYSES, number_title
 from centrode.views.rotatability import cause_text
 from centrode.views.single_changes import changes_text
 
@@ -61,6 +62,7 @@ def sheet(variants: Variants) -> Sheet:
         printed=(
             _printed_table(variants),
             *_tables_of_numbers(variants),
+            *_refused_analyses(variants),
             Paragraph(Joined((counted, _statuses(variants)), ": ")),
         ),
         tables={"summary": _summary(variants)},
@@ -68,6 +70,7 @@ def sheet(variants: Variants) -> Sheet:
             {
                 "variants": lambda: _data_chapter(variants),
                 "turning": lambda: _rotatability_chapter(variants),
+                **({"analysis": lambda: _analysis_chapter(variants)} if variants.compute is not None else {}),
                 **_instant_chapters(variants, {name: one.instants for name, one in variants.answers.items()}),
                 **_repaired_chapters(variants),
             }
@@ -141,6 +144,27 @@ def _tables_of_numbers(variants: Variants) -> Iterator[Table]:
         yield Table((_names(variants.rows), *numbers[start : start + WIDE // 2]))
 
 
+def _refused_analyses(variants: Variants) -> Iterator[Block]:
+    """Why an analysis has no numbers of some variants, whose motion is known all the same."""
+    refused = [row for row in variants.rows if row.refusal]
+    if refused:
+        yield Paragraph(Counted("{n} variant has no numbers:", "{n} variants have no numbers:", len(refused)))
+        yield Items(tuple(Joined((Name(row.variant), Name(row.refusal)), ": ") for row in refused))
+
+
+def _causes(variants: Variants, row: VariantRow) -> str:
+    """Why a variant locks or was not computed, and why its analysis was refused."""
+    return "; ".join(filter(None, (row.cause, row.refusal and f"{variants.compute}: {row.refusal}")))
+
+
+def _analysis_chapter(variants: Variants) -> Chapter:
+    """The numbers of the analysis, a row a variant, and why some have none."""
+    assert variants.compute is not None
+    names = [row.variant for row in variants.rows]
+    blocks = (*_tables(names, _numbers(variants)), *_refused_analyses(variants))
+    return Chapter(Sentence("Analysis: {what}", what=ANALYSES[variants.compute]), (Section(NOTHING, blocks),))
+
+
 def _summary(variants: Variants) -> Table:
     """The table of a file, in SI and in English."""
     rows = variants.rows
@@ -153,7 +177,7 @@ def _summary(variants: Variants) -> Table:
             Column("turns_fully", tuple(words[row.turns_fully] for row in rows)),
             Column("limit", limits, unit, unit_fixed=True),
             Column("group", tuple(Name(row.group) for row in rows)),
-            Column("cause", tuple(Name(row.cause) for row in rows)),
+            Column("cause", tuple(Name(_causes(variants, row)) for row in rows)),
             Column("status", tuple(Name(row.status) for row in rows)),
             *(replace(column, unit_fixed=True) for column in _numbers(variants)),
         )

@@ -54,8 +54,31 @@ def modified_trapezoid(u: Any) -> Any:
     return value + speed * w + peak * (1 - mpmath.cos(k * w)) / k**2
 
 
+def parabolic(u: Any) -> Any:
+    """Constant acceleration 4 up to the middle, as much retardation behind it."""
+    return 2 * u**2 if u <= 0.5 else 1 - 2 * (1 - u) ** 2
+
+
+def trapezoid(u: Any) -> Any:
+    """Acceleration that grows evenly up to an eighth, stays up to three and falls up to the middle.
+
+    It is the sum of three accelerations that grow evenly from 0, 1/8 and 3/8, the later two against the first.
+    """
+    if u > 0.5:
+        return 1 - trapezoid(1 - u)
+    eighth, peak = mpmath.mpf(1) / 8, mpmath.mpf(16) / 3
+
+    def ramp(since: Any) -> Any:
+        """The way by an acceleration that grows by 8 peak in a unit, since so long."""
+        return 8 * peak * since**3 / 6 if since > 0 else mpmath.mpf(0)
+
+    return ramp(u) - ramp(u - eighth) - ramp(u - 3 * eighth)
+
+
 RISES: dict[str, Rise] = {
     "uniform": lambda u: u,
+    "parabolic": parabolic,
+    "trapezoid": trapezoid,
     "harmonic": harmonic,
     "cycloidal": cycloidal,
     "3-4-5": lambda u: u**3 * (10 - 15 * u + 6 * u**2),

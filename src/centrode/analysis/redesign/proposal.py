@@ -2,7 +2,7 @@
 
 Initial angles are the data of an assignment whose frame they place, and its source changes these: first one of them is
 sought alone, then several together. Lengths and distances follow in the same order. Every dyad keeps the first of
-`ANGLES` that is within reach, or the angle that is named.
+`LEAST_ANGLES` that is within reach, or the angle that is named.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class ProposedRepair:
     mechanism, repaired : the one given, and the one proposed
     dimensions, changes : what is changed, and its values before and after
     wanted : transmission angle [rad] that every dyad should keep
-    angle : the one that it keeps at least: the first of `ANGLES` within reach, or the one named [rad]
+    angle : the one that it keeps at least: the first of `LEAST_ANGLES` within reach, or the one named [rad]
     least_angle : the exact least one of the repaired mechanism [rad]
     greatest : the greatest within reach, where that is less than the one wanted; else None [rad]
     residual : worst residual of the motion of the repaired mechanism, over its greatest length

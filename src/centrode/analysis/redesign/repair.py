@@ -367,9 +367,10 @@ class RepairSearch:
         return np.asarray((sines[:size] - sines[size:]).T / (2.0 * STEP * self.target))
 
 
-ANGLES = tuple(map(radians, (20.0, 10.0, 5.0, 2.0, 1.0)))
-"""Least transmission angles [rad] that are requested one after the other where none is given: the first one within
-reach. Less than 20 degrees jams by the friction of ordinary hinges; 0 would be a mechanism at the brink of locking."""
+LEAST_ANGLES = tuple(map(radians, (20.0, 10.0, 5.0, 2.0, 1.0)))
+"""Least transmission angles [rad] that are requested one after the other where none is given, of one dimension and of
+several: the first one within reach. Less than 20 degrees jams by the friction of ordinary hinges, a good transmission
+of forces needs some 30 to 40; 0 would be a mechanism at the brink of locking."""
 CANDIDATES = 3072
 """Candidates of the first spread."""
 TIGHTENINGS = 4
@@ -486,7 +487,7 @@ def repair(
     check_repairable(prepared)
     named = read_least_angle(least_transmission_angle, mechanism.display)
     check_greatest_change(greatest_change)
-    wanted = ANGLES[0] if named is None else named
+    wanted = LEAST_ANGLES[0] if named is None else named
     varying = varyings(prepared, vary, bounds, greatest_change)
     before = rotatability(mechanism)
     asked = Repair(
@@ -505,7 +506,7 @@ def repair(
     if greatest is None:
         return found
     found = replace(found, greatest=greatest)
-    for angle in ANGLES if named is None else ():
+    for angle in LEAST_ANGLES if named is None else ():
         if angle > min(greatest, wanted - ENOUGH):
             continue
         lower = replace(found, least_transmission_angle=angle)

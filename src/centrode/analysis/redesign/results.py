@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from centrode.analysis.redesign.candidates import check_greatest_change, read_least_angle
 from centrode.analysis.redesign.proposal import ProposedRepair, propose
-from centrode.analysis.redesign.repair import Repair
+from centrode.analysis.redesign.repair import LEAST_ANGLES, Repair
 from centrode.analysis.redesign.repair import repair as find_repair
 from centrode.analysis.redesign.single_changes import (
-    MARGINS,
     DeadPosition,
     SingleChanges,
     dead_position,
@@ -107,7 +106,7 @@ def rotatability_results(
     turning = rotatability(mechanism)
     named = read_least_angle(least_transmission_angle, mechanism.display)
     check_greatest_change(change)
-    single, refusal = _single_or_refusal(turning, MARGINS if named is None else (named,), change)
+    single, refusal = _single_or_refusal(turning, LEAST_ANGLES if named is None else (named,), change)
     if not complete:
         return RotatabilityResults.of(turning, single=single, refusal=refusal)
     angles = _angles(mechanism, samples)

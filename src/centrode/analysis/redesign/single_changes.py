@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import asin, floor, inf, log10, pi, radians, sin, sqrt, tau
+from math import asin, floor, inf, log10, pi, sin, sqrt, tau
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -28,6 +28,7 @@ from centrode.analysis.redesign.repair import (
     COARSE,
     ENOUGH,
     FINE,
+    LEAST_ANGLES,
     check_repairable,
     least,
     over_turn,
@@ -51,9 +52,6 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-MARGINS = tuple(map(radians, (20.0, 10.0, 5.0, 2.0)))
-"""Transmission angles [rad] that a repair keeps: the first one for which any dimension is found. 20 degrees keep off
-the friction of ordinary hinges; a good transmission of forces needs more, some 30 to 40 degrees."""
 SHORTEST, LONGEST = 0.2, 3.0
 """Between which shares of itself a length, or a distance in the frame, is varied."""
 STEPS = 160
@@ -150,7 +148,7 @@ class SingleChanges:
     changes: tuple[SingleChange, ...]
     without: tuple[Dimension, ...]
     greatest: float | None = None
-    wanted: float = MARGINS[0]
+    wanted: float = LEAST_ANGLES[0]
     named: bool = False
     greatest_change: float | None = None
 
@@ -176,7 +174,7 @@ def is_reached(found: Rotatability, required: DrivenRange) -> bool:
 def single_changes(
     mechanism: MechanismSource,
     found: Rotatability | None = None,
-    margins: Sequence[float] = MARGINS,
+    margins: Sequence[float] = LEAST_ANGLES,
     greatest_change: float | None = None,
 ) -> SingleChanges | None:
     """The dimensions of which each alone repairs a mechanism that locks; None where it makes the motion asked for.

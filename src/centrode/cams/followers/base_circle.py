@@ -514,12 +514,18 @@ def _body(cam: PlateCam) -> FollowerCam:
         if not has_bounds(cam):
             what = _("a profile needs the cam's base radius")
             raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it must satisfy"))
-        least = least_base_radius(layout, motion, chosen_admissible(cam))
+        least = _least(cam)
         if least.by == "nothing":
             what = _("no bound limits the base radius: every base radius satisfies them all")
             raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
         base = least.base_radius
     return replace(layout.cam(motion, base), cam=cam)
+
+
+@functools.lru_cache(maxsize=16)
+def _least(cam: PlateCam) -> Least:
+    """The least cam, kept for whoever asks next: the cam as it is made has its radius, and its choice tells of it."""
+    return least_base_radius(layout_of(cam), follower_motion(cam), chosen_admissible(cam))
 
 
 def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
@@ -539,8 +545,9 @@ def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
         No base radius satisfies the bounds.
     """
     plate = with_follower(cam)
-    find = best_offset if offset else least_base_radius
-    return find(layout_of(plate), follower_motion(plate), chosen_admissible(plate))
+    if not offset:
+        return _least(plate)
+    return best_offset(layout_of(plate), follower_motion(plate), chosen_admissible(plate))
 
 
 def has_bounds(cam: PlateCam) -> bool:

@@ -179,11 +179,9 @@ class DriveGroup:
     inertia : float [kg m^2]
         J_I, of flywheel and shafts, reduced to the drive.
     acceleration : (n) [rad/s^2]
-        Of the drive, in the sense in which it turns.
+        Of the drive, along its coordinate.
     driving : (n) [N m]
-        Driving moment of the energy equation, in the same sense.
-    sense : +1.0 or -1.0
-        In which the drive's value changes.
+        Driving moment of the energy equation, along the same.
     size, error : (n) [N m]
         Sum of the sizes of all terms of the equation of motion, and what the acceleration may leave of it.
     """
@@ -191,7 +189,6 @@ class DriveGroup:
     inertia: float
     acceleration: Array
     driving: Array
-    sense: float
     size: Array
     error: Array
 
@@ -211,16 +208,13 @@ class DriveGroup:
         )
         # loads and speed were made to agree, to SETTLED, and nothing is known better than its rounding
         error = left_out + ROUNDINGS * SETTLED * size
-        return cls(speed.inertia, acceleration, moments[0], loads.sense, size, error)
+        along = loads.sense
+        return cls(speed.inertia, along * acceleration, along * moments[0], size, error)
 
     @property
     def inertia_moment(self) -> Array:
         """-J_I epsilon (n) [N m]."""
         return -self.inertia * self.acceleration
-
-    def moment_of_links(self, balancing: Array) -> Array:
-        """What the links need of the drive [N m], in the sense in which it turns, of what is positive as q grows."""
-        return self.sense * balancing
 
 
 @dataclass(frozen=True)

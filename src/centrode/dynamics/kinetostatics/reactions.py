@@ -291,7 +291,7 @@ def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
 
 
 def drive_group_variables(group: DriveGroup, needed: Array) -> dict[str, Variable]:
-    """Variables of the balance of the drive; `needed` (n) is what the links need. All in the sense of turning."""
+    """Variables of the balance of the drive; `needed` (n) is what the links need. All along its coordinate."""
     values = {
         "drive_acceleration": group.acceleration,
         "moment_of_links": needed,
@@ -441,7 +441,7 @@ def reactions_dataset(
         attributes |= friction_attributes(solved, rubbed, powers, whole)
     if found.pace.group is not None:
         # of the numbers as they are shown: absent where the reactions are
-        group, needed = found.pace.group, found.pace.group.moment_of_links(parts["balancing"][:, 0])
+        group, needed = found.pace.group, parts["balancing"][:, 0]
         variables |= drive_group_variables(group, needed)
         attributes |= driving_attributes(group, needed)
     return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes))

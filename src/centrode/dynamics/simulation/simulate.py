@@ -260,8 +260,7 @@ def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> Dri
 def _curves(
     setting: Setting, states: Array, forces: DriveForces, acceleration: Array, moving: npt.NDArray[np.bool_]
 ) -> dict[str, Array]:
-    """Curves over time (n) by names of the vocabulary; moments, speeds and works in the sense of the drive."""
-    sense = setting.rows.sense
+    """Curves over time (n) by names of the vocabulary; moments and speeds along the coordinate of the drive."""
     rate = states[RATE]
     inertia, driving = forces.inertia, forces.driving
     parts = {name: getattr(forces, name) for name in ("stored", "friction", "other")}
@@ -276,13 +275,13 @@ def _curves(
     works = states[[OF_DRIVE, OF_FRICTION, OF_OTHERS]]
     return {
         # adding zero leaves no negative one
-        "turned": sense * (states[VALUE] - setting.start) + 0.0,
-        "drive_speed": sense * rate + 0.0,
-        "drive_acceleration": sense * acceleration + 0.0,
+        "turned": setting.rows.sense * (states[VALUE] - setting.start) + 0.0,
+        "drive_speed": rate + 0.0,
+        "drive_acceleration": acceleration + 0.0,
         "inertia": inertia,
-        "driving_moment": sense * driving + 0.0,
-        "moment_of_loads": sense * loads + 0.0,
-        "moment_of_friction": sense * parts["friction"] + 0.0,
+        "driving_moment": driving + 0.0,
+        "moment_of_loads": loads + 0.0,
+        "moment_of_friction": parts["friction"] + 0.0,
         "power_of_drive": driving * rate + 0.0,
         "power_of_loads": loads * rate + 0.0,
         "work_of_drive": works[0],
@@ -364,7 +363,8 @@ def simulate(
     -------
     Dataset
         Value, speed and acceleration of the drive, moments, works, energies and powers over time, `occasion_...` and
-        what ended it (docs: simulation). Speeds, moments and works count in the sense of the drive.
+        what ended it (docs: simulation). Speeds and moments count along the coordinate of the drive, `turned` in the
+        sense in which it sets out.
 
     Raises
     ------

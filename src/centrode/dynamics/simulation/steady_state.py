@@ -167,7 +167,7 @@ PARTS = 2000
 
 @dataclass(frozen=True)
 class Regime:
-    """A machine whose speed repeats; speeds in the sense of the drive.
+    """A machine whose speed repeats; speeds are magnitudes.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class Regime:
     fluctuation : float
         (greatest - least) over half their sum.
     driving_moment : float [N m]
-        Mean over the angle.
+        Mean over the angle, along the coordinate of the drive.
     section, section_speed : float [rad, rad/s]
         Value of the drive at which the map was taken, and the speed that comes back there.
     multiplier : float
@@ -265,7 +265,7 @@ def _steady_state(
         greatest[0],
         # the difference over half the sum
         2.0 * (greatest[1] - least[1]) / (greatest[1] + least[1]),
-        float(ended[OF_DRIVE]) / period,
+        float(ended[OF_DRIVE]) / (sense * period),
         setting.start,
         speed,
         multiplier,

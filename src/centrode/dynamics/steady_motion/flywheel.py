@@ -109,7 +109,7 @@ def by_source(inertia: float, speed: float, *, rim: bool) -> Wheel:
 class Flywheel(PrintsSummary):
     """A machine's energies over a cycle and the flywheel it needs; what is None belongs to a fluctuation not given.
 
-    Angles turned [rad] count from the initial position in the sense in which the drive turns.
+    Angles turned [rad] count from the initial position in the sense in which the drive turns, speeds are magnitudes.
 
     Attributes
     ----------
@@ -120,7 +120,7 @@ class Flywheel(PrintsSummary):
     turns : int
         Of the drive in a cycle.
     work_of_loads, driving_moment : float [J], [N m]
-        Over the cycle; mean over the cycle.
+        Over the cycle; mean over the cycle, along the coordinate of the drive.
     error : float [J]
         Bound of the error of the works.
     energy_greatest, energy_least : float [J]
@@ -239,7 +239,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
         fluctuation=machine.fluctuation,
         turns=found.cycle.turns,
         work_of_loads=found.speed.balance.work_of_loads,
-        driving_moment=found.speed.balance.driving_moment,
+        driving_moment=found.cycle.sense * found.speed.balance.driving_moment,
         error=found.speed.balance.error,
         energy_greatest=energies.greatest,
         greatest_at=energies.at_greatest,

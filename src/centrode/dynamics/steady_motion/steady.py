@@ -319,8 +319,8 @@ def steady_motion(
     -------
     Dataset
         Everything of `motion`, with the real velocities and accelerations, and the moments, works, energies,
-        speeds and accelerations of the drive (docs: flywheel). All of these count in the sense in which the drive
-        turns, `turned` from the initial position.
+        speeds and accelerations of the drive (docs: flywheel). Moments, speeds and accelerations count along the
+        coordinate of the drive, `turned` from the initial position in the sense in which it turns.
 
     Raises
     ------
@@ -382,22 +382,24 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
 def _curves(found: SteadySolution, turned: Array) -> dict[str, Array]:
     """Curves of the drive over the cycle (n), by names of the vocabulary."""
     balance, cycle, square = found.speed.balance, found.cycle, found.machine.mean_speed**2
+    # the cycle counts as the drive turns, what is shown along the coordinate, as every other result
+    along = cycle.sense
     resisting, driving, total = balance.cycle.moment, balance.driving, balance.total
     return {
         "turned": turned,
-        "moment_of_loads": resisting.at(turned),
-        "driving_moment": driving.at(turned),
+        "moment_of_loads": along * resisting.at(turned),
+        "driving_moment": along * driving.at(turned),
         "work_of_loads": resisting.integral(turned),
         "work_of_drive": driving.integral(turned),
         "work": total.integral(turned),
         "inertia_of_links": cycle.inertia.at(turned),
-        "inertia_slope_of_links": cycle.slope.at(turned),
+        "inertia_slope_of_links": along * cycle.slope.at(turned),
         "energy_of_links": 0.5 * square * cycle.inertia.at(turned),
         "energy_change": found.balance.energy_change(turned, square),
-        "drive_speed": found.speed.at(turned),
-        "drive_acceleration": found.speed.acceleration(turned),
-        "drive_speed_first_order": found.by_source.at(turned),
-        "drive_acceleration_first_order": found.by_source.acceleration(turned),
+        "drive_speed": along * found.speed.at(turned),
+        "drive_acceleration": along * found.speed.acceleration(turned),
+        "drive_speed_first_order": along * found.by_source.at(turned),
+        "drive_acceleration_first_order": along * found.by_source.acceleration(turned),
     }
 
 

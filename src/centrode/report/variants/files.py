@@ -78,12 +78,13 @@ def write_variant_reports(
     language: str | None = None,
     progress: Progress | None = None,
     spelling: TableSpelling | None = None,
+    compute: str | None = None,
 ) -> Variants:
     """What `write_variants` writes, with a report for each variant and one sheet of answers.
 
     Parameters
     ----------
-    topology, table, folder, jobs, figures, progress, spelling : as of `write_variants`
+    topology, table, folder, jobs, figures, progress, spelling, compute : as of `write_variants`
         Those finished before with the same numbers, formats and language are not made again.
     formats : "html", "pdf", "docx", "tex", "ipynb"
     language : "en", "ru" or "uk", optional
@@ -107,7 +108,7 @@ def write_variant_reports(
                 Report("", "", spoken), kind
             )  # what is not installed is told here, and not by every variant
     more = VariantReport(tuple(formats), spoken)
-    variants = write_variants(topology, table, folder, jobs, figures, progress, more, spelling)
+    variants = write_variants(topology, table, folder, jobs, figures, progress, more, spelling, compute)
     variants = replace(variants, answers=_answers(Path(folder), variants.rows))
     with speaking(spoken):
         write_report(answer_sheet(_spoken(variants)), folder, formats, name="answers")
@@ -116,7 +117,7 @@ def write_variant_reports(
 
 def _spoken(variants: Variants) -> Variants:
     """The same with causes in the language that is spoken where there are no answers, which have them in it."""
-    without = tuple(row for row in variants.rows if row.variant not in variants.answers)
+    without = tuple(row for row in variants.rows if row.refusal or row.variant not in variants.answers)
     rows = {row.variant: row for row in spoken_variants(replace(variants, rows=without)).rows}
     return replace(variants, rows=tuple(rows.get(row.variant, row) for row in variants.rows))
 

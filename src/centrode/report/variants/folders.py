@@ -240,7 +240,8 @@ def write_variants(
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with hold_lock(folder / LOCK, str(folder), remove=remove_file):
-            variants = Variants(topology, given, tuple(_all(tasks, jobs, progress)))
+            rows = tuple(_all(tasks, jobs, progress))
+            variants = Variants(topology, given, rows, compute=compute)
             _write_summary(variants, folder, spelling)
     return variants
 
