@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.higher_class.loop_closure import LoopClosure, solve_places
 from centrode.kinematics.higher_class.newton import (
     Shifts,
     bordered_equations,
@@ -20,7 +21,7 @@ from centrode.kinematics.higher_class.newton import (
     motion_along,
     size_of,
 )
-from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, solve_places, total
+from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, total
 from centrode.kinematics.path import JETS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
@@ -116,23 +117,22 @@ def reach(
 
     They are as good as it takes to foretell others at such strides; without these, to the last digit.
     """
-    count, free = len(parameter), along.shape[1] - 1
+    count = len(parameter)
     arrived, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, FAR), np.full(count, np.nan)
+    loops = around.loops_at(parameter, lanes)
+    on_plane: _ByLoops | _ByConstraints
+    if loops is None:
+        on_plane = _ByConstraints(around, lanes, along, state)
+    else:
+        on_plane = _ByLoops(around, loops, lanes, along, state)
     for k in range(STEPS):
-        system, linear, moved, rest, follow, matrix = bordered_equations(
-            around, lanes, parameter, state, along
-        )
-        right = np.concatenate([rest, np.zeros((count, 1))], axis=1)
-        step = solve_places(matrix, right[:, :, None])[:, :, 0]
-        motion = motion_along(linear, moved, follow, step)
-        size = size_of(system, moved, step)
+        size = on_plane.step(parameter)
         if k == 0:
             wrong = size
         # a step of a radian, or of the greatest length, has nothing to do with the place foretold
         good = active & np.isfinite(size) & (size < 1.0)
-        state = np.where(good[:, None], system.move(state, motion), state)
-        parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
+        parameter = on_plane.move(parameter, good)
         with np.errstate(all="ignore"):
             # without a stride to the last digit; with one, until the next step, foretold by quadratic
             # convergence, is small beside it
@@ -148,24 +148,119 @@ def reach(
         last = size
         if not active.any():
             break
-    system, linear, _moved, _rest, follow, matrix = bordered_equations(around, lanes, parameter, state, along)
-    # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
-    ahead = np.zeros((count, free + 1, 1))
-    ahead[:, -1] = 1.0
-    slope = solve_places(matrix, ahead)[:, :, 0]
-    first, second = _coefficients(around, lanes, parameter, state, slope, linear, follow, matrix)
+    state, slope, size, first, second = on_plane.tangent(parameter)
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     with np.errstate(all="ignore"):
         length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
-        size = np.linalg.det(matrix) * length
         places = CurvePlaces(
-            numbers, first / length[:, None], second, slope / length[:, None], size, base.weight
+            numbers, first / length[:, None], second, slope / length[:, None], size * length, base.weight
         )
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
     arrived &= np.isfinite(inward[1]).all(axis=1)
     return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, arrived)
+
+
+Tangent: TypeAlias = tuple[Array, Array, Array, Array, Array]
+"""States, slopes of the curve (k, free + 1) against the plane's normal, bordered determinants, and first and second
+Taylor coefficients of numbers by the distance from the plane."""
+
+
+class _ByLoops:
+    """Newton's method onto planes across curves, by the loops of a group."""
+
+    def __init__(
+        self, around: Surroundings, loops: LoopClosure, lanes: Lanes, along: Array, state: Array
+    ) -> None:
+        self.around, self.loops, self.lanes = around, loops, lanes
+        self.free, self.whole = loops.free_of(state)
+        self.matrix = np.empty((len(along), loops.free + 1, loops.free + 1))
+        self.matrix[:, -1] = along
+        self.right = np.zeros((len(along), loops.free + 1))
+
+    def step(self, parameter: Array) -> Array:
+        """Find a step; returns its size."""
+        series, _known = self._series(parameter, 1)
+        self.right[:, :-1] = -self.loops.residual(series[0])
+        self.steps = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
+        return np.asarray(np.max(np.abs(self.steps), axis=1))
+
+    def move(self, parameter: Array, good: Mask) -> Array:
+        """Make the step where it is good; returns the parameters there."""
+        self.free = np.where(good[:, None], self.free + self.steps[:, :-1], self.free)
+        return np.where(good, parameter + self.around.unit * self.steps[:, -1], parameter)
+
+    def _series(self, parameter: Array, order: int) -> tuple[Array, Array]:
+        """Numbers of places with their matrix, and series of what is known by the path's parameter."""
+        ahead = Jet((parameter, np.ones(len(parameter)), *[0.0] * (order - 1)))
+        known = self.loops.known(self.around.known(ahead, self.lanes), len(parameter), order + 1)
+        series = self.loops.begin(self.loops.numbers(self.free, self.whole, known[0]), known)
+        self.matrix[:, :-1, :-1] = self.loops.matrix(series[0])
+        # the parameter's column is of the size of the others
+        self.matrix[:, :-1, -1] = self.around.unit * self.loops.coefficient(series, 1)
+        return series, known
+
+    def tangent(self, parameter: Array) -> Tangent:
+        """The curves where the planes are met."""
+        loops, unit = self.loops, self.around.unit
+        series, known = self._series(parameter, 2)
+        # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
+        self.right[:] = 0.0
+        self.right[:, -1] = 1.0
+        slope = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
+        rate = unit * slope[:, -1:]
+        along = np.stack([known[0], known[1] * rate, known[2] * rate**2])
+        series = loops.begin(series[0], along)
+        loops.put(series, 1, slope[:, :-1])
+        loops.bend(series, 2)
+        # along the tangent alone the equations fail in second order
+        self.right[:, :-1] = -loops.coefficient(series, 2)
+        self.right[:, -1] = 0.0
+        bend = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
+        series[2, :, loops.first_known :] += known[1] * (unit * bend[:, -1:])
+        loops.put(series, 2, bend[:, :-1])
+        first = np.concatenate([loops.state(series[1]), rate], axis=1)
+        second = np.concatenate([loops.state(series[2]), unit * bend[:, -1:]], axis=1)
+        return loops.state(series[0]), slope, np.linalg.det(self.matrix), first, second
+
+
+class _ByConstraints:
+    """The same by all constraints of a group, for batches and on the sphere."""
+
+    def __init__(self, around: Surroundings, lanes: Lanes, along: Array, state: Array) -> None:
+        self.around, self.lanes, self.along, self.state = around, lanes, along, state
+
+    def step(self, parameter: Array) -> Array:
+        """Find a step; returns its size."""
+        system, linear, moved, rest, follow, matrix = bordered_equations(
+            self.around, self.lanes, parameter, self.state, self.along
+        )
+        right = np.concatenate([rest, np.zeros((len(parameter), 1))], axis=1)
+        self.steps = solve_places(matrix, right[:, :, None])[:, :, 0]
+        self.moved = system.move(self.state, motion_along(linear, moved, follow, self.steps))
+        return size_of(system, moved, self.steps)
+
+    def move(self, parameter: Array, good: Mask) -> Array:
+        """Make the step where it is good; returns the parameters there."""
+        self.state = np.where(good[:, None], self.moved, self.state)
+        return np.where(good, parameter + self.around.unit * self.steps[:, -1], parameter)
+
+    def tangent(self, parameter: Array) -> Tangent:
+        """The curves where the planes are met."""
+        _system, linear, _moved, _rest, follow, matrix = bordered_equations(
+            self.around, self.lanes, parameter, self.state, self.along
+        )
+        # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
+        ahead = np.zeros((*matrix.shape[:2], 1))
+        ahead[:, -1] = 1.0
+        slope = solve_places(matrix, ahead)[:, :, 0]
+        first, second = _coefficients(
+            self.around, self.lanes, parameter, self.state, slope, linear, follow, matrix
+        )
+        with np.errstate(all="ignore"):
+            size = np.linalg.det(matrix)
+        return self.state, slope, size, first, second
 
 
 def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:

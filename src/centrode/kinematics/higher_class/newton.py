@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.higher_class.loop_closure import LoopClosure, solve_places
 from centrode.kinematics.higher_class.system import (
     GroupMotion,
     GroupSystem,
     Linear,
     Shift,
     Surroundings,
-    solve_places,
 )
 from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import UNIT_ROUNDOFF
-from centrode.structure.constraints import Entity
+from centrode.structure.constraints import Entity, Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -47,6 +47,8 @@ class Converged:
 
 def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
+    if system.closure is not None:
+        return _newton_by_loops(system.closure, system.known, start, steps)
     state = start.copy()
     going = np.nonzero(np.isfinite(start).all(axis=1))[0]
     converged = np.zeros(len(start), dtype=bool)
@@ -61,15 +63,50 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
         # a step of a thousand radians comes from a singular matrix: the place is given up
         good = np.isfinite(size) & (size < 1.0e3)
         state[going[good]] = part.move(state[going], motion)[good]
-        # next to a limit rounding makes steps that are not small; they do not shrink any more
-        done = good & (
-            is_rounding_step(last[going], size)
-            | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
-        )
+        done = good & _is_last_step(last[going], size, k == steps - 1)
         last[going] = size
         converged[going[done]] = True
         going = going[good & ~done]
     return Converged(state, converged, sizes)
+
+
+def _newton_by_loops(closure: LoopClosure, known: Positions, start: Array, steps: int) -> Converged:
+    free, whole = closure.free_of(start)
+    beside = closure.known(known, len(start), dtype=start.dtype)[0]
+    found = newton_by_loops(closure, beside, free, whole, steps)
+    return replace(found, state=closure.state(closure.numbers(found.state, whole, beside)))
+
+
+def newton_by_loops(
+    closure: LoopClosure, known: Array, start: Array, whole: Array, steps: int = STEPS
+) -> Converged:
+    """`newton` by the loops of a group, from free coordinates (k, free) beside what is known (k, known)."""
+    free = start.copy()
+    going = np.nonzero(np.isfinite(start).all(axis=1))[0]
+    converged = np.zeros(len(start), dtype=bool)
+    sizes = np.full((steps, len(start)), np.nan)
+    last = np.full(len(start), np.inf)
+    for k in range(steps):
+        if not len(going):
+            break
+        numbers = closure.numbers(free[going], whole[going], known[going])
+        step = -solve_places(closure.matrix(numbers), closure.residual(numbers)[:, :, None])[:, :, 0]
+        size = np.max(np.abs(step), axis=1)
+        sizes[k, going] = size
+        good = np.isfinite(size) & (size < 1.0e3)
+        free[going[good]] += step[good]
+        done = good & _is_last_step(last[going], size, k == steps - 1)
+        last[going] = size
+        converged[going[done]] = True
+        going = going[good & ~done]
+    return Converged(free, converged, sizes)
+
+
+def _is_last_step(last: Array, size: Array, at_end: bool) -> Mask:
+    """Where Newton's method has arrived with steps of these sizes."""
+    done = is_rounding_step(last, size)
+    # next to a limit rounding makes steps that are not small; they do not shrink any more
+    return done | ((size <= COARSE) & (last <= COARSE)) if at_end else done
 
 
 def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> tuple[GroupMotion, Array]:
