@@ -127,7 +127,8 @@ def _close_by_loops(
             found = system.at(m, known, state, system.bounds(known, state, linear))
         else:
             found = Positions({}, {}, {}, {})
-            loops.positions(loops.series(numbers, beside) if order else numbers, found)
+            series = loops.series(numbers, beside, loops.matrix(numbers)) if order else numbers
+            loops.positions(series, found)
         add_in_shape(found, system.group, shape, at)
     lost = ~(right | foretold.limit | foretold.beyond)
     return ConvergedPlaces(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))

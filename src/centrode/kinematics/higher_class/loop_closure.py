@@ -60,6 +60,8 @@ class LoopClosure:
         self.links = tuple(b.name for b in bodies if b.kind == "link" and b.name not in group.links)
         self.drives = tuple(known.drives)
         self.angles = tuple(name for name in self.links if name in known.angles)
+        self.coordinates = slice(2 * self.free, 3 * self.free)
+        """Where among the numbers the free coordinates themselves stand, angles with their turns."""
         self.first_known = 3 * self.free
         counts = (2 * len(self.points), 4 * len(self.links), len(self.drives), len(self.angles))
         self.width = self.first_known + sum(counts)
@@ -218,7 +220,7 @@ class LoopClosure:
         numbers = np.empty((len(free), self.width), dtype=np.result_type(free, known))
         np.cos(free, out=numbers[:, :size])
         np.sin(free, out=numbers[:, size : 2 * size])
-        np.add(free, whole, out=numbers[:, 2 * size : 3 * size])
+        np.add(free, whole, out=numbers[:, self.coordinates])
         numbers[:, 3 * size :] = known
         return numbers
 
@@ -327,7 +329,7 @@ class LoopClosure:
         """Put the part of an order that the lower ones of the free coordinates give."""
         size = self.free
         for i in range(1, order):
-            angle = series[i, :, 2 * size : 3 * size] * (i / order)
+            angle = series[i, :, self.coordinates] * (i / order)
             series[order, :, :size] -= angle * series[order - i, :, size : 2 * size]
             series[order, :, size : 2 * size] += angle * series[order - i, :, :size]
 
@@ -336,12 +338,11 @@ class LoopClosure:
         size = self.free
         series[order, :, :size] -= free * series[0, :, size : 2 * size]
         series[order, :, size : 2 * size] += free * series[0, :, :size]
-        series[order, :, 2 * size : 3 * size] = free
+        series[order, :, self.coordinates] = free
 
-    def series(self, numbers: Array, known: Array) -> Array:
-        """Series of converged places, all orders of what is known (orders, k, known)."""
+    def series(self, numbers: Array, known: Array, matrix: Array) -> Array:
+        """Series of converged places, all orders of what is known (orders, k, known), by the matrix there."""
         series = self.begin(numbers, known)
-        matrix = self.matrix(numbers)
         # the matrix is the same for every order, so it is inverted once
         inverse = solve_places(matrix, np.broadcast_to(np.eye(self.free), matrix.shape))
         for order in range(1, len(known)):

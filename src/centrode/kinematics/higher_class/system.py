@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -397,10 +397,7 @@ def _minus_coefficient(x: Number, k: int) -> Number:
 
 def total(columns: Array) -> Array:
     """Sum over the second axis, added up in one order whatever the number of places."""
-    summed = columns[:, 0].copy()
-    for j in range(1, columns.shape[1]):
-        summed += columns[:, j]
-    return summed
+    return np.asarray(np.add.reduce(np.ascontiguousarray(columns), axis=1))
 
 
 def times(matrix: Array, vector: Array) -> Array:
@@ -668,13 +665,18 @@ class Surroundings:
 
 def needed_positions(group: Newton, at: Positions) -> Positions:
     """The points and links of which the equations of a group speak."""
-    bodies = {body.name for constraint, _row in group.equations for body in constraint.bodies}
+    bodies = _bodies_of(group)
     return Positions(
         {name: place for name, place in at.points.items() if name in bodies},
         {name: pose for name, pose in at.poses.items() if name in bodies},
         at.drives,
         {name: angle for name, angle in at.angles.items() if name in bodies},
     )
+
+
+@lru_cache(maxsize=256)
+def _bodies_of(group: Newton) -> frozenset[str]:
+    return frozenset(body.name for constraint, _row in group.equations for body in constraint.bodies)
 
 
 def plain(number: Number) -> Number:
