@@ -416,67 +416,132 @@ GREATEST = 0.05
 """Greatest step towards a saddle, in rad or in the greatest length."""
 FLAT_SADDLE = 1e-11
 """A saddle is flat: its value is exact to the square of this."""
+FAR_SADDLE = 1e-7
+"""A last step greater than this has not found the saddle."""
 NEAR = 3.0
 """How many arcs away from its beginning a crossing may lie to belong to it."""
 
 
-@dataclass
-class _Saddle:
-    """A place on its way to the saddle: one lane."""
+class _BendsByLoops:
+    """Equations of one place with their second derivatives, by the loops of a group."""
 
-    around: Surroundings
-    lane: Lanes
-    parameter: Array
-    state: Array
+    def __init__(
+        self, around: Surroundings, loops: LoopClosure, lane: Lanes, parameter: Array, state: Array
+    ) -> None:
+        self.around, self.loops, self.lane, self.parameter = around, loops, lane, parameter
+        self.free, self.whole = loops.free_of(state)
 
-    def approach(self) -> tuple[float, bool]:
-        """Step towards the saddle; returns the size of the step and whether it is one."""
-        system, linear, moved, rest, follow, matrix = bordered_equations(
-            self.around, self.lane, self.parameter, self.state, None
-        )
-        left, values, right = np.linalg.svd(matrix[0])
-        # the combination of equations that changes least, and the two directions in which anything changes
-        # least
-        least, plane = left[:, -1], right[-2:]
-        bends = [self._bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
-        # by polarisation: B(p + q) - B(p) - B(q) = 2 B(p, q)
-        mixed = 0.5 * (bends[2] - bends[0] - bends[1])
-        hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
-        # in the plane to where the worst equation has no slope; square to it to where the others hold
-        inside = -np.linalg.solve(hessian, plane @ matrix[0].T @ least)
-        back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest[0]) / values[:-1])
-        step = plane.T @ inside + back
-        size = float(np.max(np.abs(step)))
-        step *= min(1.0, GREATEST / size)
-        self.state = system.move(self.state, motion_along(linear, moved, follow, step[None, :]))
+    def look(self) -> tuple[Array, Array]:
+        """The matrix (free, free + 1), and what is missing in the equations (free,)."""
+        loops, unit = self.loops, self.around.unit
+        ahead = Jet((self.parameter, np.ones(1), 0.0))
+        self.known = loops.known(self.around.known(ahead, self.lane), 1, 3)
+        self.numbers = loops.numbers(self.free, self.whole, self.known[0])
+        by_parameter = loops.coefficient(loops.begin(self.numbers, self.known), 1)
+        matrix = np.concatenate([loops.matrix(self.numbers)[0], unit * by_parameter.T], axis=1)
+        return matrix, -loops.residual(self.numbers)[0]
+
+    def bend(self, least: Array, direction: Array) -> float:
+        """Second derivative of a combination of equations in a direction of the curve's coordinates."""
+        loops, rate = self.loops, self.around.unit * direction[-1]
+        along = np.stack([self.known[0], self.known[1] * rate, self.known[2] * rate**2])
+        series = loops.begin(self.numbers, along)
+        loops.put(series, 1, direction[None, :-1])
+        loops.bend(series, 2)
+        return 2.0 * float(least @ loops.coefficient(series, 2)[0])
+
+    def move(self, step: Array) -> None:
+        """Make a step (free + 1,)."""
+        self.free = self.free + step[:-1]
         self.parameter = self.parameter + self.around.unit * step[-1]
-        # a saddle is met by two curves; a top or a bottom is an isolated point or nothing
-        return size, bool(np.linalg.det(hessian) < 0.0)
 
-    def _bend(self, least: Array, direction: Array) -> float:
-        """Second derivative of the worst equation in a direction of the curve's coordinates."""
-        system, linear, _moved, _rest, follow, _matrix = bordered_equations(
+    @property
+    def state(self) -> Array:
+        """The state that is reached."""
+        known = self.loops.known(self.around.known_at(self.parameter, self.lane), 1)
+        return self.loops.state(self.loops.numbers(self.free, self.whole, known[0]))
+
+
+class _BendsByConstraints:
+    """The same by all constraints of a group."""
+
+    def __init__(self, around: Surroundings, lane: Lanes, parameter: Array, state: Array) -> None:
+        self.around, self.lane, self.parameter, self.state = around, lane, parameter, state
+
+    def look(self) -> tuple[Array, Array]:
+        """The matrix (free, free + 1), and what is missing in the equations (free,)."""
+        self.system, self.linear, self.moved, rest, self.follow, matrix = bordered_equations(
             self.around, self.lane, self.parameter, self.state, None
         )
+        return matrix[0], rest[0]
+
+    def bend(self, least: Array, direction: Array) -> float:
+        """Second derivative of a combination of equations in a direction of the curve's coordinates."""
         zero = np.zeros(1)
-        still = {entity: (0.0,) * entity.unknowns for entity in follow}
-        one = motion_along(linear, still, follow, direction[None, :])
+        still = {entity: (0.0,) * entity.unknowns for entity in self.follow}
+        one = motion_along(self.linear, still, self.follow, direction[None, :])
         shifts = {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()}
         straight = GroupMotion(shifts, [Jet((zero, x, zero)) for x in one.free])
         ahead = Jet((self.parameter, zero + self.around.unit * direction[-1], zero))
         known = self.around.known(ahead, self.lane)
-        values = system.residual(JETS, system.at(JETS, known, self.state, straight))
-        _moved, rest = linear.reduce([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
-        return 2.0 * float(least @ system.stack(rest)[0])
+        values = self.system.residual(JETS, self.system.at(JETS, known, self.state, straight))
+        _moved, rest = self.linear.reduce([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+        return 2.0 * float(least @ self.system.stack(rest)[0])
+
+    def move(self, step: Array) -> None:
+        """Make a step (free + 1,)."""
+        motion = motion_along(self.linear, self.moved, self.follow, step[None, :])
+        self.state = self.system.move(self.state, motion)
+        self.parameter = self.parameter + self.around.unit * step[-1]
+
+
+class _Saddle:
+    """A place on its way to the saddle: one lane."""
+
+    def __init__(self, around: Surroundings, lane: Lanes, parameter: Array, state: Array) -> None:
+        self.around, self.lane = around, lane
+        loops = around.loops_at(parameter, lane)
+        self.at: _BendsByLoops | _BendsByConstraints
+        if loops is None:
+            self.at = _BendsByConstraints(around, lane, parameter, state)
+        else:
+            self.at = _BendsByLoops(around, loops, lane, parameter, state)
+
+    @property
+    def parameter(self) -> Array:
+        """The path's parameter there (1,)."""
+        return self.at.parameter
+
+    def approach(self) -> tuple[float, bool]:
+        """Step towards the saddle; returns the size of the step and whether it is one."""
+        matrix, rest = self.at.look()
+        left, values, right = np.linalg.svd(matrix)
+        # the combination of equations that changes least, and the two directions in which anything changes
+        # least
+        least, plane = left[:, -1], right[-2:]
+        bends = [self.at.bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
+        # by polarisation: B(p + q) - B(p) - B(q) = 2 B(p, q)
+        mixed = 0.5 * (bends[2] - bends[0] - bends[1])
+        hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
+        # in the plane to where the worst equation has no slope; square to it to where the others hold
+        inside = -np.linalg.solve(hessian, plane @ matrix.T @ least)
+        back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest) / values[:-1])
+        step = plane.T @ inside + back
+        size = float(np.max(np.abs(step)))
+        step *= min(1.0, GREATEST / size)
+        self.at.move(step)
+        # a saddle is met by two curves; a top or a bottom is an isolated point or nothing
+        return size, bool(np.linalg.det(hessian) < 0.0)
 
     def value(self) -> tuple[float, float]:
         """The worst equation's value with the bound of its rounding error."""
+        parameter, state = self.at.parameter, self.at.state
         system, linear, _moved, rest, _follow, matrix = bordered_equations(
-            self.around, self.lane, self.parameter, self.state, None
+            self.around, self.lane, parameter, state, None
         )
         least = np.linalg.svd(matrix[0])[0][:, -1]
-        known = self.around.with_bounds(self.parameter, self.lane)
-        values = system.residual(ROUNDED, system.at(ROUNDED, known, self.state))
+        known = self.around.with_bounds(parameter, self.lane)
+        values = system.residual(ROUNDED, system.at(ROUNDED, known, state))
         _moved, bounds = linear.reduce([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
         bound = float(np.abs(least) @ np.array([float(np.max(Rounded.of(x).bound)) for x in bounds]))
         return float(least @ rest[0]), bound
@@ -496,11 +561,13 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
                 size, crosses = saddle.approach()
                 if not size > FLAT_SADDLE:
                     break
+            if size > FAR_SADDLE or not crosses:
+                return None
             value, bound = saddle.value()
     except np.linalg.LinAlgError:
         return None
     parameter = float(saddle.parameter[0])
     away = abs(parameter - float(base.parameter[0])) / around.unit
     # the saddle has to be found, near by, with a value that its rounding error explains
-    met = crosses and size <= 1e-7 and away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
+    met = away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
     return parameter if met else None
