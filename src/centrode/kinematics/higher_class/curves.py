@@ -24,7 +24,7 @@ from centrode.kinematics.higher_class.newton import (
 from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, total
 from centrode.kinematics.path import JETS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -416,6 +416,8 @@ GREATEST = 0.05
 """Greatest step towards a saddle, in rad or in the greatest length."""
 FLAT_SADDLE = 1e-11
 """A saddle is flat: its value is exact to the square of this."""
+LEAST_VALUE = UNIT_ROUNDOFF**2
+"""No value of a saddle is known better: it is exact to the square of the rounding of its place."""
 FAR_SADDLE = 1e-7
 """A last step greater than this has not found the saddle."""
 NEAR = 3.0
@@ -569,5 +571,5 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
     parameter = float(saddle.parameter[0])
     away = abs(parameter - float(base.parameter[0])) / around.unit
     # the saddle has to be found, near by, with a value that its rounding error explains
-    met = away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
+    met = away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * max(bound, LEAST_VALUE)
     return parameter if met else None

@@ -143,20 +143,40 @@ def follow(
     """
     group = around.equations
     known = flatten_positions(needed_positions(group, at), parameter.shape)
-    numbers = around.kinematics.take(lanes).numbers
-    system = GroupSystem(group, numbers, known, len(parameter), around.loops(known))
     first = np.arange(0, len(parameter), steps)
     # a way begins with a real parameter, where the track knows the state; from there it goes through complex
     # ones
     state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
-    state = system.take(first).normalise(state)
-    states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
-    for k in range(steps):
-        converged = newton(system.take(first + k), state)
-        # each place starts from the one before: along a way there is no track to start from
-        state = np.where(converged.found[:, None], converged.state, np.nan)
-        states[first + k] = state
-    add_in_shape(system.at(ARRAYS, known, states), group, parameter.shape, at)
+    loops = around.loops(known)
+    if loops is not None:
+        found = Positions({}, {}, {}, {})
+        loops.positions(_follow_by_loops(loops, known, state, first, len(parameter)), found)
+    else:
+        system = GroupSystem(group, around.kinematics.take(lanes).numbers, known, len(parameter))
+        state = system.take(first).normalise(state)
+        states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
+        for k in range(steps):
+            converged = newton(system.take(first + k), state)
+            # each place starts from the one before: along a way there is no track to start from
+            state = np.where(converged.found[:, None], converged.state, np.nan)
+            states[first + k] = state
+        found = system.at(ARRAYS, known, states)
+    add_in_shape(found, group, parameter.shape, at)
+
+
+def _follow_by_loops(loops: LoopClosure, known: Positions, state: Array, first: Lanes, places: int) -> Array:
+    """Numbers of a group along ways that begin at places with states."""
+    beside = loops.known(known, places, dtype=complex)[0]
+    free, whole = loops.free_of(state)
+    numbers = np.empty((places, loops.width), dtype=complex)
+    before = free
+    for k in range(places // len(first)):
+        # each place starts from the two before: along a way there is no track to start from
+        start = 2.0 * free - before if k > 1 else free
+        converged = newton_by_loops(loops, beside[first + k], start, whole)
+        before, free = free, np.where(converged.found[:, None], converged.state, np.nan)
+        numbers[first + k] = loops.numbers(free, whole, beside[first + k])
+    return numbers
 
 
 def _lift_states(

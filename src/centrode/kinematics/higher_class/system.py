@@ -222,9 +222,8 @@ class GroupSystem:
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
 
-        return GroupSystem(
-            self.group, self.numbers.map_numbers(take), self.known.map_numbers(take), len(which), self.closure
-        )
+        numbers = self.numbers if self.numbers.alone else self.numbers.map_numbers(take)
+        return GroupSystem(self.group, numbers, self.known.map_numbers(take), len(which), self.closure)
 
     @cached_property
     def pattern(self) -> Pattern:
