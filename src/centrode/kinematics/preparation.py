@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,7 +18,7 @@ from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import path_of
 from centrode.kinematics.plan_evaluation import Kinematics, branches_at_start
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Mechanism, order_of_names
 from centrode.model.motion_parameter import MotionParameter
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions, is_drive
@@ -69,6 +70,12 @@ def ready(mechanism: Mechanism) -> Ready:
     NotComputedYet
         The description names what this version does not compute.
     """
+    return _made_ready(mechanism, order_of_names(mechanism))
+
+
+# a page or an analysis asks for the motion, the reactions and the limits of one mechanism: it is made ready once
+@lru_cache(maxsize=32)
+def _made_ready(mechanism: Mechanism, _order: object) -> Ready:
     structure = structure_of(mechanism)
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)

@@ -93,3 +93,9 @@ class Mechanism(Description):
         object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "guides", guides)
         return self
+
+
+def order_of_names(mechanism: Mechanism) -> tuple[object, ...]:
+    """The order in which points and links are described: it decides what equal mechanisms leave open."""
+    links = tuple((name, tuple(link.coordinates)) for name, link in mechanism.links.items())
+    return tuple(mechanism.frame.points), links
