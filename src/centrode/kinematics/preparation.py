@@ -70,12 +70,12 @@ def ready(mechanism: Mechanism) -> Ready:
     NotComputedYet
         The description names what this version does not compute.
     """
-    return _made_ready(mechanism, order_of_names(mechanism))
+    return _ready_of(mechanism, order_of_names(mechanism))
 
 
 # a page or an analysis asks for the motion, the reactions and the limits of one mechanism: it is made ready once
 @lru_cache(maxsize=32)
-def _made_ready(mechanism: Mechanism, _order: object) -> Ready:
+def _ready_of(mechanism: Mechanism, _order: object) -> Ready:
     structure = structure_of(mechanism)
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)

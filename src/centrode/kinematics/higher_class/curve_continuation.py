@@ -500,7 +500,7 @@ def _by_parameter(
         pieces = np.concatenate([courses[walker].pieces(loops, -2) for walker in who])
         round_again = rounds.closings(who, origin, pieces, reached)
         for walker, period in round_again:
-            trails[walker].period = period
+            trails[int(walker)].period = period
         return [walker for walker, _period in round_again]
 
     courses = walk_by_parameter(around, loops, rounds.lane, state, float(parameter[0]), ends, closed)

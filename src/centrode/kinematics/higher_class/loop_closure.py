@@ -91,7 +91,8 @@ class LoopClosure:
 
     def _coordinate(self, free: int) -> Array:
         """A free coordinate itself."""
-        return self._units[2 * self.free + free]
+        unit: Array = self._units[2 * self.free + free]
+        return unit
 
     def _carried(self, link: str, local: Any) -> Vectors:
         """From the origin of a link to its point."""
@@ -309,9 +310,8 @@ class LoopClosure:
             if body.kind == "point":
                 at.points[body.name] = tuple(columns[first : first + 2])
                 continue
-            at.poses[body.name] = PlanePose(
-                tuple(columns[first : first + 2]), tuple(columns[first + 2 : first + 4])
-            )
+            x, y, cosine, sine = columns[first : first + 4]
+            at.poses[body.name] = PlanePose((x, y), (cosine, sine))
             if body.name in self._turns:
                 at.angles[body.name] = columns[first + 4]
         return at
