@@ -161,8 +161,8 @@ class CurveTracks:
             grown,
         )
 
-    def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
-        """Starting states at parameters, one lane for each."""
+    def foretell(self, parameter: Array, lanes: Lanes, columns: Lanes | None = None) -> Foretold:
+        """Starting states at parameters, one lane for each; all of their numbers, or some of them with zeros beside."""
         parameter, grown = self._fold_to_first_round(parameter, lanes)
         which, known = self._pieces(parameter, lanes)
         state = np.full((self.at_limit.shape[2], len(parameter)), np.nan).T
@@ -170,8 +170,9 @@ class CurveTracks:
         chosen = which[known]
         if len(chosen):
             share = share_at(self.powers[:, -1], chosen, parameter[known] - self.origin[chosen])
-            for column, powers in enumerate(np.moveaxis(self.powers[:, :-1], 1, 0)):
-                state[known, column] = _value(powers, chosen, share)
+            state[known] = 0.0
+            for column in range(state.shape[1]) if columns is None else columns:
+                state[known, column] = _value(self.powers[:, column], chosen, share)
             sense[known] = self.sense[chosen]
             state += grown
         limit = self._at_limits(parameter, lanes, state)
@@ -315,7 +316,7 @@ class Rounds:
         self.passed[who] += 1
         before = self.around.before(places, lane)
         system = self.around.system(needed_positions(self.around.equations, before), lane)
-        converged = newton(system, system.normalise(foretold))
+        converged = newton(system, self.around.normalise(foretold, lane))
         # a place that is not found compares with nothing, and closes nothing
         state = np.where(converged.found[:, None], converged.state, np.nan)
         first = turns == 0
@@ -455,6 +456,13 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     loops = around.loops_at(parameter, both)
     if loops is not None:
         ended = _by_parameter(around, loops, state, parameter, ends, trails, rounds)
+    width = start.shape[1] + 1
+    if ended.all():
+        nowhere = CurvePlaces(*np.full((6, 2 * lanes, 1), np.nan))
+        none = np.zeros(2 * lanes)
+        return Walkers(
+            both, forward, ends, nowhere, none, none, none[:, None, None], none[:, None], trails, rounds, ~ended
+        )  # fmt: skip
     free = around.blank(both).free
     # the first plane is square to the parameter's axis: the beginning has its parameter exactly
     along = np.zeros((2 * lanes, free + 1))
@@ -464,11 +472,9 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     direction[:, -1] = forward
     weight = np.full(numbers.shape, 1.0 / around.unit)
     weight[:, :-1] = around.blank(both).weights()
-    here, found = CurvePlaces(numbers, direction, direction, along, forward, weight), ended
-    if not ended.all():
-        first_places = reach(around, both, here, along, parameter, state)
-        here, found = first_places.places, first_places.found
-    width = start.shape[1] + 1
+    base = CurvePlaces(numbers, direction, direction, along, forward, weight)
+    first_places = reach(around, both, base, along, parameter, state)
+    here, found = first_places.places, first_places.found
     walkers = Walkers(
         both, forward, ends, here, np.full(2 * lanes, FIRST),
         np.sign(here.size), np.full((2 * lanes, 6, width), np.nan), np.zeros((2 * lanes, 2)),
@@ -567,7 +573,7 @@ def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePla
     # only the change since the end of the piece is taken: rounding of the polynomial does not add up
     ahead = np.where(np.isfinite(value), value - end, taylor)
     parameter = here.parameter + ahead[:, -1]
-    return parameter, around.blank(walkers.lane[who]).normalise(here.state + ahead[:, :-1])
+    return parameter, around.normalise(here.state + ahead[:, :-1], walkers.lane[who])
 
 
 def _shorten(walkers: Walkers, who: Lanes) -> None:

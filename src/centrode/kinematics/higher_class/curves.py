@@ -360,7 +360,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
         powers = share[:, None] ** np.arange(6)
         value = total(whole * powers[:, :, None])
         parameter = here.parameter + value[:, -1]
-        state = around.blank(lanes).normalise(value[:, :-1])
+        state = around.normalise(value[:, :-1], lanes)
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
             # at a limit the parameter's first coefficient is zero: Newton's step of that along the arc
@@ -554,8 +554,7 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
     # where the determinant, taken for straight, is zero; the polynomial has the state there
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
     middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
-    system = around.blank(lane)
-    state = system.normalise(middle[:, :-1])
+    state = around.normalise(middle[:, :-1], lane)
     saddle = _Saddle(around, lane, base.parameter + middle[:, -1], state)
     try:
         with np.errstate(all="ignore"):

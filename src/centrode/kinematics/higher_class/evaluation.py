@@ -68,8 +68,8 @@ def close(
     group = around.equations
     known = flatten_positions(needed_positions(group, at), shape)
     system = GroupSystem(group, numbers, known.map_numbers(plain), len(flat))
-    foretold = tracks.foretell(flat, which)
     loops = around.loops(known)
+    foretold = tracks.foretell(flat, which, None if loops is None else loops.needed)
     if loops is not None:
         return _close_by_loops(loops, system, foretold, m, known, shape, at, rough)
     start = system.normalise(foretold.state)

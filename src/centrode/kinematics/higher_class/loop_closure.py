@@ -155,6 +155,8 @@ class LoopClosure:
                     back[[cosine, sine], follow.first] = a * over, -b * over
                     back[[cosine, sine], follow.first + 1] = b * over, a * over
         self.back = back
+        self.needed = np.nonzero(back.any(axis=1))[0]
+        """The numbers of a state that tell its free coordinates."""
         self._turned = np.zeros(self.free)
         self._turned[[follow.turn for follow in self.pattern.follows if follow.entity.kind == "link"]] = 1.0
 

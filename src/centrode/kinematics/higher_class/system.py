@@ -626,6 +626,10 @@ class Surroundings:
             self.equations, self.kinematics.take(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
         )
 
+    def normalise(self, state: Array, lanes: Lanes) -> Array:
+        """States whose links keep their own distances; as they are where loops take angles and places from them."""
+        return state if self._one_plane_mechanism else self.blank(lanes).normalise(state)
+
     def loops(self, known: Positions) -> LoopClosure | None:
         """The group's equations by loops beside what is known; None on the sphere, and for a batch."""
         if self._one_plane_mechanism and not self._loops:
