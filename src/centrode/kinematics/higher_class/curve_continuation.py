@@ -303,6 +303,10 @@ class Rounds:
             who, places, total(last * (share[:, None] ** np.arange(6))[:, :, None])[:, :-1]
         )
 
+    def set_out(self, walker: int) -> None:
+        """Let a walker set out once more."""
+        self.begun[walker], self.passed[walker] = np.nan, 0
+
     def passing(self, who: Lanes, reached: Array) -> Mask:
         """Which walkers have passed a place at which they may have come round."""
         # only where angles drive does the mechanism come back to where it was
@@ -511,6 +515,11 @@ def _by_parameter(
 
     courses = walk_by_parameter(around, loops, rounds.lane, state, float(parameter[0]), ends, closed)
     for walker, course in enumerate(courses):
+        if not course.regular:
+            # what lies between two places has to be looked at from near by: all the way is gone along the curve
+            course.ended, trails[walker].period = False, None
+            rounds.set_out(walker)
+            continue
         edges = pairwise(course.parameter)
         for powers, (first, last) in zip(course.pieces(loops), edges, strict=True):
             trails[walker].pieces.append(CurvePiece(powers, first, first, last, course.sense))

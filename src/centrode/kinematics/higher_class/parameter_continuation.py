@@ -35,8 +35,10 @@ TARGET, TRUST = 3e-4, 3e-2
 """By how much of its step a foretold place should be wrong, and the most that it may, as along the curve."""
 STRAIGHT, LEFT = 0.9, 0.3
 """Cosine of the angle by which the curve may turn in a step, and the part of the determinant that must be left."""
-GREATEST = 0.4
-"""Greatest step, in rad and in the greatest length of all free coordinates together."""
+FIRST, GREATEST, GROWTH = 4, 0.8, 3.0
+"""The first step in places, the greatest one, in rad and in the greatest length of all free coordinates together, and
+by how much one may be longer than the one before. Steps are greater than along curves, as the determinant is looked at
+in all places that they pass."""
 FAST = 8.0
 """How fast free coordinates may move against the path, in its units: faster ones are near a limit."""
 
@@ -50,6 +52,8 @@ class Course:
     sense: float = 0.0
     ended: bool = False
     """Whether it came to its end, or round."""
+    regular: bool = True
+    """Whether no determinant changed its sign between its places."""
 
     def add(self, parameter: float, series: Array, sense: float) -> None:
         """Add a place with its series (3, n)."""
@@ -164,7 +168,7 @@ def walk_by_parameter(
         for walker, course in enumerate(courses):
             course.add(initial, here.series[:, walker], float(np.sign(here.size[walker])))
         # polynomials of the last steps in the share of these: to begin with there are none
-        last, strides = np.full((6, len(lane), loops.free), np.nan), np.ones(len(lane), dtype=np.intp)
+        last, strides = np.full((6, len(lane), loops.free), np.nan), np.full(len(lane), FIRST, dtype=np.intp)
         passed = np.ones(len(lane), dtype=np.intp)
         going = (most > 0) & np.isfinite(here.pace) & (here.size != 0.0)
         while going.any():
@@ -203,7 +207,31 @@ def walk_by_parameter(
             strides[who] = np.maximum(longer, 1.0).astype(np.intp)
             for walker in (*who[number[who] >= most[who]], *closed(who, courses)):
                 courses[walker].ended, going[walker] = True, False
+        for walker, course in enumerate(courses):
+            course.regular = _is_regular(loops, course, ahead, walker, whole[walker])
     return courses
+
+
+def _is_regular(loops: LoopClosure, course: Course, ahead: _Ahead, walker: int, whole: Array) -> bool:
+    """Whether the determinant keeps its sign in all places that the steps of a walker have passed."""
+    edges = np.array(course.parameter)
+    ways = np.diff(edges)
+    if not len(ways):
+        return True
+    numbers = np.arange(1, round(float((edges[-1] - edges[0]) / ahead.step[walker])))
+    at = ahead.start + ahead.step[walker] * numbers
+    # parameters of a walker that goes back fall
+    sense = np.sign(ahead.step[walker])
+    piece = np.searchsorted(sense * edges[1:-1], sense * at)
+    series = np.stack(course.series, axis=1)[:, :, loops.coordinates]
+    powers = hermite(series[:, :-1], series[:, 1:], ways[:, None])[:, piece]
+    share = ((at - edges[piece]) / ways[piece])[:, None]
+    free = powers[5]
+    for of_order in powers[4::-1]:
+        free = free * share + of_order
+    known = ahead.known(np.full(len(numbers), walker), numbers)[0]
+    places = loops.numbers(free - whole, np.broadcast_to(whole, free.shape), known)
+    return bool((np.sign(np.linalg.det(loops.matrix(places))) == course.sense).all())
 
 
 def _foretold(loops: LoopClosure, series: Array, last: Array, way: Array, share: Array) -> Array:
