@@ -21,7 +21,7 @@ from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import Rounded
-from centrode.structure.constraints import Constraint, Entity, PointInLink, Positions
+from centrode.structure.constraints import FRAME, Constraint, Entity, PointInLink, PointOnGuide, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
 
@@ -171,6 +171,11 @@ class LoopClosure:
                 place = self._places[constraint.point]
                 there = self._place(constraint.link, self.dimensions.local[constraint.link][constraint.point])
                 self.closing[:, number] = (place[row] - there[row]) * over
+            elif isinstance(constraint, PointOnGuide) and constraint.on == FRAME:
+                # a fixed line: how far the point lies from it is linear in the point
+                through, (a, b) = self.dimensions.curve(constraint.guide)
+                (x, y), (p, q) = self._places[constraint.point], self._place(FRAME, through)
+                self.closing[:, number] = (a * (y - q) - b * (x - p)) * over
             else:
                 self.others.append(OtherRow(constraint, row, number, 1.0 if constraint.angular else over))
         self.slopes = self._derivatives(self.closing)
