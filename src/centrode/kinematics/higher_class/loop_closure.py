@@ -2,9 +2,9 @@
 
 A link that hangs on something known is told by its angle; where its points are is linear in the cosines and sines
 of angles, in the places of what hangs on nothing, and in what is known. So all hinges of a group are constant
-matrices times these numbers, at every place and for every coefficient of a power series. Only guides, cylinders,
-gears and drives between its links are evaluated one by one (Wampler, Solving the kinematics of planar mechanisms,
-J. Mech. Des. 121, 1999, has the same form in complex numbers).
+matrices times these numbers, at every place and for every coefficient of a power series. Only moving guides,
+cylinders, gears and drives between its links are evaluated one by one (Wampler, Solving the kinematics of planar
+mechanisms, J. Mech. Des. 121, 1999, has the same form in complex numbers).
 """
 
 from __future__ import annotations
