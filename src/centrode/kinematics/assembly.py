@@ -315,8 +315,11 @@ def assemble(kinematics: Kinematics) -> Assembled:
     signs: dict[int, float] = {}
     check_sides(kinematics)
     starting = Starting(kinematics)
-    # bounds of rounding errors are asked for by groups with two sides, and by nothing behind the last of these
-    last = max((i for i, group in enumerate(kinematics.structure.groups) if group.signed), default=-1)
+    # bounds of rounding errors serve groups with two sides or with a divisor, and nothing behind the last of these
+    groups = kinematics.structure.groups
+    last = max(
+        (i for i, group in enumerate(groups) if not isinstance(group, Newton | RigidPoint)), default=-1
+    )
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
@@ -337,7 +340,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
             decided = group.signed and stated_side(kinematics, group) is not None
             _check_angles(kinematics, group, at, ROUGH if decided else ANGLE_TOLERANCE)
             kinematics.count(i, at, ARRAYS, starting)
-            if i >= last:
+            if i > last:
                 continue
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             if not isinstance(group, Newton):  # its places have their bounds already

@@ -265,19 +265,20 @@ def labels_of(names: tuple[str, ...]) -> Any:
 
 
 @functools.lru_cache(maxsize=32)
-def _text_of(mechanism: Mechanism, _order: object) -> str:
+def _text_of(mechanism: Mechanism, _order: tuple[object, ...]) -> str:
     return mechanism_text(mechanism)
 
 
 def attributes_of(solved: Solved, topic: str | None = None) -> dict[str, Any]:
     """What a result says of itself: the topic of the registry that shows it, its mechanism as text, how exact it is."""
     mechanism = solved.ready.mechanism
+    order = order_of_names(mechanism)
     with speaking("en"):
         worst = solved.worst_constraint.label
     return {
         **({} if topic is None else {"topic": topic}),
         "title": mechanism.title,
-        "mechanism": _text_of(mechanism, order_of_names(mechanism)),
+        "mechanism": mechanism_text(mechanism) if order is None else _text_of(mechanism, order),
         "version": __version__,
         "mobility": solved.ready.mobility,
         "worst_residual": float(np.nanmax(solved.residual, initial=0.0)),

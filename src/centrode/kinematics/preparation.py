@@ -70,12 +70,17 @@ def ready(mechanism: Mechanism) -> Ready:
     NotComputedYet
         The description names what this version does not compute.
     """
-    return _ready_of(mechanism, order_of_names(mechanism))
+    order = order_of_names(mechanism)
+    return _prepare(mechanism) if order is None else _kept_ready(mechanism, order)
 
 
-# a page or an analysis asks for the motion, the reactions and the limits of one mechanism: it is made ready once
+# a page or an analysis needs the motion, the reactions and the limits of one mechanism: it is made ready once
 @lru_cache(maxsize=32)
-def _ready_of(mechanism: Mechanism, _order: object) -> Ready:
+def _kept_ready(mechanism: Mechanism, _order: tuple[object, ...]) -> Ready:
+    return _prepare(mechanism)
+
+
+def _prepare(mechanism: Mechanism) -> Ready:
     structure = structure_of(mechanism)
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)

@@ -95,7 +95,14 @@ class Mechanism(Description):
         return self
 
 
-def order_of_names(mechanism: Mechanism) -> tuple[object, ...]:
-    """The order in which points and links are described: it decides what equal mechanisms leave open."""
+def order_of_names(mechanism: Mechanism) -> tuple[object, ...] | None:
+    """The order in which points and links are described, which equal mechanisms leave open.
+
+    None for a copy whose parts cannot be hashed: nothing is kept of it.
+    """
+    try:
+        hash(mechanism)
+    except TypeError:
+        return None
     links = tuple((name, tuple(link.coordinates)) for name, link in mechanism.links.items())
     return tuple(mechanism.frame.points), links

@@ -524,9 +524,10 @@ def structure_of(mechanism: Mechanism) -> Structure:
     unknowns = unknowns_of(mechanism)
     form = Form(
         constraints, unknowns, tuple(dimensions.frame), tuple(mechanism.points), dimensions.space.name,
-        None if not (mechanism.gears or mechanism.rolling) else mechanism, mechanism, dimensions,
+        mechanism, dimensions,
     )  # fmt: skip
-    plan = _plan_of(form)
+    # the numbers of teeth and radii of wheels are not random: a plan with these is not kept
+    plan = _new_plan(form) if mechanism.gears or mechanism.rolling else _plan_of(form)
     # a constraint is redundant if any of its equations is
     redundant = tuple(dict.fromkeys(constraint for constraint, _row in plan.repeating))
     return Structure(
@@ -536,7 +537,7 @@ def structure_of(mechanism: Mechanism) -> Structure:
 
 @dataclass(frozen=True)
 class Form:
-    """What a plan depends on: everything of a mechanism but its numbers; with gears and wheels the mechanism itself.
+    """What a plan depends on: everything of a mechanism but its numbers, where it has no gears and wheels.
 
     Lengths are random where independence is asked for, so mechanisms of one form have one plan.
     """
@@ -546,7 +547,6 @@ class Form:
     frame: tuple[str, ...]
     points: tuple[str, ...]
     space: str
-    wheeled: Mechanism | None
     mechanism: Mechanism = field(compare=False)
     """One of this form."""
     dimensions: Dimensions = field(compare=False)
@@ -561,9 +561,13 @@ class Plan:
     mobility: int
 
 
-# those who ask for thousands of mechanisms of one form, one after the other, have one plan
+# thousands of mechanisms of one form, one after the other, have one plan
 @lru_cache(maxsize=64)
 def _plan_of(form: Form) -> Plan:
+    return _new_plan(form)
+
+
+def _new_plan(form: Form) -> Plan:
     mechanism, constraints, unknowns = form.mechanism, form.constraints, form.unknowns
     matrix = generic_jacobian(mechanism, constraints, unknowns, form.dimensions)
     owners = [c for c in constraints for _row in range(c.size)]
