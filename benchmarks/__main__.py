@@ -36,6 +36,7 @@ SECTIONS: Mapping[str, Section] = {
     "batch": (
         f"Batches, {motions.SAMPLES} samples, with derivatives: centrode's time over pylinkage's", motions.batches,
     ),
+    "single": (f"One motion, {motions.SAMPLES} samples, labels included", motions.single_motions),
     "forces": (f"Reduction to the drive, {forces.SAMPLES} samples", forces.reductions),
     "reactions": (f"Reactions in all joints, {forces.SAMPLES} samples", forces.reactions),
     "force peers": (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -12,7 +13,7 @@ import xarray as xr
 
 import centrode as ct
 from benchmarks import peer
-from benchmarks.table import Row
+from benchmarks.table import Promise, Row
 from benchmarks.timing import best_times
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import requested_grid, solve
@@ -31,6 +32,38 @@ BATCHES: Mapping[str, tuple[str, ...]] = {
 """Mechanisms of the batches, and the dimensions that vary by two per cent."""
 AGREE = 1e-9
 """Greatest difference of positions that counts as the same, in units of the greatest length."""
+
+
+CLEAR, THROUGH_EVENTS = 16.0, 60.0
+"""Milliseconds that one motion with a group of higher class, or through change points, may take."""
+SINGLE: Mapping[str, float | None] = {
+    "crank-rocker": None, "slider-crank-offset": None, "six-bar-press": None, "spherical-four-bar": None,
+    "third-class-triad": CLEAR, "fourth-class-group": CLEAR, "stephenson-driven-at-rocker": THROUGH_EVENTS,
+    "watt-driven-second-loop": THROUGH_EVENTS, "scissor-lift": THROUGH_EVENTS,
+    "scissor-lift-cylinder": THROUGH_EVENTS,
+}  # fmt: skip
+"""Mechanisms of which one motion is timed, and the most that it may take [ms]. The search for events looks beyond the
+range that is requested: rocker drives meet their limits there."""
+KEPT = 64
+"""Descriptions that take turns: more than the program keeps made ready."""
+
+
+def single_motions() -> Iterator[Row]:
+    """One motion with labels: of a description asked for again, and of a new one whose form is known."""
+    for name, most in SINGLE.items():
+        mechanism = ct.example(name)
+        new = itertools.cycle([mechanism.model_copy(update={"title": str(k)}) for k in range(KEPT)])
+        times = best_times(
+            {
+                "again": functools.partial(ct.motion, mechanism, SAMPLES),
+                "new": lambda new=new: ct.motion(next(new), SAMPLES),  # type: ignore[misc]
+            }
+        )
+        again, first = 1e3 * times["again"], 1e3 * times["new"]
+        promises = (
+            [] if most is None else [Promise(f"{name}, one motion of {SAMPLES} samples [ms]", first, most)]
+        )
+        yield Row(name, {"again [ms]": again, "new [ms]": first}, promises=promises)
 
 
 def worked_mechanisms() -> Iterator[Row]:

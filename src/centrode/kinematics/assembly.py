@@ -315,6 +315,11 @@ def assemble(kinematics: Kinematics) -> Assembled:
     signs: dict[int, float] = {}
     check_sides(kinematics)
     starting = Starting(kinematics)
+    # bounds of rounding errors serve groups with two sides or with a divisor, and nothing behind the last of these
+    groups = kinematics.structure.groups
+    last = max(
+        (i for i, group in enumerate(groups) if not isinstance(group, Newton | RigidPoint)), default=-1
+    )
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
@@ -322,7 +327,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 phases = phases_before(kinematics, group, at, SideChoices(starting, i))
                 kinematics = with_phases(kinematics, phases)
                 if isinstance(group, Newton):
-                    kinematics = _start_higher(kinematics, group, at, bounded)
+                    kinematics = _start_higher(kinematics, group, at, bounded if i < last else None)
                 # the bound is needed before: it tells how far below zero a radicand may be
                 elif group.signed:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
@@ -335,6 +340,8 @@ def assemble(kinematics: Kinematics) -> Assembled:
             decided = group.signed and stated_side(kinematics, group) is not None
             _check_angles(kinematics, group, at, ROUGH if decided else ANGLE_TOLERANCE)
             kinematics.count(i, at, ARRAYS, starting)
+            if i > last:
+                continue
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             if not isinstance(group, Newton):  # its places have their bounds already
                 # the same group once more with bounds, as groups behind need them
@@ -346,13 +353,16 @@ def assemble(kinematics: Kinematics) -> Assembled:
     return Assembled(signs, at, _angles(kinematics, at), residual, kinematics.numbers)
 
 
-def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded: Positions) -> Kinematics:
+def _start_higher(
+    kinematics: Kinematics, group: Newton, at: Positions, bounded: Positions | None
+) -> Kinematics:
     """Solve a group of higher class; its wheels mesh as they stand then."""
     known = at.copy()
     standing = standing_links(kinematics, group, at)
     start_higher(kinematics.structure.mechanism, kinematics.numbers, standing, at)
     kinematics = with_phases(kinematics, phases_in(kinematics, group, at))
-    bound_higher(GroupSystem(group, kinematics.numbers, known, 1), at, bounded)
+    if bounded is not None:
+        bound_higher(GroupSystem(group, kinematics.numbers, known, 1), at, bounded)
     return kinematics
 
 

@@ -261,6 +261,7 @@ class BranchedPlan:
     start: Positions
     nominal: Dimensions
     _tracks: dict[int, CurveTracks] = field(default_factory=dict)
+    _beside: dict[int, Surroundings] = field(default_factory=dict)
     _windows: dict[int, Windows | None] = field(default_factory=dict)
     _series: dict[int, ChangePointSeries] = field(default_factory=dict)
 
@@ -292,7 +293,9 @@ class BranchedPlan:
         return close(self._surroundings(group), self._tracks[group], m, at, parameter, lanes, rough)
 
     def _surroundings(self, group: int) -> Surroundings:
-        return Surroundings(self.kinematics, group, self.hooks)
+        if group not in self._beside:
+            self._beside[group] = Surroundings(self.kinematics, group, self.hooks)
+        return self._beside[group]
 
     def follow(self, group: int, at: Positions, parameter: Array, lanes: Lanes, steps: int) -> None:
         """Add what a group of higher class gives along ways of complex parameters that begin with a real one."""

@@ -149,6 +149,8 @@ class Kinematics:
             # arrays of a batch are columns (lanes, 1): flat, one number is taken for each entry
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
+        if self.numbers.alone and not self.path.held:
+            return self
         return Kinematics(self.structure, self.numbers.map_numbers(take), self.path.take(take))
 
 

@@ -327,7 +327,7 @@ def label_coordinates(coordinates: Mapping[str, Any]) -> xr.Coordinates:
     drives = coordinates["drive"]
     for name, value in coordinates.items():
         if isinstance(value, pd.Index):
-            indexes[name] = index = PandasIndex(value, name)
+            indexes[name] = index = PandasIndex(value, name, coord_dtype=value.dtype)
             variables |= index.create_variables()
         else:
             variables[name] = xr.Variable(*value)

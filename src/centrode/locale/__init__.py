@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 from centrode.errors import InputError
@@ -97,8 +98,14 @@ def choose_language(language: str | None = None) -> str:
             ),
         )
     chosen = language or language_of(os.environ)
-    _catalogue = gettext.translation(DOMAIN, DIRECTORY, languages=[chosen], fallback=True)
+    _catalogue = _catalogue_of(chosen)
     return chosen
+
+
+@cache
+def _catalogue_of(language: str) -> gettext.NullTranslations:
+    # gettext looks for the file each time, though it keeps what it has read
+    return gettext.translation(DOMAIN, DIRECTORY, languages=[language], fallback=True)
 
 
 def choose_language_of_process(language: str | None = None) -> str:

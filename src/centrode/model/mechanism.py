@@ -93,3 +93,16 @@ class Mechanism(Description):
         object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "guides", guides)
         return self
+
+
+def order_of_names(mechanism: Mechanism) -> tuple[object, ...] | None:
+    """The order in which points and links are described, which equal mechanisms leave open.
+
+    None for a copy whose parts cannot be hashed: nothing is kept of it.
+    """
+    try:
+        hash(mechanism)
+    except TypeError:
+        return None
+    links = tuple((name, tuple(link.coordinates)) for name, link in mechanism.links.items())
+    return tuple(mechanism.frame.points), links

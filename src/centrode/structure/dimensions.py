@@ -123,6 +123,19 @@ class Dimensions:
             gearing=self.gearing.map_numbers(function),
         )
 
+    @cached_property
+    def alone(self) -> bool:
+        """Whether these are the dimensions of one mechanism: plain numbers, and no arrays."""
+        plain = True
+
+        def look(x: Number) -> Number:
+            nonlocal plain
+            plain = plain and isinstance(x, float)
+            return x
+
+        self.map_numbers(look)
+        return plain
+
     def curve(self, guide: str) -> Curve:
         """Where a guide's point can be, in the axes of the body that carries it."""
         return self.through[guide], self.direction[guide]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 from typing import Protocol, assert_never
 
 from centrode.errors import InputError, NotComputedYet
@@ -522,7 +522,54 @@ def structure_of(mechanism: Mechanism) -> Structure:
     _refuse_what_the_space_lacks(mechanism, dimensions.space)
     constraints = constraints_of(mechanism)
     unknowns = unknowns_of(mechanism)
-    matrix = generic_jacobian(mechanism, constraints, unknowns, dimensions)
+    form = Form(
+        constraints, unknowns, tuple(dimensions.frame), tuple(mechanism.points), dimensions.space.name,
+        mechanism, dimensions,
+    )  # fmt: skip
+    # the numbers of teeth and radii of wheels are not random: a plan with these is not kept
+    plan = _new_plan(form) if mechanism.gears or mechanism.rolling else _plan_of(form)
+    # a constraint is redundant if any of its equations is
+    redundant = tuple(dict.fromkeys(constraint for constraint, _row in plan.repeating))
+    return Structure(
+        mechanism, dimensions, constraints, redundant, plan.repeating, unknowns, plan.groups, plan.mobility
+    )
+
+
+@dataclass(frozen=True)
+class Form:
+    """What a plan depends on: everything of a mechanism but its numbers, where it has no gears and wheels.
+
+    Lengths are random where independence is asked for, so mechanisms of one form have one plan.
+    """
+
+    constraints: tuple[Constraint, ...]
+    unknowns: tuple[Entity, ...]
+    frame: tuple[str, ...]
+    points: tuple[str, ...]
+    space: str
+    mechanism: Mechanism = field(compare=False)
+    """One of this form."""
+    dimensions: Dimensions = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Groups in their order, equations that repeat others, and the generic mobility."""
+
+    groups: tuple[Group, ...]
+    repeating: tuple[tuple[Constraint, int], ...]
+    mobility: int
+
+
+# thousands of mechanisms of one form, one after the other, have one plan
+@lru_cache(maxsize=64)
+def _plan_of(form: Form) -> Plan:
+    return _new_plan(form)
+
+
+def _new_plan(form: Form) -> Plan:
+    mechanism, constraints, unknowns = form.mechanism, form.constraints, form.unknowns
+    matrix = generic_jacobian(mechanism, constraints, unknowns, form.dimensions)
     owners = [c for c in constraints for _row in range(c.size)]
     kept = _independent(mechanism, matrix, owners)
     drive_rows = sum(is_drive(c) for c in constraints)
@@ -531,11 +578,8 @@ def structure_of(mechanism: Mechanism) -> Structure:
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, matrix, kept, owners, mobility, unknowns)
-    groups = _groups(mechanism, dimensions.space, unknowns, kept, owners)
-    # a constraint is redundant if any of its equations is
-    repeating = _left_out(owners, kept)
-    redundant = tuple(dict.fromkeys(constraint for constraint, _row in repeating))
-    return Structure(mechanism, dimensions, constraints, redundant, repeating, unknowns, groups, mobility)
+    groups = _groups(mechanism, form.dimensions.space, unknowns, kept, owners)
+    return Plan(groups, _left_out(owners, kept), mobility)
 
 
 def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:

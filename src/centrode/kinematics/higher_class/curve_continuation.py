@@ -25,7 +25,9 @@ from centrode.kinematics.higher_class.curves import (
     quintic,
     reach,
 )
+from centrode.kinematics.higher_class.loop_closure import LoopClosure
 from centrode.kinematics.higher_class.newton import SMALL, newton
+from centrode.kinematics.higher_class.parameter_continuation import Course, walk_by_parameter
 from centrode.kinematics.higher_class.system import Surroundings, needed_positions, total
 from centrode.kinematics.plan_evaluation import Event
 from centrode.structure.constraints import Positions
@@ -159,8 +161,8 @@ class CurveTracks:
             grown,
         )
 
-    def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
-        """Starting states at parameters, one lane for each."""
+    def foretell(self, parameter: Array, lanes: Lanes, columns: Lanes | None = None) -> Foretold:
+        """Starting states at parameters, one lane for each; all of their numbers, or some of them with zeros beside."""
         parameter, grown = self._fold_to_first_round(parameter, lanes)
         which, known = self._pieces(parameter, lanes)
         state = np.full((self.at_limit.shape[2], len(parameter)), np.nan).T
@@ -168,8 +170,9 @@ class CurveTracks:
         chosen = which[known]
         if len(chosen):
             share = share_at(self.powers[:, -1], chosen, parameter[known] - self.origin[chosen])
-            for column, powers in enumerate(np.moveaxis(self.powers[:, :-1], 1, 0)):
-                state[known, column] = _value(powers, chosen, share)
+            state[known] = 0.0
+            for column in range(state.shape[1]) if columns is None else columns:
+                state[known, column] = _value(self.powers[:, column], chosen, share)
             sense[known] = self.sense[chosen]
             state += grown
         limit = self._at_limits(parameter, lanes, state)
@@ -287,14 +290,11 @@ class Rounds:
         self, who: Lanes, origin: Array, pieces: Array, reached: Array
     ) -> list[tuple[np.intp, Period]]:
         """Walkers that have come round, of those whose last pieces brought them from an origin to what is reached."""
-        # only where angles drive does the mechanism come back to where it was
-        if not self.around.kinematics.path.turns:
-            return []
-        places = self._place(who, self.passed[who])
-        passing = self.forward[who] * (reached - places) >= 0.0
+        passing = self.passing(who, reached)
         if not passing.any():
             return []
-        who, places, last = who[passing], places[passing], pieces[passing]
+        who, last = who[passing], pieces[passing]
+        places = self._place(who, self.passed[who])
         # the last piece leads past the place: where on it the parameter takes the value, the state is
         # foretold
         ways = np.ascontiguousarray(last[:, :, -1].T)
@@ -303,13 +303,24 @@ class Rounds:
             who, places, total(last * (share[:, None] ** np.arange(6))[:, :, None])[:, :-1]
         )
 
+    def set_out(self, walker: int) -> None:
+        """Let a walker set out once more."""
+        self.begun[walker], self.passed[walker] = np.nan, 0
+
+    def passing(self, who: Lanes, reached: Array) -> Mask:
+        """Which walkers have passed a place at which they may have come round."""
+        # only where angles drive does the mechanism come back to where it was
+        if not self.around.kinematics.path.turns:
+            return np.zeros(len(who), dtype=bool)
+        return np.asarray(self.forward[who] * (reached - self._place(who, self.passed[who])) >= 0.0)
+
     def _walkers_at_start(self, who: Lanes, places: Array, foretold: Array) -> list[tuple[np.intp, Period]]:
         """Walkers that stand at their next places as they stood at their first; the next places move on."""
         lane, turns = self.lane[who], self.passed[who]
         self.passed[who] += 1
         before = self.around.before(places, lane)
         system = self.around.system(needed_positions(self.around.equations, before), lane)
-        converged = newton(system, system.normalise(foretold))
+        converged = newton(system, self.around.normalise(foretold, lane))
         # a place that is not found compares with nothing, and closes nothing
         state = np.where(converged.found[:, None], converged.state, np.nan)
         first = turns == 0
@@ -442,10 +453,22 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     lanes = len(start)
     both = np.tile(np.arange(lanes), 2)
     forward = np.repeat([-1.0, 1.0], lanes)
+    ends = np.where(forward < 0.0, *extent)
     state, parameter = np.tile(start, (2, 1)), np.full(2 * lanes, initial)
+    trails, rounds = [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1])
+    ended = np.zeros(2 * lanes, dtype=bool)
+    loops = around.loops_at(parameter, both)
+    if loops is not None:
+        ended = _by_parameter(around, loops, state, parameter, ends, trails, rounds)
+    width = start.shape[1] + 1
+    if ended.all():
+        nowhere = CurvePlaces(*np.full((6, 2 * lanes, 1), np.nan))
+        none = np.zeros(2 * lanes)
+        return Walkers(
+            both, forward, ends, nowhere, none, none, none[:, None, None], none[:, None], trails, rounds, ~ended
+        )  # fmt: skip
     free = around.blank(both).free
-    # the first plane is square to the parameter's axis: the initial position has the initial parameter
-    # exactly
+    # the first plane is square to the parameter's axis: the beginning has its parameter exactly
     along = np.zeros((2 * lanes, free + 1))
     along[:, -1] = forward
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
@@ -455,16 +478,53 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     weight[:, :-1] = around.blank(both).weights()
     base = CurvePlaces(numbers, direction, direction, along, forward, weight)
     first_places = reach(around, both, base, along, parameter, state)
-    here = first_places.places
-    width = start.shape[1] + 1
+    here, found = first_places.places, first_places.found
     walkers = Walkers(
-        both, forward, np.where(forward < 0.0, *extent), here, np.full(2 * lanes, FIRST),
+        both, forward, ends, here, np.full(2 * lanes, FIRST),
         np.sign(here.size), np.full((2 * lanes, 6, width), np.nan), np.zeros((2 * lanes, 2)),
-        [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1]), first_places.found.copy(),
+        trails, rounds, found & ~ended,
     )  # fmt: skip
-    for walker in np.nonzero(~first_places.found)[0]:
+    for walker in np.nonzero(~found)[0]:
         walkers.stop(walker, lost=True)
     return walkers
+
+
+def _by_parameter(
+    around: Surroundings,
+    loops: LoopClosure,
+    state: Array,
+    parameter: Array,
+    ends: Array,
+    trails: Sequence[Trail],
+    rounds: Rounds,
+) -> Mask:
+    """Follow walkers by the parameter as far as it goes; puts there where they have come to, says which have ended."""
+
+    def closed(who: Lanes, courses: Sequence[Course]) -> list[np.intp]:
+        reached = np.array([courses[walker].parameter[-1] for walker in who])
+        passing = rounds.passing(who, reached)
+        if not passing.any():
+            return []
+        who, reached = who[passing], reached[passing]
+        origin = np.array([courses[walker].parameter[-2] for walker in who])
+        pieces = np.concatenate([courses[walker].pieces(loops, -2) for walker in who])
+        round_again = rounds.closings(who, origin, pieces, reached)
+        for walker, period in round_again:
+            trails[int(walker)].period = period
+        return [walker for walker, _period in round_again]
+
+    courses = walk_by_parameter(around, loops, rounds.lane, state, float(parameter[0]), ends, closed)
+    for walker, course in enumerate(courses):
+        if not course.regular:
+            # what lies between two places has to be looked at from near by: all the way is gone along the curve
+            course.ended, trails[walker].period = False, None
+            rounds.set_out(walker)
+            continue
+        edges = pairwise(course.parameter)
+        for powers, (first, last) in zip(course.pieces(loops), edges, strict=True):
+            trails[walker].pieces.append(CurvePiece(powers, first, first, last, course.sense))
+            state[walker], parameter[walker] = loops.state(course.series[-1][:1])[0], last
+    return np.array([course.ended for course in courses])
 
 
 def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) -> list[Event]:
@@ -522,7 +582,7 @@ def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePla
     # only the change since the end of the piece is taken: rounding of the polynomial does not add up
     ahead = np.where(np.isfinite(value), value - end, taylor)
     parameter = here.parameter + ahead[:, -1]
-    return parameter, around.blank(walkers.lane[who]).normalise(here.state + ahead[:, :-1])
+    return parameter, around.normalise(here.state + ahead[:, :-1], walkers.lane[who])
 
 
 def _shorten(walkers: Walkers, who: Lanes) -> None:

@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.higher_class.loop_closure import LoopClosure, solve_places
 from centrode.kinematics.higher_class.newton import (
     Shifts,
     bordered_equations,
@@ -20,10 +21,10 @@ from centrode.kinematics.higher_class.newton import (
     motion_along,
     size_of,
 )
-from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, solve_places, total
+from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, total
 from centrode.kinematics.path import JETS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -116,23 +117,22 @@ def reach(
 
     They are as good as it takes to foretell others at such strides; without these, to the last digit.
     """
-    count, free = len(parameter), along.shape[1] - 1
+    count = len(parameter)
     arrived, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, FAR), np.full(count, np.nan)
+    loops = around.loops_at(parameter, lanes)
+    on_plane: _ByLoops | _ByConstraints
+    if loops is None:
+        on_plane = _ByConstraints(around, lanes, along, state)
+    else:
+        on_plane = _ByLoops(around, loops, lanes, along, state)
     for k in range(STEPS):
-        system, linear, moved, rest, follow, matrix = bordered_equations(
-            around, lanes, parameter, state, along
-        )
-        right = np.concatenate([rest, np.zeros((count, 1))], axis=1)
-        step = solve_places(matrix, right[:, :, None])[:, :, 0]
-        motion = motion_along(linear, moved, follow, step)
-        size = size_of(system, moved, step)
+        size = on_plane.step(parameter)
         if k == 0:
             wrong = size
         # a step of a radian, or of the greatest length, has nothing to do with the place foretold
         good = active & np.isfinite(size) & (size < 1.0)
-        state = np.where(good[:, None], system.move(state, motion), state)
-        parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
+        parameter = on_plane.move(parameter, good)
         with np.errstate(all="ignore"):
             # without a stride to the last digit; with one, until the next step, foretold by quadratic
             # convergence, is small beside it
@@ -148,24 +148,119 @@ def reach(
         last = size
         if not active.any():
             break
-    system, linear, _moved, _rest, follow, matrix = bordered_equations(around, lanes, parameter, state, along)
-    # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
-    ahead = np.zeros((count, free + 1, 1))
-    ahead[:, -1] = 1.0
-    slope = solve_places(matrix, ahead)[:, :, 0]
-    first, second = _coefficients(around, lanes, parameter, state, slope, linear, follow, matrix)
+    state, slope, size, first, second = on_plane.tangent(parameter)
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     with np.errstate(all="ignore"):
         length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
-        size = np.linalg.det(matrix) * length
         places = CurvePlaces(
-            numbers, first / length[:, None], second, slope / length[:, None], size, base.weight
+            numbers, first / length[:, None], second, slope / length[:, None], size * length, base.weight
         )
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
     arrived &= np.isfinite(inward[1]).all(axis=1)
     return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, arrived)
+
+
+Tangent: TypeAlias = tuple[Array, Array, Array, Array, Array]
+"""States, slopes of the curve (k, free + 1) against the plane's normal, bordered determinants, and first and second
+Taylor coefficients of numbers by the distance from the plane."""
+
+
+class _ByLoops:
+    """Newton's method onto planes across curves, by the loops of a group."""
+
+    def __init__(
+        self, around: Surroundings, loops: LoopClosure, lanes: Lanes, along: Array, state: Array
+    ) -> None:
+        self.around, self.loops, self.lanes = around, loops, lanes
+        self.free, self.whole = loops.free_of(state)
+        self.matrix = np.empty((len(along), loops.free + 1, loops.free + 1))
+        self.matrix[:, -1] = along
+        self.right = np.zeros((len(along), loops.free + 1))
+
+    def step(self, parameter: Array) -> Array:
+        """Find a step; returns its size."""
+        series, _known = self._series(parameter, 1)
+        self.right[:, :-1] = -self.loops.residual(series[0])
+        self.steps = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
+        return np.asarray(np.max(np.abs(self.steps), axis=1))
+
+    def move(self, parameter: Array, good: Mask) -> Array:
+        """Make the step where it is good; returns the parameters there."""
+        self.free = np.where(good[:, None], self.free + self.steps[:, :-1], self.free)
+        return np.where(good, parameter + self.around.unit * self.steps[:, -1], parameter)
+
+    def _series(self, parameter: Array, order: int) -> tuple[Array, Array]:
+        """Numbers of places with their matrix, and series of what is known by the path's parameter."""
+        ahead = Jet((parameter, np.ones(len(parameter)), *[0.0] * (order - 1)))
+        known = self.loops.known(self.around.known(ahead, self.lanes), len(parameter), order + 1)
+        series = self.loops.begin(self.loops.numbers(self.free, self.whole, known[0]), known)
+        self.matrix[:, :-1, :-1] = self.loops.matrix(series[0])
+        # the parameter's column is of the size of the others
+        self.matrix[:, :-1, -1] = self.around.unit * self.loops.coefficient(series, 1)
+        return series, known
+
+    def tangent(self, parameter: Array) -> Tangent:
+        """The curves where the planes are met."""
+        loops, unit = self.loops, self.around.unit
+        series, known = self._series(parameter, 2)
+        # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
+        self.right[:] = 0.0
+        self.right[:, -1] = 1.0
+        slope = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
+        rate = unit * slope[:, -1:]
+        along = np.stack([known[0], known[1] * rate, known[2] * rate**2])
+        series = loops.begin(series[0], along)
+        loops.put(series, 1, slope[:, :-1])
+        loops.bend(series, 2)
+        # along the tangent alone the equations fail in second order
+        self.right[:, :-1] = -loops.coefficient(series, 2)
+        self.right[:, -1] = 0.0
+        bend = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
+        series[2, :, loops.first_known :] += known[1] * (unit * bend[:, -1:])
+        loops.put(series, 2, bend[:, :-1])
+        first = np.concatenate([loops.state(series[1]), rate], axis=1)
+        second = np.concatenate([loops.state(series[2]), unit * bend[:, -1:]], axis=1)
+        return loops.state(series[0]), slope, np.linalg.det(self.matrix), first, second
+
+
+class _ByConstraints:
+    """The same by all constraints of a group, for batches and on the sphere."""
+
+    def __init__(self, around: Surroundings, lanes: Lanes, along: Array, state: Array) -> None:
+        self.around, self.lanes, self.along, self.state = around, lanes, along, state
+
+    def step(self, parameter: Array) -> Array:
+        """Find a step; returns its size."""
+        system, linear, moved, rest, follow, matrix = bordered_equations(
+            self.around, self.lanes, parameter, self.state, self.along
+        )
+        right = np.concatenate([rest, np.zeros((len(parameter), 1))], axis=1)
+        self.steps = solve_places(matrix, right[:, :, None])[:, :, 0]
+        self.moved = system.move(self.state, motion_along(linear, moved, follow, self.steps))
+        return size_of(system, moved, self.steps)
+
+    def move(self, parameter: Array, good: Mask) -> Array:
+        """Make the step where it is good; returns the parameters there."""
+        self.state = np.where(good[:, None], self.moved, self.state)
+        return np.where(good, parameter + self.around.unit * self.steps[:, -1], parameter)
+
+    def tangent(self, parameter: Array) -> Tangent:
+        """The curves where the planes are met."""
+        _system, linear, _moved, _rest, follow, matrix = bordered_equations(
+            self.around, self.lanes, parameter, self.state, self.along
+        )
+        # the tangent: the direction along which no equation changes, of length 1 along the normal of the plane
+        ahead = np.zeros((*matrix.shape[:2], 1))
+        ahead[:, -1] = 1.0
+        slope = solve_places(matrix, ahead)[:, :, 0]
+        first, second = _coefficients(
+            self.around, self.lanes, parameter, self.state, slope, linear, follow, matrix
+        )
+        with np.errstate(all="ignore"):
+            size = np.linalg.det(matrix)
+        return self.state, slope, size, first, second
 
 
 def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:
@@ -265,7 +360,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
         powers = share[:, None] ** np.arange(6)
         value = total(whole * powers[:, :, None])
         parameter = here.parameter + value[:, -1]
-        state = around.blank(lanes).normalise(value[:, :-1])
+        state = around.normalise(value[:, :-1], lanes)
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
             # at a limit the parameter's first coefficient is zero: Newton's step of that along the arc
@@ -321,67 +416,134 @@ GREATEST = 0.05
 """Greatest step towards a saddle, in rad or in the greatest length."""
 FLAT_SADDLE = 1e-11
 """A saddle is flat: its value is exact to the square of this."""
+LEAST_VALUE = UNIT_ROUNDOFF**2
+"""No value of a saddle is known better: it is exact to the square of the rounding of its place."""
+FAR_SADDLE = 1e-7
+"""A last step greater than this has not found the saddle."""
 NEAR = 3.0
 """How many arcs away from its beginning a crossing may lie to belong to it."""
 
 
-@dataclass
-class _Saddle:
-    """A place on its way to the saddle: one lane."""
+class _BendsByLoops:
+    """Equations of one place with their second derivatives, by the loops of a group."""
 
-    around: Surroundings
-    lane: Lanes
-    parameter: Array
-    state: Array
+    def __init__(
+        self, around: Surroundings, loops: LoopClosure, lane: Lanes, parameter: Array, state: Array
+    ) -> None:
+        self.around, self.loops, self.lane, self.parameter = around, loops, lane, parameter
+        self.free, self.whole = loops.free_of(state)
 
-    def approach(self) -> tuple[float, bool]:
-        """Step towards the saddle; returns the size of the step and whether it is one."""
-        system, linear, moved, rest, follow, matrix = bordered_equations(
-            self.around, self.lane, self.parameter, self.state, None
-        )
-        left, values, right = np.linalg.svd(matrix[0])
-        # the combination of equations that changes least, and the two directions in which anything changes
-        # least
-        least, plane = left[:, -1], right[-2:]
-        bends = [self._bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
-        # by polarisation: B(p + q) - B(p) - B(q) = 2 B(p, q)
-        mixed = 0.5 * (bends[2] - bends[0] - bends[1])
-        hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
-        # in the plane to where the worst equation has no slope; square to it to where the others hold
-        inside = -np.linalg.solve(hessian, plane @ matrix[0].T @ least)
-        back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest[0]) / values[:-1])
-        step = plane.T @ inside + back
-        size = float(np.max(np.abs(step)))
-        step *= min(1.0, GREATEST / size)
-        self.state = system.move(self.state, motion_along(linear, moved, follow, step[None, :]))
+    def look(self) -> tuple[Array, Array]:
+        """The matrix (free, free + 1), and what is missing in the equations (free,)."""
+        loops, unit = self.loops, self.around.unit
+        ahead = Jet((self.parameter, np.ones(1), 0.0))
+        self.known = loops.known(self.around.known(ahead, self.lane), 1, 3)
+        self.numbers = loops.numbers(self.free, self.whole, self.known[0])
+        by_parameter = loops.coefficient(loops.begin(self.numbers, self.known), 1)
+        matrix = np.concatenate([loops.matrix(self.numbers)[0], unit * by_parameter.T], axis=1)
+        return matrix, -loops.residual(self.numbers)[0]
+
+    def bend(self, least: Array, direction: Array) -> float:
+        """Second derivative of a combination of equations in a direction of the curve's coordinates."""
+        loops, rate = self.loops, self.around.unit * direction[-1]
+        along = np.stack([self.known[0], self.known[1] * rate, self.known[2] * rate**2])
+        series = loops.begin(self.numbers, along)
+        loops.put(series, 1, direction[None, :-1])
+        loops.bend(series, 2)
+        return 2.0 * float(least @ loops.coefficient(series, 2)[0])
+
+    def move(self, step: Array) -> None:
+        """Make a step (free + 1,)."""
+        self.free = self.free + step[:-1]
         self.parameter = self.parameter + self.around.unit * step[-1]
-        # a saddle is met by two curves; a top or a bottom is an isolated point or nothing
-        return size, bool(np.linalg.det(hessian) < 0.0)
 
-    def _bend(self, least: Array, direction: Array) -> float:
-        """Second derivative of the worst equation in a direction of the curve's coordinates."""
-        system, linear, _moved, _rest, follow, _matrix = bordered_equations(
+    @property
+    def state(self) -> Array:
+        """The state that is reached."""
+        known = self.loops.known(self.around.known_at(self.parameter, self.lane), 1)
+        return self.loops.state(self.loops.numbers(self.free, self.whole, known[0]))
+
+
+class _BendsByConstraints:
+    """The same by all constraints of a group."""
+
+    def __init__(self, around: Surroundings, lane: Lanes, parameter: Array, state: Array) -> None:
+        self.around, self.lane, self.parameter, self.state = around, lane, parameter, state
+
+    def look(self) -> tuple[Array, Array]:
+        """The matrix (free, free + 1), and what is missing in the equations (free,)."""
+        self.system, self.linear, self.moved, rest, self.follow, matrix = bordered_equations(
             self.around, self.lane, self.parameter, self.state, None
         )
+        return matrix[0], rest[0]
+
+    def bend(self, least: Array, direction: Array) -> float:
+        """Second derivative of a combination of equations in a direction of the curve's coordinates."""
         zero = np.zeros(1)
-        still = {entity: (0.0,) * entity.unknowns for entity in follow}
-        one = motion_along(linear, still, follow, direction[None, :])
+        still = {entity: (0.0,) * entity.unknowns for entity in self.follow}
+        one = motion_along(self.linear, still, self.follow, direction[None, :])
         shifts = {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()}
         straight = GroupMotion(shifts, [Jet((zero, x, zero)) for x in one.free])
         ahead = Jet((self.parameter, zero + self.around.unit * direction[-1], zero))
         known = self.around.known(ahead, self.lane)
-        values = system.residual(JETS, system.at(JETS, known, self.state, straight))
-        _moved, rest = linear.reduce([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
-        return 2.0 * float(least @ system.stack(rest)[0])
+        values = self.system.residual(JETS, self.system.at(JETS, known, self.state, straight))
+        _moved, rest = self.linear.reduce([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+        return 2.0 * float(least @ self.system.stack(rest)[0])
+
+    def move(self, step: Array) -> None:
+        """Make a step (free + 1,)."""
+        motion = motion_along(self.linear, self.moved, self.follow, step[None, :])
+        self.state = self.system.move(self.state, motion)
+        self.parameter = self.parameter + self.around.unit * step[-1]
+
+
+class _Saddle:
+    """A place on its way to the saddle: one lane."""
+
+    def __init__(self, around: Surroundings, lane: Lanes, parameter: Array, state: Array) -> None:
+        self.around, self.lane = around, lane
+        loops = around.loops_at(parameter, lane)
+        self.at: _BendsByLoops | _BendsByConstraints
+        if loops is None:
+            self.at = _BendsByConstraints(around, lane, parameter, state)
+        else:
+            self.at = _BendsByLoops(around, loops, lane, parameter, state)
+
+    @property
+    def parameter(self) -> Array:
+        """The path's parameter there (1,)."""
+        return self.at.parameter
+
+    def approach(self) -> tuple[float, bool]:
+        """Step towards the saddle; returns the size of the step and whether it is one."""
+        matrix, rest = self.at.look()
+        left, values, right = np.linalg.svd(matrix)
+        # the combination of equations that changes least, and the two directions in which anything changes
+        # least
+        least, plane = left[:, -1], right[-2:]
+        bends = [self.at.bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
+        # by polarisation: B(p + q) - B(p) - B(q) = 2 B(p, q)
+        mixed = 0.5 * (bends[2] - bends[0] - bends[1])
+        hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
+        # in the plane to where the worst equation has no slope; square to it to where the others hold
+        inside = -np.linalg.solve(hessian, plane @ matrix.T @ least)
+        back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest) / values[:-1])
+        step = plane.T @ inside + back
+        size = float(np.max(np.abs(step)))
+        step *= min(1.0, GREATEST / size)
+        self.at.move(step)
+        # a saddle is met by two curves; a top or a bottom is an isolated point or nothing
+        return size, bool(np.linalg.det(hessian) < 0.0)
 
     def value(self) -> tuple[float, float]:
         """The worst equation's value with the bound of its rounding error."""
+        parameter, state = self.at.parameter, self.at.state
         system, linear, _moved, rest, _follow, matrix = bordered_equations(
-            self.around, self.lane, self.parameter, self.state, None
+            self.around, self.lane, parameter, state, None
         )
         least = np.linalg.svd(matrix[0])[0][:, -1]
-        known = self.around.with_bounds(self.parameter, self.lane)
-        values = system.residual(ROUNDED, system.at(ROUNDED, known, self.state))
+        known = self.around.with_bounds(parameter, self.lane)
+        values = system.residual(ROUNDED, system.at(ROUNDED, known, state))
         _moved, bounds = linear.reduce([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
         bound = float(np.abs(least) @ np.array([float(np.max(Rounded.of(x).bound)) for x in bounds]))
         return float(least @ rest[0]), bound
@@ -392,8 +554,7 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
     # where the determinant, taken for straight, is zero; the polynomial has the state there
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
     middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
-    system = around.blank(lane)
-    state = system.normalise(middle[:, :-1])
+    state = around.normalise(middle[:, :-1], lane)
     saddle = _Saddle(around, lane, base.parameter + middle[:, -1], state)
     try:
         with np.errstate(all="ignore"):
@@ -401,11 +562,13 @@ def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: 
                 size, crosses = saddle.approach()
                 if not size > FLAT_SADDLE:
                     break
+            if size > FAR_SADDLE or not crosses:
+                return None
             value, bound = saddle.value()
     except np.linalg.LinAlgError:
         return None
     parameter = float(saddle.parameter[0])
     away = abs(parameter - float(base.parameter[0])) / around.unit
     # the saddle has to be found, near by, with a value that its rounding error explains
-    met = crosses and size <= 1e-7 and away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
+    met = away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * max(bound, LEAST_VALUE)
     return parameter if met else None

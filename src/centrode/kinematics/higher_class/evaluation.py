@@ -9,8 +9,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.higher_class.curve_continuation import CurveTracks
-from centrode.kinematics.higher_class.newton import newton, step_at
+from centrode.kinematics.higher_class.curve_continuation import CurveTracks, Foretold
+from centrode.kinematics.higher_class.loop_closure import LoopClosure, solve_places
+from centrode.kinematics.higher_class.newton import newton, newton_by_loops, step_at
 from centrode.kinematics.higher_class.system import (
     GroupSystem,
     Linear,
@@ -67,7 +68,10 @@ def close(
     group = around.equations
     known = flatten_positions(needed_positions(group, at), shape)
     system = GroupSystem(group, numbers, known.map_numbers(plain), len(flat))
-    foretold = tracks.foretell(flat, which)
+    loops = around.loops(known)
+    foretold = tracks.foretell(flat, which, None if loops is None else loops.needed)
+    if loops is not None:
+        return _close_by_loops(loops, system, foretold, m, known, shape, at, rough)
     start = system.normalise(foretold.state)
     with np.errstate(all="ignore"):
         if rough:
@@ -90,6 +94,46 @@ def close(
     return ConvergedPlaces(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
 
 
+def _close_by_loops(
+    loops: LoopClosure,
+    system: GroupSystem,
+    foretold: Foretold,
+    m: Namespace,
+    known: Positions,
+    shape: tuple[int, ...],
+    at: Positions,
+    rough: bool,
+) -> ConvergedPlaces:
+    """`close` by the loops of the group."""
+    order = max((jet.order for jet in _jets(known)), default=0) if isinstance(m, JetFunctions) else 0
+    beside = loops.known(known, system.places, order + 1)
+    free, whole = loops.free_of(foretold.state)
+    with np.errstate(all="ignore"):
+        if rough:
+            right = ~(foretold.beyond | foretold.limit)
+            if isinstance(m, JetFunctions):
+                numbers = loops.numbers(free, whole, beside[0])
+                free -= solve_places(loops.matrix(numbers), loops.residual(numbers)[:, :, None])[:, :, 0]
+        else:
+            converged = newton_by_loops(loops, beside[0], free, whole)
+            numbers = loops.numbers(converged.state, whole, beside[0])
+            right = converged.found & (np.sign(np.linalg.det(loops.matrix(numbers))) == foretold.sense)
+            free = np.where(right[:, None], converged.state, np.nan)
+        free[foretold.limit] = loops.free_of(foretold.state[foretold.limit])[0]
+        numbers = loops.numbers(free, whole, beside[0])
+        if isinstance(m, RoundedFunctions):
+            state = loops.state(numbers)
+            linear = system.linear(system.at(ARRAYS, system.known, state))
+            found = system.at(m, known, state, system.bounds(known, state, linear))
+        else:
+            found = Positions({}, {}, {}, {})
+            series = loops.series(numbers, beside, loops.matrix(numbers)) if order else numbers
+            loops.positions(series, found)
+        add_in_shape(found, system.group, shape, at)
+    lost = ~(right | foretold.limit | foretold.beyond)
+    return ConvergedPlaces(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
+
+
 def follow(
     around: Surroundings, tracks: CurveTracks, at: Positions, parameter: Array, lanes: Lanes, steps: int
 ) -> None:
@@ -99,19 +143,40 @@ def follow(
     """
     group = around.equations
     known = flatten_positions(needed_positions(group, at), parameter.shape)
-    system = GroupSystem(group, around.kinematics.take(lanes).numbers, known, len(parameter))
     first = np.arange(0, len(parameter), steps)
     # a way begins with a real parameter, where the track knows the state; from there it goes through complex
     # ones
     state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
-    state = system.take(first).normalise(state)
-    states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
-    for k in range(steps):
-        converged = newton(system.take(first + k), state)
-        # each place starts from the one before: along a way there is no track to start from
-        state = np.where(converged.found[:, None], converged.state, np.nan)
-        states[first + k] = state
-    add_in_shape(system.at(ARRAYS, known, states), group, parameter.shape, at)
+    loops = around.loops(known)
+    if loops is not None:
+        found = Positions({}, {}, {}, {})
+        loops.positions(_follow_by_loops(loops, known, state, first, len(parameter)), found)
+    else:
+        system = GroupSystem(group, around.kinematics.take(lanes).numbers, known, len(parameter))
+        state = system.take(first).normalise(state)
+        states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
+        for k in range(steps):
+            converged = newton(system.take(first + k), state)
+            # each place starts from the one before: along a way there is no track to start from
+            state = np.where(converged.found[:, None], converged.state, np.nan)
+            states[first + k] = state
+        found = system.at(ARRAYS, known, states)
+    add_in_shape(found, group, parameter.shape, at)
+
+
+def _follow_by_loops(loops: LoopClosure, known: Positions, state: Array, first: Lanes, places: int) -> Array:
+    """Numbers of a group along ways that begin at places with states."""
+    beside = loops.known(known, places, dtype=complex)[0]
+    free, whole = loops.free_of(state)
+    numbers = np.empty((places, loops.width), dtype=complex)
+    before = free
+    for k in range(places // len(first)):
+        # each place starts from the two before: along a way there is no track to start from
+        start = 2.0 * free - before if k > 1 else free
+        converged = newton_by_loops(loops, beside[first + k], start, whole)
+        before, free = free, np.where(converged.found[:, None], converged.state, np.nan)
+        numbers[first + k] = loops.numbers(free, whole, beside[first + k])
+    return numbers
 
 
 def _lift_states(

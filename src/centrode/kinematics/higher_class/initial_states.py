@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
+from centrode.geometry.in_plane import PLANE
 from centrode.kinematics.assembly_mode import is_measured
+from centrode.kinematics.higher_class.loop_closure import LoopClosure
 from centrode.kinematics.higher_class.newton import newton
-from centrode.kinematics.higher_class.system import GroupSystem, within
+from centrode.kinematics.higher_class.system import GroupSystem, needed_positions, within
 from centrode.kinematics.plan_evaluation import rotor_of_angle
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -59,7 +61,7 @@ def closing_states(
     One if its angles are much nearer to those given than the angles of all others.
     """
     # all starts are places of one system, so that Newton's method runs once
-    many = GroupSystem(system.group, system.numbers, system.known, len(starts))
+    many = GroupSystem(system.group, system.numbers, system.known, len(starts), system.closure)
     with np.errstate(all="ignore"):
         converged = newton(many, np.concatenate(starts), steps)
     states: list[Array] = []
@@ -105,14 +107,17 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
     the group is singular.
     """
-    system = GroupSystem(group, numbers, at.copy(), 1)
+    loops = None
+    if numbers.space is PLANE and numbers.alone:
+        loops = LoopClosure(group, numbers, needed_positions(group, at))
+    system = GroupSystem(group, numbers, at.copy(), 1, loops)
     start = _start(mechanism, system, at)
     with np.errstate(all="ignore"):
         converged = newton(system, start, STEPS)
         if not converged.found[0]:
             raise _does_not_close(system, start)
         closed = system.at(ARRAYS, at, converged.state)
-        values = np.linalg.svd(system.linear(closed).matrix[0], compute_uv=False)
+        values = np.linalg.svd(_matrix(system, closed, converged.state)[0], compute_uv=False)
     if values[-1] <= SINGULAR * values[0]:
         raise InputError(
             name_of(group),
@@ -127,6 +132,15 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
         if name in closed.angles:
             at.angles[name] = closed.angles[name]
     return system
+
+
+def _matrix(system: GroupSystem, at: Positions, state: Array) -> Array:
+    """Derivatives of the equations left over at a state and its positions."""
+    loops = system.closure
+    if loops is None:
+        return system.linear(at).matrix
+    known = loops.known(system.known, len(state))[0]
+    return loops.matrix(loops.numbers(*loops.free_of(state), known))
 
 
 def bound_higher(system: GroupSystem, at: Positions, bounded: Positions) -> None:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.higher_class.loop_closure import LoopClosure, solve_places
 from centrode.kinematics.higher_class.system import (
     GroupMotion,
     GroupSystem,
     Linear,
     Shift,
     Surroundings,
-    solve_places,
 )
 from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
@@ -24,6 +24,7 @@ from centrode.numerics.rounding import UNIT_ROUNDOFF
 from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
 Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -45,8 +46,41 @@ class Converged:
     sizes: Array
 
 
+Step: TypeAlias = Callable[[Lanes, Array], tuple[Array, Array]]
+"""Of some of the places, from states there: the states a step on, and the sizes of the steps."""
+
+
 def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
+    closure = system.closure
+    if closure is not None:
+        free, whole = closure.free_of(start)
+        beside = closure.known(system.known, len(start), dtype=start.dtype)[0]
+        found = newton_by_loops(closure, beside, free, whole, steps)
+        return replace(found, state=closure.state(closure.numbers(found.state, whole, beside)))
+
+    def step(places: Lanes, state: Array) -> tuple[Array, Array]:
+        part = system if len(places) == len(start) else system.take(places)
+        motion, size = step_at(part, state)
+        return part.move(state, motion), size
+
+    return _iterate(step, start, steps)
+
+
+def newton_by_loops(
+    closure: LoopClosure, known: Array, start: Array, whole: Array, steps: int = STEPS
+) -> Converged:
+    """`newton` by the loops of a group, from free coordinates (k, free) beside what is known (k, known)."""
+
+    def step(places: Lanes, free: Array) -> tuple[Array, Array]:
+        numbers = closure.numbers(free, whole[places], known[places])
+        back = solve_places(closure.matrix(numbers), closure.residual(numbers)[:, :, None])[:, :, 0]
+        return free - back, np.max(np.abs(back), axis=1)
+
+    return _iterate(step, start, steps)
+
+
+def _iterate(step: Step, start: Array, steps: int) -> Converged:
     state = start.copy()
     going = np.nonzero(np.isfinite(start).all(axis=1))[0]
     converged = np.zeros(len(start), dtype=bool)
@@ -55,21 +89,23 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     for k in range(steps):
         if not len(going):
             break
-        part = system if len(going) == len(start) else system.take(going)
-        motion, size = step_at(part, state[going])
+        moved, size = step(going, state[going])
         sizes[k, going] = size
         # a step of a thousand radians comes from a singular matrix: the place is given up
         good = np.isfinite(size) & (size < 1.0e3)
-        state[going[good]] = part.move(state[going], motion)[good]
-        # next to a limit rounding makes steps that are not small; they do not shrink any more
-        done = good & (
-            is_rounding_step(last[going], size)
-            | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
-        )
+        state[going[good]] = moved[good]
+        done = good & _is_last_step(last[going], size, k == steps - 1)
         last[going] = size
         converged[going[done]] = True
         going = going[good & ~done]
     return Converged(state, converged, sizes)
+
+
+def _is_last_step(last: Array, size: Array, at_end: bool) -> Mask:
+    """Where Newton's method has arrived with steps of these sizes."""
+    done = is_rounding_step(last, size)
+    # next to a limit rounding makes steps that are not small; they do not shrink any more
+    return done | ((size <= COARSE) & (last <= COARSE)) if at_end else done
 
 
 def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> tuple[GroupMotion, Array]:
@@ -105,7 +141,6 @@ def is_rounding_step(last: Array, size: Array) -> Mask:
 
 # Equations of a group bordered by the normal of a plane across its curve, and the motion of a step along it.
 
-Lanes: TypeAlias = npt.NDArray[np.intp]
 Shifts: TypeAlias = Mapping[Entity, Shift]
 
 

@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.geometry.in_plane import PLANE
 from centrode.geometry.plane import (
     PlanePose,
     Vector,
@@ -28,6 +29,8 @@ from centrode.geometry.plane import (
     rotor_of,
     subtract,
 )
+from centrode.kinematics.higher_class.elimination import Follow, Pattern, pattern_of
+from centrode.kinematics.higher_class.loop_closure import LoopClosure, solve_places
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics
 from centrode.numerics.arrays import ARRAYS
@@ -38,88 +41,12 @@ from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
 
 # Linear equations of a group of higher class, made small: what follows from a few free coordinates is left
-# out.
-#
-# A link that hangs on a known point has one free coordinate, its turn about that point; a point of such a
-# link has none. Only the equations that are left over have to be solved together (tearing; Cellier and
-# Kofman, Continuous System Simulation, 2006, section 7). The order of elimination follows from the group
-# alone.
+# out (`elimination`).
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
 Shift: TypeAlias = Sequence[Number]
 Block: TypeAlias = tuple[tuple[Number, Number], tuple[Number, Number]]
-
-
-class Follow(NamedTuple):
-    """An unknown, the hinge from which it follows, and the first of its free coordinates.
-
-    A link that hangs on a point is free to turn; without a hinge all coordinates of the unknown are free.
-    """
-
-    entity: Entity
-    by: PointInLink | None
-    first: int
-
-    @property
-    def turn(self) -> int:
-        """The free coordinate that is the turn of a link."""
-        return self.first if self.by is not None else self.first + 2
-
-
-@dataclass(frozen=True)
-class Pattern:
-    """The unknowns of a group in the order in which they follow, and the equations left over."""
-
-    follows: tuple[Follow, ...]
-    kept: tuple[int, ...]
-
-    @property
-    def free(self) -> int:
-        """Number of free coordinates."""
-        return len(self.kept)
-
-
-@lru_cache(maxsize=256)
-def pattern_of(group: Newton) -> Pattern:
-    """In which order the unknowns of a group follow."""
-    # hinges whose two rows both belong to the group tie all that a point has
-    whole = [
-        c
-        for c, row in group.equations
-        if row == 1 and isinstance(c, PointInLink) and (c, 0) in group.equations
-    ]
-    left = [Entity("link", name) for name in group.links] + [Entity("point", name) for name in group.points]
-    follows: list[Follow] = []
-    used: set[PointInLink] = set()
-    free = 0
-    while left:
-        # what follows from something known goes first; without such, the coordinates of the next unknown are
-        # free
-        hinge = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
-        entity = left[0] if hinge is None else hinge[0]
-        by = None if hinge is None else hinge[1]
-        follows.append(Follow(entity, by, free))
-        left.remove(entity)
-        if by is None:
-            free += entity.unknowns
-        else:
-            used.add(by)
-            free += entity.kind == "link"
-    # both rows of a hinge that an unknown follows from hold by construction, and are not solved
-    kept = tuple(i for i, (c, _row) in enumerate(group.equations) if c not in used)
-    return Pattern(tuple(follows), kept)
-
-
-def _hinge(
-    entity: Entity, whole: Sequence[PointInLink], left: Sequence[Entity]
-) -> tuple[Entity, PointInLink] | None:
-    """A hinge that ties an unknown to what is known already."""
-    for constraint in whole:
-        point, link = constraint.bodies
-        if entity in (point, link) and not (point in left and link in left):
-            return entity, constraint
-    return None
 
 
 class Linear:
@@ -228,18 +155,6 @@ class Linear:
         return shifts
 
 
-def solve_places(matrix: Array, right: Array) -> Array:
-    """Solution (k, n, m) of the equations at every place; NaN where the matrix is singular."""
-    try:
-        # NumPy refuses all places where one is singular: the others are solved without it
-        return np.asarray(np.linalg.solve(matrix, right))
-    except np.linalg.LinAlgError:
-        sign, _size = np.linalg.slogdet(matrix)
-        solution = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
-        solution[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
-        return solution
-
-
 def _sum(a: Number, b: Number) -> Number:
     return b if is_literal_zero(a) else a if is_literal_zero(b) else a + b
 
@@ -298,6 +213,8 @@ class GroupSystem:
     numbers: Dimensions
     known: Positions
     places: int
+    closure: LoopClosure | None = None
+    """The same by loops, in the plane for one mechanism."""
 
     def take(self, which: npt.NDArray[np.intp]) -> GroupSystem:
         """The system of equations at the places with these numbers (n,)."""
@@ -305,9 +222,8 @@ class GroupSystem:
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
 
-        return GroupSystem(
-            self.group, self.numbers.map_numbers(take), self.known.map_numbers(take), len(which)
-        )
+        numbers = self.numbers if self.numbers.alone else self.numbers.map_numbers(take)
+        return GroupSystem(self.group, numbers, self.known.map_numbers(take), len(which), self.closure)
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -480,10 +396,7 @@ def _minus_coefficient(x: Number, k: int) -> Number:
 
 def total(columns: Array) -> Array:
     """Sum over the second axis, added up in one order whatever the number of places."""
-    summed = columns[:, 0].copy()
-    for j in range(1, columns.shape[1]):
-        summed += columns[:, j]
-    return summed
+    return np.asarray(np.add.reduce(np.ascontiguousarray(columns), axis=1))
 
 
 def times(matrix: Array, vector: Array) -> Array:
@@ -713,6 +626,31 @@ class Surroundings:
             self.equations, self.kinematics.take(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
         )
 
+    def normalise(self, state: Array, lanes: Lanes) -> Array:
+        """States whose links keep their own distances; as they are where loops take angles and places from them."""
+        return state if self._one_plane_mechanism else self.blank(lanes).normalise(state)
+
+    def loops(self, known: Positions) -> LoopClosure | None:
+        """The group's equations by loops beside what is known; None on the sphere, and for a batch."""
+        if self._one_plane_mechanism and not self._loops:
+            self._loops.append(LoopClosure(self.equations, self.kinematics.numbers, known))
+        return self._loops[0] if self._loops else None
+
+    def loops_at(self, parameter: Array, lanes: Lanes) -> LoopClosure | None:
+        """The same beside what is known at parameters (k,)."""
+        if not self._one_plane_mechanism:
+            return None
+        return self._loops[0] if self._loops else self.loops(self.known_at(parameter, lanes))
+
+    @cached_property
+    def _one_plane_mechanism(self) -> bool:
+        numbers = self.kinematics.numbers
+        return numbers.space is PLANE and numbers.alone
+
+    @cached_property
+    def _loops(self) -> list[LoopClosure]:
+        return []
+
     def with_numbers(self, numbers: Dimensions, lanes: Lanes) -> Surroundings:
         """The plan up to the group with other dimensions of some mechanisms, numbered from 0 in this selection."""
 
@@ -723,20 +661,25 @@ class Surroundings:
 
     def system(self, known: Positions, lanes: Lanes) -> GroupSystem:
         """The group's equations beside known positions, one lane for each place."""
-        return GroupSystem(
-            self.equations, self.kinematics.take(lanes).numbers, known.map_numbers(plain), len(lanes)
-        )
+        known = known.map_numbers(plain)
+        numbers = self.kinematics.take(lanes).numbers
+        return GroupSystem(self.equations, numbers, known, len(lanes), self.loops(known))
 
 
 def needed_positions(group: Newton, at: Positions) -> Positions:
     """The points and links of which the equations of a group speak."""
-    bodies = {body.name for constraint, _row in group.equations for body in constraint.bodies}
+    bodies = _bodies_of(group)
     return Positions(
         {name: place for name, place in at.points.items() if name in bodies},
         {name: pose for name, pose in at.poses.items() if name in bodies},
         at.drives,
         {name: angle for name, angle in at.angles.items() if name in bodies},
     )
+
+
+@lru_cache(maxsize=256)
+def _bodies_of(group: Newton) -> frozenset[str]:
+    return frozenset(body.name for constraint, _row in group.equations for body in constraint.bodies)
 
 
 def plain(number: Number) -> Number:

@@ -20,7 +20,8 @@ import numpy.typing as npt
 from centrode.errors import Status
 from centrode.kinematics.angular_velocity import attitudes_of, spins_of
 from centrode.kinematics.assembly import with_phases
-from centrode.kinematics.higher_class.system import LinkChain, pattern_of, plain
+from centrode.kinematics.higher_class.elimination import pattern_of
+from centrode.kinematics.higher_class.system import LinkChain, plain
 from centrode.kinematics.machine_code.bends import BentPlan
 from centrode.kinematics.machine_code.newton import NewtonStep, newton_step
 from centrode.kinematics.machine_code.variables import (
