@@ -137,7 +137,7 @@ def draw_axis(
     start, end = (axes.origin + value / axes.per[which] * way for value in span)
     tip = end + BEYOND * way
     page.line([start, tip], THIN)
-    page.overlay.add_patch(page_head(tip, way))
+    page.overlay.add_artist(page_head(tip, way))
     page.avoid([(start, tip)])
     text = (
         f"{symbol_text(label)}, {spelled_unit(label.unit)}"
