@@ -11,7 +11,19 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import animations, cold, forces, kernels, machine, motions, peer, reports, simulation, sweeps  # noqa: E402
+from benchmarks import (  # noqa: E402
+    animations,
+    cold,
+    drawings,
+    forces,
+    kernels,
+    machine,
+    motions,
+    peer,
+    reports,
+    simulation,
+    sweeps,
+)
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.numerics import machine_code  # noqa: E402
@@ -32,6 +44,7 @@ SECTIONS: Mapping[str, Section] = {
     "simulation": (f"Simulation, {simulation.STEPS} fixed steps", simulation.simulations),
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "animations": (f"Animations, {animations.FRAMES} frames of 800 by 600 pixels", animations.animations),
+    "drawings": ("Commands that draw, whole processes", drawings.drawings),
     "reports": ("Thirty reports of the assignment's table, two processes", reports.thirty_reports),
     "machine": ("Bounds of the machine", machine.bounds),
     "kernels": (

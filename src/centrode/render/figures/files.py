@@ -94,6 +94,13 @@ METADATA: dict[str, dict[str, Any]] = {
 DPI = 150
 
 
+def lay_out(figure: Figure) -> None:
+    """Put the panels of a figure, nothing being drawn."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+
+
 def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write each figure as PNG (150 dpi) and SVG; the same figures give the same bytes.
 
@@ -119,9 +126,8 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
             raster: Any = MeasuringCanvas(figure)
             engine, dpi = figure.get_layout_engine(), figure.dpi
             figure.dpi = DPI
-            if engine is not None:  # laid out once: both files show the same
-                engine.execute(figure)
-            figure.set_layout_engine("none")
+            lay_out(figure)
+            figure.set_layout_engine("none")  # both files show the same
             paths = [Path(folder) / f"{name}.{kind}" for kind in METADATA]
             paths[0].parent.mkdir(exist_ok=True)
             raster.print_png(str(paths[0]), metadata=METADATA["png"])
