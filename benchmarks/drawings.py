@@ -22,17 +22,18 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 import centrode as ct
+from centrode.dynamics.motion_results import study
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.pictures import figures_of
-from centrode.topics.presentation import sheet_of
-result = ct.study(ct.example("{name}"))
-sheets = [sheet_of(result)]
+from centrode.topics.registry import RUN
+from centrode.topics.sheets import sheet_with_parts
+mechanism = ct.example("{name}")
+pictures = sheet_with_parts(RUN, study(mechanism)).pictures
 start = time.process_time()
-for sheet in sheets:
-    for figure in figures_of(sheet.pictures, result.mechanism.display).values():
-        with house_style():
-            FigureCanvasAgg(figure).print_png("a.png")
-            FigureCanvasSVG(figure).print_svg("a.svg")
+for figure in figures_of(pictures, mechanism.display).values():
+    with house_style():
+        FigureCanvasAgg(figure).print_png("a.png")
+        FigureCanvasSVG(figure).print_svg("a.svg")
 Path("seconds").write_text(str(time.process_time() - start))
 """
 """Figures are made and printed by matplotlib's own canvases."""

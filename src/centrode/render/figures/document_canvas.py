@@ -39,7 +39,8 @@ class KeptFormulas(MathTextParser):  # type: ignore[type-arg]
     def parse(self, s: str, dpi: float = 72, prop: Any = None, *, antialiased: bool | None = None) -> Any:
         """A formula laid out, as matplotlib does it."""
         prop = None if prop is None else prop.copy()
-        if self._output_type == "vector" and prop is not None:
+        own: Any = self
+        if own._output_type == "vector" and prop is not None:
             return self._scaled(s, dpi, prop)
         return self._kept(s, dpi, prop, antialiased)
 
@@ -106,7 +107,7 @@ def kept_texts() -> KeptTexts:
 @functools.lru_cache(KEPT)
 def _line_heights(prop: Any, dpi: float) -> tuple[float, float, float] | tuple[None, None, float]:
     """Ascent, descent and line gap of a font [pixel], as matplotlib reads them for every text anew."""
-    font = get_font(findfont(prop))
+    font: Any = get_font(findfont(prop))
     head = font.get_sfnt_table("head")
     if head is None:
         return None, None, 0.0

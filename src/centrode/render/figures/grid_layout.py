@@ -31,7 +31,7 @@ class GridLayout(LayoutEngine):
     _colorbar_gridspec = False
 
     def __init__(self) -> None:
-        super().__init__()  # type: ignore[no-untyped-call]
+        super().__init__()
         self._has_run = False
 
     def execute(self, fig: Any) -> None:
@@ -102,9 +102,9 @@ def _title_height(fig: Any, renderer: Any) -> float:
     title = fig._suptitle
     if title is None or not title.get_in_layout():
         return 0.0
-    pad = PAD / fig.get_figheight()
+    pad = PAD / float(fig.get_figheight())
     title.set_y(1.0 - pad)
-    box = title.get_tightbbox(renderer).transformed(fig.transFigure.inverted())
+    box: Any = title.get_tightbbox(renderer).transformed(fig.transFigure.inverted())
     return float(box.height) + 2.0 * pad
 
 
