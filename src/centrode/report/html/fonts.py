@@ -6,6 +6,7 @@ import base64
 import functools
 import io
 import unicodedata
+from collections.abc import Iterable
 from pathlib import Path
 
 from fontTools import subset
@@ -13,20 +14,18 @@ from fontTools.ttLib import TTFont
 
 FONT = Path(__file__).with_name("math-font.woff")
 """All letters that formulas can hold."""
-ASCII = frozenset(map(chr, range(0x20, 0x7F)))
-"""Letters of every page: where a machine has none of the fonts of texts, a text is not set in two fonts."""
 FEATURES = ["ssty", "dtls", "flac", "kern", "mark", "mkmk", "ccmp", "locl"]
 """What lays out mathematics."""
 NAMES = [0, 1, 2, 13, 14]
 """Copyright, family, style and licence."""
 
 
-def font_letters(formulas: frozenset[str], page: str) -> frozenset[str]:
-    """The letters that a page takes from its font: those of its formulas, the Latin ones, and signs in its texts."""
+def font_letters(formulas: frozenset[str], names: Iterable[str], page: str) -> frozenset[str]:
+    """The letters that a page takes from its font: those of formulas, of names in motions, and signs in its texts."""
     signs = (
         letter for letter in set(page) if not letter.isspace() and unicodedata.category(letter)[0] in "SPN"
     )
-    return ASCII | formulas | frozenset(signs)
+    return formulas.union(" ", "".join(names), signs)
 
 
 @functools.lru_cache(maxsize=64)

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from centrode.locale import _, speaking
-from centrode.render.document.blocks import Report
+from centrode.render.document.blocks import Moving, Report
 from centrode.render.document.numbering import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.html.elements import Elements, formulas_in
@@ -65,7 +65,9 @@ def _page(report: Report) -> str:
     contents = _contents(outline)
     note_style = NOTE_STYLE if report.is_note else ""
     main = f"{_header(report)}\n{opening}{''.join(chapters)}"
-    font = embedded_font(font_letters(formulas.letters, f"{report.title}{contents}{main}"))
+    moving = (one for one in blocks_of(report) if isinstance(one, Moving))
+    names = (name for one in moving for name in one.places)
+    font = embedded_font(font_letters(formulas.letters, names, f"{report.title}{contents}{main}"))
     style = f"{_data(STYLE).replace('@FONT@', font)}{note_style}{formulas.style}{elements.drawings.style()}"
     title, heading = html.escape(report.title), html.escape(_("Contents"))
     return (
