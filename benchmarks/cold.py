@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from benchmarks import peer
+from benchmarks.processes import process_times
 from benchmarks.table import Row
 
 ROUNDS = 9
@@ -47,8 +45,6 @@ linkage = Linkage([o, d, crank, RRRDyad(crank.output, d, 0.3, 0.3, x=0.25, y=0.2
 linkage.set_input_velocity(crank, 2.0)
 linkage.step_fast_with_kinematics(361)
 """
-ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-"""Byte code is kept, as it is for an installed package."""
 BASE = 'python -c "import numpy"'
 
 
@@ -58,10 +54,10 @@ def cold_starts() -> Iterator[Row]:
         tasks = _tasks(Path(folder))
         found: dict[str, list[tuple[float, float]]] = {name: [] for name in tasks}
         for arguments in tasks.values():
-            _run(arguments)  # writes byte code and the caches of pint and numba
+            process_times(arguments)  # writes byte code and the caches of pint and numba
         for _round in range(ROUNDS):
             for name, arguments in tasks.items():
-                found[name].append(_run(arguments))
+                found[name].append(process_times(arguments))
     elapsed, used = _medians(found[BASE])
     for name in tasks:
         mine = _medians(found[name])
@@ -86,17 +82,6 @@ def _tasks(folder: Path) -> Mapping[str, list[str]]:
     if peer.PRESENT:
         tasks["pylinkage, one four-bar"] = [sys.executable, "-c", PEER]
     return tasks
-
-
-def _run(arguments: list[str]) -> tuple[float, float]:
-    """Elapsed and processor time of a process [s]."""
-    before, start = os.times(), time.perf_counter()
-    done = subprocess.run(arguments, capture_output=True, check=False, encoding="utf-8", env=ENVIRONMENT)
-    after, end = os.times(), time.perf_counter()
-    if done.returncode:
-        raise SystemExit(f"{' '.join(arguments)} ended with {done.returncode}\n{done.stderr}")
-    used = after.children_user + after.children_system - before.children_user - before.children_system
-    return end - start, used
 
 
 def _medians(times: list[tuple[float, float]]) -> tuple[float, float]:

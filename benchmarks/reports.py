@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.cold import ENVIRONMENT
+from benchmarks.processes import ENVIRONMENT, process_times
 from benchmarks.table import Promise, Row
 
 TABLE = Path(__file__).parents[1] / "tests" / "reference" / "planar-variants.csv"
@@ -29,15 +26,10 @@ def thirty_reports() -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "variants"
         program = [sys.executable, "-m", "centrode", "variants", str(TABLE), "--topology", TOPOLOGY]
-        before, start = os.times(), time.perf_counter()
-        done = subprocess.run(
+        elapsed, used = process_times(
             [*program, "--report", "--jobs", str(JOBS), "--out", str(out)],
-            capture_output=True, check=False, encoding="utf-8", env=ENVIRONMENT | {"OPENBLAS_NUM_THREADS": "1"},
-        )  # fmt: skip
-        elapsed, after = time.perf_counter() - start, os.times()
-        if done.returncode:
-            raise SystemExit(f"thirty reports ended with {done.returncode}\n{done.stderr}")
-        used = after.children_user + after.children_system - before.children_user - before.children_system
+            environment=ENVIRONMENT | {"OPENBLAS_NUM_THREADS": "1"},
+        )
         files = [file for file in out.rglob("*") if file.is_file()]
         documents = sum(file.stat().st_size for file in files if file.name in DOCUMENTS) / 1e6
         every = sum(file.stat().st_size for file in files) / 1e6

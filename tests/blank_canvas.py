@@ -75,7 +75,7 @@ def blank_pictures() -> Iterator[None]:
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(figures, "DocumentCanvas", BlankCanvas)
-        patch.setattr(files, "FigureCanvasAgg", BlankCanvas)
-        patch.setattr(files, "FigureCanvasSVG", BlankCanvas)
-        patch.setattr(Figure, "draw_without_rendering", lambda _figure: None)
+        patch.setattr(files, "MeasuringCanvas", BlankCanvas)
+        patch.setattr(files, "DocumentCanvas", BlankCanvas)
+        patch.setattr(files, "lay_out", lambda _figure: None)
         yield

@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import centrode as ct
+from centrode.dynamics.steady_motion import steady
 from centrode.dynamics.steady_motion.speed import MeanSpeed
 from centrode.dynamics.steady_motion.steady import solution_of
 from machines import STROKE, centre_of, crank, engine, kinetic_energy
@@ -236,10 +237,13 @@ def test_more_panels_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The stated error covers what a mesh three times as fine finds."""
     coarse = ct.flywheel(engine())
     monkeypatch.setattr("centrode.dynamics.steady_motion.cycle.PANELS_PER_TURN", 217)
+    steady._kept_solution.cache_clear()
     fine = ct.flywheel(engine())
     assert abs(fine.work_of_loads - coarse.work_of_loads) <= coarse.error + fine.error
     assert fine.inertia == pytest.approx(coarse.inertia, rel=1e-12)
     assert fine.energy_greatest == pytest.approx(coarse.energy_greatest, abs=coarse.error + fine.error)
+    assert fine.error != coarse.error
+    steady._kept_solution.cache_clear()
 
 
 def test_first_order_misses_by_the_first_order() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import base64
+import io
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +22,8 @@ from centrode.render.document.cam_player import moving_wheel
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers
-from centrode.report.html.page import COMMON_FONT, HERE, html_page
+from centrode.report.html.fonts import FONT
+from centrode.report.html.page import html_page
 from centrode.views.equations import sheet
 
 from .browser import Seen, browser, frames, opened, until
@@ -27,6 +31,7 @@ from .made import HOSTILE, moving, report
 
 PLANE, SPHERE, WHEEL = "slider-between-cranks", "spherical-crank-rocker", "walking-wheel-four-legs"
 WIDTHS = (1280, 820, 400)
+EMBEDDED = re.compile(r'data:font/woff;base64,([^"]+)"')
 MARKUP = "<img src=x onerror=alert(1)>"
 A4 = 643  # width of the text on A4 in a browser's pixels, 96 to an inch
 
@@ -141,9 +146,10 @@ def test_formulas_are_whole(running: Any, formulas: Path, wide: int) -> None:
 
 def test_letters_are_those_of_the_font_inside(running: Any, formulas: Path) -> None:
     """Widths on the page are the advances of the font's own letters: no font of the machine stands in."""
-    pytest.importorskip("brotli", reason="reading the font needs brotli")
-    font = TTFont(Path(HERE) / COMMON_FONT)
-    letters = "𝜑𝑙Δ𝜔∫√"
+    font = TTFont(FONT)
+    inside = TTFont(io.BytesIO(base64.b64decode(EMBEDDED.findall(formulas.read_text(encoding="utf-8"))[0])))
+    letters = "".join(one for one in "𝜑𝑙Δ𝜔∫√" if ord(one) in inside.getBestCmap())
+    assert len(letters) > 3
     cmap, advances = font.getBestCmap(), font["hmtx"]
     with opened(running, formulas) as seen:
         widths = seen.page.evaluate(

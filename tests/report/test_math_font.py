@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import unicodedata
 from pathlib import Path
 from xml.etree import ElementTree as Xml
@@ -12,8 +13,9 @@ from fontTools.ttLib import TTFont
 import centrode as ct
 from centrode.locale import speaking
 from centrode.render.document.typst import TypstSpelling
+from centrode.report.html.fonts import FONT, cut_font, font_letters
 from centrode.report.html.mathematics import formulas_of
-from centrode.report.html.page import FONT, HERE
+from centrode.report.html.page import HERE
 from equation_pages import Relation, entries
 
 EXAMPLES = ["six-bar-press", "spherical-crank-rocker", "third-class-triad"]
@@ -21,14 +23,26 @@ EXAMPLES = ["six-bar-press", "spherical-crank-rocker", "third-class-triad"]
 
 @pytest.fixture(scope="module")
 def font() -> TTFont:
-    pytest.importorskip("brotli", reason="reading the font needs brotli")
-    return TTFont(Path(HERE) / FONT)
+    return TTFont(FONT)
 
 
 def test_it_is_a_mathematical_font(font: TTFont) -> None:
     assert font["MATH"].table.MathConstants is not None
     grows = font["MATH"].table.MathVariants.VertGlyphCoverage.glyphs
     assert {font.getBestCmap()[ord(sign)] for sign in "()[]|√"} <= set(grows)
+
+
+def test_a_page_holds_its_own_letters_and_no_others(font: TTFont) -> None:
+    """Advances, outlines and constants are those of the whole font; what a page lacks is not there."""
+    letters = font_letters(frozenset("𝜑√"), ["Aa"], "90° слово")
+    own = TTFont(io.BytesIO(cut_font(letters)))
+    assert {chr(code) for code in own.getBestCmap()} == set(" 𝜑√Aa90°")
+    for letter in "𝜑√°a":
+        here, there = (one["hmtx"][one.getBestCmap()[ord(letter)]] for one in (own, font))
+        assert here == there
+    constants = (vars(one["MATH"].table.MathConstants)["AxisHeight"].Value for one in (own, font))
+    assert len(set(constants)) == 1
+    assert len(cut_font(letters)) < 0.2 * FONT.stat().st_size
 
 
 def test_its_licence_stands_beside_it(font: TTFont) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import inspect
+import io
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -23,6 +24,8 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.mathtext import MathTextParser
 
+from centrode.render.figures import files
+from centrode.render.figures.document_canvas import DocumentCanvas
 from tools.snapshots.artefacts import Artefact
 from tools.snapshots.pictures import figure_artefact
 
@@ -68,8 +71,9 @@ def seen_instead_of_drawn(comma: bool = False) -> Iterator[Seen]:
         put(target, f"{MARK} {seen.take(canvas.figure)}")
 
     def print_svg(canvas: Any, target: Any, **_options: Any) -> None:
-        number = seen.take(canvas.figure, anew=hasattr(target, "write"))  # files come in pairs, PNG first
-        if not hasattr(target, "write"):
+        in_memory = isinstance(target, io.BytesIO)  # a picture of a document; files come in pairs, PNG first
+        number = seen.take(canvas.figure, anew=in_memory)
+        if not in_memory:
             put(target, f"{MARK} {number}")
             return
         wide, high = (72.0 * side for side in canvas.figure.get_size_inches())
@@ -86,8 +90,10 @@ def seen_instead_of_drawn(comma: bool = False) -> Iterator[Seen]:
     with (
         mock.patch.object(FigureCanvasAgg, "print_png", print_png),
         mock.patch.object(FigureCanvasSVG, "print_svg", print_svg),
+        mock.patch.object(DocumentCanvas, "print_svg", print_svg),
         mock.patch.object(FigureCanvasAgg, "restore_region", restore_region),
         mock.patch.object(Figure, "draw_without_rendering", lambda _figure: None),
+        mock.patch.object(files, "lay_out", lambda _figure: None),
         mock.patch.object(typst, "Compiler", Typesetter),
         mock.patch.object(PARSER, "_parse_cached", REMEMBERED),
     ):

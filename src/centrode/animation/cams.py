@@ -161,17 +161,17 @@ class TurningCamLayer(Layer):
         """The cam with the path of the roller's centre, the roller, its stem, and the hub."""
         profile, path = self.at(self.profile, frame), self.at(self.path, frame)
         if _whole(self.body):
-            axes.add_patch(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
+            axes.add_artist(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
         else:
             shape = np.concatenate([np.zeros((1, 2)), profile])
-            axes.add_patch(Polygon(shape, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
+            axes.add_artist(Polygon(shape, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
         axes.plot(*profile.T, color=CAM, linewidth=1.8, zorder=4)
         axes.plot(*path.T, color=MUTED, linewidth=0.9, linestyle=CHAIN, zorder=3)
         mark = np.stack([np.zeros(2), profile[0]])
         axes.plot(*mark.T, color=CAM, linewidth=1.0, zorder=3.5)  # by it the turning is seen
         x, y = self.at(self.centres[frame][None], frame)[0]
         axes.plot([x, x], [y, self.top], color=ROLLER, linewidth=2.4, zorder=5)
-        axes.add_patch(
+        axes.add_artist(
             Circle((x, y), self.roller, facecolor="white", edgecolor=ROLLER, linewidth=1.6, zorder=6)
         )
         axes.plot([x], [y], marker="+", color=ROLLER, markersize=6, zorder=7)

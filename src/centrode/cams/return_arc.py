@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +12,6 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog, minimize
 
 from centrode.cams.nodes import nodes_of
 from centrode.cams.roller_path import JETS, Array, Frames, PolarCurve, RollerPath, SymmetricPath, frames
@@ -18,6 +19,9 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import Extremes, extremes
+
+# slower to import than NumPy
+_optimize = functools.partial(importlib.import_module, "scipy.optimize")
 
 # Closed paths of a roller's centre: a working arc by the law, and what brings the roller back to its
 # beginning.
@@ -620,7 +624,7 @@ class ArcSearch:
         for _step in range(STEPS):
             if margins.min() >= 0.0 or size < LEAST_STEP:
                 break
-            solution = linprog(
+            solution = _optimize().linprog(
                 # the unknown at the end is the least margin of the linearised bounds, which is made greatest
                 np.append(np.zeros(MOST), -1.0),
                 np.pad(-slopes, ((0, 0), (0, 1)), constant_values=1.0),
@@ -644,7 +648,7 @@ class ArcSearch:
 
     def smoothest(self, weights: Array) -> Array:
         """From weights that keep the bounds, those with the least sum of squares that do."""
-        solution = minimize(
+        solution = _optimize().minimize(
             lambda x: (float(x @ x), 2.0 * x),
             weights,
             jac=True,

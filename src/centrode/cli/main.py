@@ -6,6 +6,7 @@ Exit codes: 0 done; 2 wrong input or usage; 3 the mechanism cannot do what was a
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -40,6 +41,8 @@ from centrode.topics import order
 from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
 
+COLLECTION = (50_000, 50, 100)
+"""Objects after which cycles among them are looked for, in each generation; Python's 700 cost a command a twentieth."""
 OWN: tuple[click.Command, ...] = (
     report,
     animate,
@@ -104,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             reconfigure(errors="replace")
     choose_language_of_process(wished_language(arguments))
     try:
-        with _termination_as_interruption():
+        with _termination_as_interruption(), _rare_collection():
             result = _run(build_app(), list(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()
@@ -132,6 +135,17 @@ def _termination_as_interruption() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+@contextmanager
+def _rare_collection() -> Iterator[None]:
+    """Look for cycles of objects rarely: a command makes many objects that stay, and few that end in cycles."""
+    before = gc.get_threshold()
+    gc.set_threshold(*COLLECTION)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 def _run(app: click.Command, arguments: list[str]) -> object:

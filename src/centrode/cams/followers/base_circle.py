@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import functools
+import importlib
 import math
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from centrode.cams.followers.geometry import (
     ORDER,
@@ -37,6 +37,9 @@ from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import root, roots
 
 # What a follower is and how it stands to its cam, before the size of the cam is chosen.
+
+# slower to import than NumPy
+_optimize = functools.partial(importlib.import_module, "scipy.optimize")
 
 Kind: TypeAlias = Literal["translating", "oscillating"]
 
@@ -470,7 +473,7 @@ def best_offset(layout: FollowerLayout, motion: ContactMotion, kept: Admissible)
     speeds = float(nodes.lift[1].min()), float(nodes.lift[1].max())
     sides = sorted(layout.sense * one for one in speeds)
     # the best axis lies where neither the rise nor the fall alone would put it farther
-    found = minimize_scalar(
+    found = _optimize().minimize_scalar(
         radius,
         bounds=(sides[0], sides[1]),
         method="bounded",

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize, nnls
-from scipy.stats import qmc
 
 from centrode.cams.contact_stress import ContactMaterial, LineContact
 from centrode.cams.curvature_laws import derivatives
@@ -38,6 +38,10 @@ from centrode.printing import PrintsSummary
 # becomes a variable t that every angle's value stays below (its epigraph), and the values at the angles are
 # smooth. Between the angles looked at the worst ones are found, added, and the search goes on (exchange,
 # after Remez), until nothing between them is worse.
+
+# slower to import than NumPy
+_optimize = functools.partial(importlib.import_module, "scipy.optimize")
+_qmc = functools.partial(importlib.import_module, "scipy.stats.qmc")
 
 Array = NDArray[np.float64]
 
@@ -76,7 +80,7 @@ def search(
 ) -> list[SearchResult]:
     """Ends of searches from `first` (n,), `warm` ones and further places spread over the box, the best in front."""
     # Halton's points fill the box evenly for any number of them; the first is a corner
-    spread = qmc.Halton(len(first), scramble=False).random(starts) if starts else np.empty((0, len(first)))
+    spread = _qmc().Halton(len(first), scramble=False).random(starts) if starts else np.empty((0, len(first)))
     results: list[SearchResult] = []
     for start in [first, *warm, *spread[1:]]:
         # first into the bounds: a run that makes the value best needs a place from which that can be done
@@ -121,7 +125,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
     # the slope of the variable t is 1: weights of the constraints have to take it up
     goal = np.zeros(count + 1)
     goal[-1] = -1.0
-    weights, miss = nnls(np.stack(columns, axis=1), goal)
+    weights, miss = _optimize().nnls(np.stack(columns, axis=1), goal)
     held = {name: 0.0 for name in problem.limits}
     for name, weight in zip(names, weights, strict=True):
         if name in held:
@@ -155,7 +159,7 @@ def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
         kept = [_with(-slopes[name], 1.0 if elastic else 0.0) for name in limits]
         return np.concatenate(kept if elastic else [_with(-slopes[problem.best], 1.0), *kept])
 
-    result = minimize(
+    result = _optimize().minimize(
         lambda z: float(z[-1]),
         np.append(start, top),
         jac=lambda z: np.append(np.zeros(count), 1.0),
@@ -687,7 +691,7 @@ def _neighbours(cam: Cam) -> list[Cam]:
     ends = np.array([cam.choose.parameters[name] for name in names], dtype=float)
     low, width = ends[:, 0], ends[:, 1] - ends[:, 0]
     share = (np.array([given_value(cam, name) for name in names]) - low) / width
-    directions = 2 * qmc.Halton(len(names), scramble=False).random(EACH + 1)[1:] - 1
+    directions = 2 * _qmc().Halton(len(names), scramble=False).random(EACH + 1)[1:] - 1
     neighbours = []
     for distance in DISTANCES:
         for place in np.clip(share + distance * directions, 0.0, 1.0):

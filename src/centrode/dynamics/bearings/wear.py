@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 
 from centrode.errors import InputError, NotComputedYet
@@ -115,8 +116,9 @@ def bearings(
     } | {
         "bearing": labels_of(tuple(one.label for one in found)),
         "surface": labels_of(SURFACES),
+        # an index as it is, see `labels_of`
         "sector": vocabulary_variable(
-            "sector", ("sector",), (np.arange(sectors) + 0.5) * (2.0 * np.pi / sectors)
+            "sector", ("sector",), pd.Index((np.arange(sectors) + 0.5) * (2.0 * np.pi / sectors))
         ),
     }
     for part in ("point", "journal", "bush"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -138,13 +139,24 @@ def solution_of(
     MotionError
         The mechanism does not turn fully, or loads and speed do not settle.
     """
-    machine = _machine(mechanism)
+    _machine(mechanism)
     if kind not in MEANS:
         raise InputError(
             "mean",
             _("{kind} is not a mean speed").format(kind=f'"{kind}"'),
             _("use one of {known}").format(known=", ".join(MEANS)),
         )
+    return _kept_solution(mechanism, kind) if reduction is None else _solve(mechanism, kind, reduction)
+
+
+# A run asks for the steady motion of one mechanism a dozen times: for its flywheel, its forces, its balance.
+@functools.lru_cache(maxsize=4)
+def _kept_solution(mechanism: Mechanism, kind: MeanSpeed) -> SteadySolution:
+    return _solve(mechanism, kind, None)
+
+
+def _solve(mechanism: Mechanism, kind: MeanSpeed, reduction: CycleReduction | None) -> SteadySolution:
+    machine = _machine(mechanism)
     prepared = ready(mechanism)
     check_drive(prepared)
     shape = (

@@ -7,6 +7,7 @@ import re
 import textwrap
 import unicodedata
 from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 import numpy as np
@@ -87,18 +88,31 @@ def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
             text.set_gid(f"{EDGED}{number}")
         with house_style():
             stream = io.BytesIO()
-            canvas: Any = DocumentCanvas(figure)
-            if box is None:
-                canvas.print_svg(stream, metadata=METADATA["svg"])
-            else:
-                how = {"bbox_inches": box, "metadata": METADATA["svg"], "facecolor": "white"}
-                canvas.print_figure(stream, format="svg", **how)
+            with nullcontext() if box is None else _cut_to(figure, box):
+                DocumentCanvas(figure).print_svg(stream, metadata=METADATA["svg"])
     finally:
         for text, effect, name in zip(texts, effects, names, strict=True):
             text.set_path_effects(effect)
             text.set_gid(name)
     svg = _EDGED.sub(lambda found: _LETTERS.sub(_with_edge, found[0]), stream.getvalue())
     return _PLACES.sub(lambda found: _DECIMALS.sub(_rounded, found[0]), svg)
+
+
+@contextmanager
+def _cut_to(figure: Figure, box: Bbox) -> Iterator[None]:
+    """Make a figure as large as a box [inch] of it, its axes where they were; matplotlib would draw it twice."""
+    wide, high = figure.get_size_inches()
+    places = [one.get_position() for one in figure.axes]
+    try:
+        figure.set_size_inches(box.width, box.height)
+        for axes, place in zip(figure.axes, places, strict=True):
+            low = (place.x0 * wide - box.x0) / box.width, (place.y0 * high - box.y0) / box.height
+            axes.set_position((*low, place.width * wide / box.width, place.height * high / box.height))
+        yield
+    finally:
+        figure.set_size_inches(wide, high)
+        for axes, place in zip(figure.axes, places, strict=True):
+            axes.set_position(place)
 
 
 def _texts_in(artist: Any) -> Iterator[Any]:

@@ -180,7 +180,7 @@ class Board:
         finally:
             self.layer = before
 
-    def add_patch(self, patch: Patch) -> None:
+    def add_artist(self, patch: Patch) -> None:
         """A circle, a polygon or an arrow."""
         level = float(patch.get_zorder())
         if isinstance(patch, Circle):

@@ -105,7 +105,7 @@ class DrawingPage(Page):
         head = min(HEAD, 0.5 * length)
         across = HALF * head / HEAD * np.array([-along[1], along[0]])
         corners = [end, end - head * along + across, end - head * along - across]
-        self.overlay.add_patch(
+        self.overlay.add_artist(
             Polygon(np.array(corners), closed=True, facecolor=colour, edgecolor="none", zorder=5)
         )
 

@@ -141,7 +141,7 @@ def draw_axis(
     start, end = (axes.origin + value / axes.per[which] * way for value in span)
     tip = _name_axis(page, end, way, label)
     page.line([start, tip], THIN)
-    page.overlay.add_patch(page_head(tip, way))
+    page.overlay.add_artist(page_head(tip, way))
     page.avoid([(start, tip)])
     numbered = bool(ticks)
     before = -np.inf

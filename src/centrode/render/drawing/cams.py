@@ -46,8 +46,8 @@ def draw_turned_cams(axes: Axes, scene: LinkageScene, sample: int) -> None:
 def draw_profile(axes: Axes, cam: DrivingCam, sample: int, line: str = INK, tint: str = MUTED) -> None:
     """A cam without its axis, as it has turned."""
     outline = cam.outline(sample)
-    axes.add_patch(Polygon(outline, closed=True, facecolor=tint, edgecolor="none", alpha=0.25, zorder=1.8))
-    axes.add_patch(Polygon(outline, closed=True, fill=False, edgecolor=line, linewidth=1.4, zorder=2.1))
+    axes.add_artist(Polygon(outline, closed=True, facecolor=tint, edgecolor="none", alpha=0.25, zorder=1.8))
+    axes.add_artist(Polygon(outline, closed=True, fill=False, edgecolor=line, linewidth=1.4, zorder=2.1))
     axes.plot(*cam.mark(sample).T, color=line, linewidth=1.0, zorder=2.1)
 
 
@@ -61,7 +61,7 @@ def draw_touching(axes: Axes, cam: DrivingCam, sample: int, line: str = INK) -> 
         rim = Circle(
             (float(x), float(y)), radius, facecolor="white", edgecolor=line, linewidth=1.4, zorder=2.35
         )
-        axes.add_patch(rim)
+        axes.add_artist(rim)
 
 
 # A cam that turns below its follower, which is a stem or an arm with roller, edge or flat face.
@@ -143,7 +143,7 @@ class FollowerDrawing:
         if self.rolls:
             axes.plot(*foot[:, None], marker="+", color=ROLLER, markersize=6, zorder=7)
         elif self.edged:
-            axes.add_patch(Polygon(self._wedge(foot), facecolor=ROLLER, edgecolor=ROLLER, zorder=2.4))
+            axes.add_artist(Polygon(self._wedge(foot), facecolor=ROLLER, edgecolor=ROLLER, zorder=2.4))
         signs.hinge(axes, self.cam.hub, self.size, GROUND)
         if self.cam.pivot is not None:
             signs.hinge(axes, self.cam.factor * self.cam.pivot, self.size, GROUND)

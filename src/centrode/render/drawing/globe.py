@@ -54,12 +54,12 @@ def frame_globe(axes: Axes, globe: Globe) -> None:
     axes.set_xticks([])
     axes.set_yticks([])
     axes.spines[:].set_visible(False)
-    axes.add_patch(Circle((0.0, 0.0), 1.0, facecolor=SHADE, edgecolor=RIM, linewidth=1.0, zorder=0.5))
+    axes.add_artist(Circle((0.0, 0.0), 1.0, facecolor=SHADE, edgecolor=RIM, linewidth=1.0, zorder=0.5))
     # lighter towards the light, which falls from the upper left
     for number in range(1, SHADES + 1):
         share = number / SHADES
         middle = (-0.28 * share, 0.28 * share)
-        axes.add_patch(
+        axes.add_artist(
             Circle(middle, 1.0 - 0.6 * share, facecolor="white", alpha=0.22, linewidth=0.0, zorder=0.51)
         )
     seen = [np.where(globe.in_front(one)[:, None], globe.flat(one), np.nan) for one in graticule()]
@@ -122,7 +122,7 @@ def draw_arcs(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen], a
                 draw_marker(axes, globe, arc[len(arc) // 2], pen, alpha)
         rim = np.concatenate(arcs) if len(arcs) >= 3 else np.empty((0, 3))
         if len(rim) and globe.in_front(rim).all():
-            axes.add_patch(
+            axes.add_artist(
                 Polygon(
                     globe.flat(rim), facecolor=pen.colour, edgecolor="none", alpha=0.18 * alpha, zorder=2.0
                 )

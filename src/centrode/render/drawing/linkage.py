@@ -129,7 +129,7 @@ def draw_body(
     """A link through the given places: a line, or a lightly filled polygon; `behind` the links without slots."""
     level = (2.4 if alpha < 1.0 else 3.0) - (0.2 if behind else 0.0)
     if len(outline) >= 3:
-        axes.add_patch(
+        axes.add_artist(
             Polygon(
                 np.array(outline),
                 closed=True,

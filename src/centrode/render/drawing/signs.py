@@ -24,12 +24,12 @@ def hinge(axes: Axes, place: Array, size: float, colour: str = INK, alpha: float
     """An open circle."""
     circle = Circle((place[0], place[1]), size, facecolor="white", edgecolor=colour, linewidth=1.1, zorder=6)
     circle.set_alpha(alpha)
-    axes.add_patch(circle)
+    axes.add_artist(circle)
 
 
 def traced_point(axes: Axes, place: Array, size: float, colour: str, alpha: float = 1.0) -> None:
     """A small dot: a point of one link where nothing is hinged."""
-    axes.add_patch(
+    axes.add_artist(
         Circle((place[0], place[1]), 0.5 * size, facecolor=colour, edgecolor="none", alpha=alpha, zorder=6)
     )
 
@@ -60,7 +60,7 @@ def ground(axes: Axes, start: Array, end: Array, away: Array, size: float, colou
 def fixed_hinge(axes: Axes, place: Array, size: float, colour: str = GROUND) -> None:
     """A hinge on the frame: a triangle on hatched ground."""
     base = place + size * np.array([[-2.0, -3.2], [2.0, -3.2]])
-    axes.add_patch(
+    axes.add_artist(
         Polygon(
             np.array([place, *base]),
             closed=True,
@@ -106,12 +106,12 @@ def lay(axes: Axes, body: Polygon, alpha: float, level: float) -> None:
     body.set_facecolor("white" if alpha == 1.0 else "none")
     body.set_alpha(alpha)
     body.set_zorder(level if alpha == 1.0 else 2.3)
-    axes.add_patch(body)
+    axes.add_artist(body)
 
 
 def turning_arrow(axes: Axes, arc: Array, colour: str) -> None:
     """An arc with a head at its end."""
-    axes.add_patch(
+    axes.add_artist(
         FancyArrowPatch(
             path=Outline(arc), arrowstyle="-|>", mutation_scale=9, color=colour, linewidth=1.0, fill=True
         )
@@ -128,7 +128,7 @@ def turning_arc(place: Array, angle: float, forward: bool, size: float) -> Array
 
 def wheel(axes: Axes, centre: Array, radius: float, angle: float, colour: str, alpha: float = 1.0) -> None:
     """A circle with a spoke at its angle, lightly filled."""
-    axes.add_patch(
+    axes.add_artist(
         Circle(
             (centre[0], centre[1]), radius, facecolor=colour, edgecolor="none", alpha=0.12 * alpha, zorder=1.9
         )
@@ -137,7 +137,7 @@ def wheel(axes: Axes, centre: Array, radius: float, angle: float, colour: str, a
         (centre[0], centre[1]), radius, facecolor="none", edgecolor=colour, linewidth=1.4, zorder=2.5
     )
     rim.set_alpha(alpha)
-    axes.add_patch(rim)
+    axes.add_artist(rim)
     spoke = [centre, centre + radius * np.array([np.cos(angle), np.sin(angle)])]
     axes.add_collection(
         LineCollection([spoke], colors=colour, linewidths=1.0, alpha=alpha, zorder=2.5), autolim=False
@@ -149,7 +149,7 @@ def round_ground(axes: Axes, centre: Array, radius: float, inward: bool, size: f
     rim = Circle(
         (centre[0], centre[1]), radius, facecolor="none", edgecolor=GROUND, linewidth=1.2, zorder=1.5
     )
-    axes.add_patch(rim)
+    axes.add_artist(rim)
     strokes = max(12, round(2.0 * np.pi * radius / (0.9 * size)))
     turn = np.linspace(0.0, 2.0 * np.pi, strokes, endpoint=False)
     out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
@@ -168,7 +168,7 @@ def circle(axes: Axes, centre: Array, radius: float, colour: str, alpha: float =
         (centre[0], centre[1]), radius, facecolor="none", edgecolor=colour, linewidth=1.4, zorder=2.4
     )
     rim.set_alpha(alpha)
-    axes.add_patch(rim)
+    axes.add_artist(rim)
 
 
 def pitch_circle(
@@ -185,7 +185,7 @@ def pitch_circle(
         zorder=2.4,
     )
     rim.set_alpha(alpha)
-    axes.add_patch(rim)
+    axes.add_artist(rim)
     way = radius * np.array([np.cos(angle), np.sin(angle)])
     axes.add_collection(
         LineCollection(

@@ -101,7 +101,7 @@ def _cam(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     frame = wheel.roller_frames(phi)
     profile = factor * pose.of_cam(frame.place - wheel.roller * frame.normal)
     path = factor * pose.of_cam(frame.place)
-    axes.add_patch(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
+    axes.add_artist(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
     axes.plot(*profile.T, color=CAM, linewidth=1.6, zorder=4)
     axes.plot(*path.T, color=MUTED, linewidth=0.8, linestyle=CENTRE_LINE, zorder=3)
 
@@ -110,7 +110,9 @@ def _carrier(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> N
     """A ring about the cam with a guide for each leg."""
     radius = factor * carrier_radius(wheel)
     hub = factor * pose.hub
-    axes.add_patch(Circle((hub[0], hub[1]), radius, fill=False, edgecolor=CARRIER, linewidth=2.2, zorder=4.5))
+    axes.add_artist(
+        Circle((hub[0], hub[1]), radius, fill=False, edgecolor=CARRIER, linewidth=2.2, zorder=4.5)
+    )
     for along in pose.along:
         slider(axes, hub + radius * along, math.atan2(along[1], along[0]), 0.05 * radius, CARRIER)
 
@@ -124,10 +126,10 @@ def _leg(axes: Axes, wheel: WheelMover, pose: WheelPose, leg: int, factor: float
     rod = factor * pose.of_leg(leg, np.array([[0.0, 0.0], [0.0, outline[:, 1].max()]]))
     shoe = factor * pose.of_leg(leg, np.concatenate([outline, top]))
     roller = factor * pose.rollers[leg]
-    axes.add_patch(Polygon(shoe, facecolor=colour, edgecolor=colour, alpha=0.25, linewidth=1.0, zorder=5.5))
+    axes.add_artist(Polygon(shoe, facecolor=colour, edgecolor=colour, alpha=0.25, linewidth=1.0, zorder=5.5))
     axes.plot(*shoe[:-1].T, color=colour, linewidth=2.0, zorder=6)
     axes.plot(*rod.T, color=colour, linewidth=2.4, zorder=6)
-    axes.add_patch(
+    axes.add_artist(
         Circle(
             (roller[0], roller[1]),
             factor * wheel.roller,

@@ -40,6 +40,7 @@ from centrode.render.drawing.style import (
     marked,
 )
 from centrode.render.drawing.texts import plain
+from centrode.render.figures.grid_layout import GridLayout
 from centrode.render.figures.interpolation import interpolated, jumps
 from centrode.sheets.plots import EventKind
 
@@ -186,7 +187,7 @@ def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: 
     ]
     each = LONE_INCHES if len(rows) == 1 else PANEL_INCHES
     height = min(PAGE_HEIGHT, ABOVE_INCHES + each * len(rows) + sum(above))
-    figure = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, height), layout=GridLayout())
     grid = figure.subplots(len(rows), columns, sharex=True, squeeze=False)
     told = False
     for row, (axes_row, panels) in enumerate(zip(grid, rows, strict=True)):

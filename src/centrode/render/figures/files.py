@@ -7,14 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import Formatter
 
 from centrode.locale import decimal_mark
 from centrode.render.drawing.style import house_style
+from centrode.render.figures.document_canvas import DocumentCanvas, MeasuringCanvas
 
 # Decimals of a figure with the mark of the language: ticks, labels, titles; what a user wrote stays.
 
@@ -95,6 +94,13 @@ METADATA: dict[str, dict[str, Any]] = {
 DPI = 150
 
 
+def lay_out(figure: Figure) -> None:
+    """Put the panels of a figure, nothing being drawn."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+
+
 def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write each figure as PNG (150 dpi) and SVG; the same figures give the same bytes.
 
@@ -117,16 +123,16 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
         for name, figure in figures.items():
             spell_decimals(figure)
             # The canvases' own printing: `savefig` would draw every figure twice as often.
-            raster: Any = FigureCanvasAgg(figure)
+            raster: Any = MeasuringCanvas(figure)
             engine, dpi = figure.get_layout_engine(), figure.dpi
             figure.dpi = DPI
-            figure.draw_without_rendering()
-            figure.set_layout_engine("none")  # it is laid out: both files show the same
+            lay_out(figure)
+            figure.set_layout_engine("none")  # both files show the same
             paths = [Path(folder) / f"{name}.{kind}" for kind in METADATA]
             paths[0].parent.mkdir(exist_ok=True)
             raster.print_png(str(paths[0]), metadata=METADATA["png"])
-            vectors: Any = FigureCanvasSVG(figure)
-            vectors.print_svg(str(paths[1]), metadata=METADATA["svg"])
+            with paths[1].open("wb") as stream:
+                DocumentCanvas(figure).print_svg(stream, metadata=METADATA["svg"])
             figure.set_layout_engine(engine)
             figure.dpi = dpi
             written += paths

@@ -38,6 +38,7 @@ from centrode.render.figures.curves import (
     write_legend,
     write_title,
 )
+from centrode.render.figures.grid_layout import GridLayout
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.plots import CurveRole, TraceKind
 
@@ -152,7 +153,7 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
     """Panels below each other with the sizes of their curves on logarithmic scales."""
     each = LONE_INCHES if len(panels) == 1 else PANEL_INCHES
     height = ABOVE_INCHES + sum(each + legend_height(list(panel.curves)) for panel in panels)
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout=GridLayout())
     grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False)
     for axes, panel in zip(grid.ravel(), panels, strict=True):
         handles: list[tuple[Artist, str]] = []
@@ -222,7 +223,7 @@ def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
     up, y_label, _unit = spelling.label(diagram.y)
     names = [PrintSpelling(display).text(trace.name) for trace in diagram.traces]
     height = INCHES + ABOVE_INCHES + legend_height(names, inches=INCHES)
-    figure = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, height), layout=GridLayout())
     axes = figure.subplots()
     key = [
         _trace(axes, trace, place, (across, up), PrintSpelling(display))

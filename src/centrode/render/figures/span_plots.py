@@ -27,6 +27,7 @@ from centrode.render.drawing.style import (
     numbered_pen,
 )
 from centrode.render.figures.curves import angle_ticks, legend_height, wrap_label, write_legend, write_title
+from centrode.render.figures.grid_layout import GridLayout
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
     keyed, headed = len(names) > 1, bool(words.text(plot.panels[0].heading))
     each = HEADED if headed else PANEL
     height = 1.1 + each * len(plot.panels) + (legend_height(names) if keyed else 0.0)
-    figure = Figure(figsize=(PAGE_WIDTH, min(height, PAGE_HEIGHT)), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, min(height, PAGE_HEIGHT)), layout=GridLayout())
     grid = figure.subplots(len(plot.panels), 1, sharex=True, squeeze=False)[:, 0]
     factor, label, unit = spelling.label(plot.label)
     pieces = np.split(np.arange(len(plot.values)), 1 + np.flatnonzero(np.diff(plot.values) == 0.0))

@@ -72,7 +72,7 @@ class Page:
     def arrow(self, start: Array, end: Array, colour: str, dashes: Any, width: float) -> None:
         """Draw an arrow between two places [mm]; a short one has a small head."""
         head = min(7.0, 2.5 * float(np.hypot(*(end - start))) + 1.0)
-        self.overlay.add_patch(
+        self.overlay.add_artist(
             FancyArrowPatch(
                 (float(start[0]), float(start[1])),
                 (float(end[0]), float(end[1])),

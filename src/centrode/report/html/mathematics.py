@@ -22,17 +22,6 @@ SIGNS = {"+", "\u2212", "-", "±", "∓"}
 PRIMES = {"\u2032", "\u2033", "\u2034"}
 """Browsers take for a superscript the letter that is raised by itself, and raise it twice."""
 
-COMMON_LETTERS = (
-    (0x20, 0x7E), (0xA0, 0xA0), (0xA8, 0xA8), (0xB0, 0xB3), (0xB7, 0xB7), (0xB9, 0xB9), (0xD7, 0xD7), (0x2D9, 0x2D9),
-    (0x302, 0x304), (0x307, 0x308), (0x394, 0x394), (0x3A3, 0x3A3), (0x3A6, 0x3A6), (0x3A9, 0x3A9), (0x3B1, 0x3C9),
-    (0x3D1, 0x3D1), (0x3D5, 0x3D5), (0x2009, 0x200A), (0x2013, 0x2014), (0x2022, 0x2022), (0x2026, 0x2026),
-    (0x202F, 0x202F), (0x2032, 0x2034), (0x2061, 0x2064), (0x20D7, 0x20D7), (0x210E, 0x210E), (0x2190, 0x2193),
-    (0x2202, 0x2202), (0x2206, 0x2208), (0x2211, 0x2213), (0x221A, 0x221A), (0x221E, 0x221E), (0x2220, 0x2220),
-    (0x2225, 0x2225), (0x222B, 0x222B), (0x2248, 0x2248), (0x2260, 0x2265), (0x22A5, 0x22A5), (0x22C5, 0x22C5),
-    (0x239B, 0x23AF), (0x27C2, 0x27C2), (0x1D434, 0x1D467), (0x1D6A4, 0x1D6A4), (0x1D6E5, 0x1D6E5), (0x1D6FC, 0x1D71B),
-)  # fmt: skip
-"""Letters, first and last, that nearly all formulas keep to: a page with no others has the smaller font."""
-
 
 @dataclass(frozen=True)
 class Formulas:
@@ -42,13 +31,9 @@ class Formulas:
     style: str
 
     @property
-    def has_common_letters(self) -> bool:
-        """Whether all letters of the formulas are common ones."""
-        letters = {letter for one in self.found.values() for text in one.itertext() for letter in text}
-        return all(
-            letter.isspace() or any(first <= ord(letter) <= last for first, last in COMMON_LETTERS)
-            for letter in letters
-        )
+    def letters(self) -> frozenset[str]:
+        """All letters of the formulas."""
+        return frozenset(letter for one in self.found.values() for text in one.itertext() for letter in text)
 
     def inline(self, spelled: str) -> str:
         """A formula in a sentence."""

@@ -10,17 +10,16 @@ from functools import cache
 from pathlib import Path
 
 from centrode.locale import _, speaking
-from centrode.render.document.blocks import Report
+from centrode.render.document.blocks import Moving, Report
 from centrode.render.document.numbering import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.html.elements import Elements, formulas_in
+from centrode.report.html.fonts import embedded_font, font_letters
 from centrode.report.html.mathematics import formulas_of
 from centrode.report.page_styles import page_style
 from centrode.report.texts import blocks_of
 
 HERE = Path(__file__).parent
-FONT, COMMON_FONT = "math-font.woff2", "math-font-common.woff2"
-"""All letters that formulas can hold, and those of nearly every page."""
 SCRIPTS = (("page.js",), ("space.js", "picture.js", "animation.js"))
 STYLE = "page.css"
 NOTE_STYLE = """
@@ -58,7 +57,6 @@ def html_page(report: Report) -> bytes:
 def _page(report: Report) -> str:
     report = number_blocks(report)
     formulas = formulas_of(one for block in blocks_of(report) for one in formulas_in(block))
-    font = COMMON_FONT if formulas.has_common_letters else FONT
     elements = Elements(formulas, separator=page_style(report.standard).separator)
     outline = list(outline_of(report))
     opening = "" if report.is_note else _opening(report, elements)
@@ -66,7 +64,11 @@ def _page(report: Report) -> str:
     scripts = [_script(names) for names in SCRIPTS]
     contents = _contents(outline)
     note_style = NOTE_STYLE if report.is_note else ""
-    style = f"{_style(font)}{note_style}{formulas.style}{elements.drawings.style()}"
+    main = f"{_header(report)}\n{opening}{''.join(chapters)}"
+    moving = (one for one in blocks_of(report) if isinstance(one, Moving))
+    names = (name for one in moving for name in one.places)
+    font = embedded_font(font_letters(formulas.letters, names, f"{report.title}{contents}{main}"))
+    style = f"{_data(STYLE).replace('@FONT@', font)}{note_style}{formulas.style}{elements.drawings.style()}"
     title, heading = html.escape(report.title), html.escape(_("Contents"))
     return (
         f'<!DOCTYPE html>\n<html lang="{html.escape(report.language)}">\n<head>\n<meta charset="utf-8">\n'
@@ -75,8 +77,7 @@ def _page(report: Report) -> str:
         f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
         f'{elements.drawings.shared()}\n<div class="sheet">\n'
         f"<nav><details open><summary>{heading}</summary><ol>{contents}</ol></details></nav>\n"
-        f"<main>\n{_header(report)}\n"
-        f"{opening}{''.join(chapters)}</main>\n</div>\n"
+        f"<main>\n{main}</main>\n</div>\n"
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
     )
 
@@ -183,9 +184,3 @@ def _script(names: tuple[str, ...]) -> str:
 @cache
 def _data(name: str) -> str:
     return (HERE / name).read_text(encoding="utf-8")
-
-
-@cache
-def _style(font: str) -> str:
-    letters = base64.b64encode((HERE / font).read_bytes()).decode()
-    return _data(STYLE).replace("@FONT@", letters)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import json
 import multiprocessing
@@ -165,6 +166,9 @@ def _write_analysis(mechanism: Mechanism, task: Task, folder: Path) -> None:
 
 Progress: TypeAlias = Callable[[int, int], None]
 
+COLLECTION = (50_000, 50, 100)
+"""Objects after which processes look for cycles among them, in each generation, as of a command."""
+
 LOCK, SUMMARY = ".lock", "summary.csv"
 MOST_JOBS = 256
 
@@ -294,4 +298,5 @@ def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
 def _prepare(read: Sequence[Input]) -> None:
     """Let the parent decide what an interruption means, and keep what it has read."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.set_threshold(*COLLECTION)
     carry_on(read)
