@@ -16,7 +16,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.errors import Status
+from centrode.errors import InputError, Status
 from centrode.kinematics.machine_code.event_screening import EventScreening
 from centrode.kinematics.machine_code.events import Eventful
 from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, Way, beginnings, way_of
@@ -37,19 +37,19 @@ from centrode.kinematics.machine_code.variables import (
     varied_of,
 )
 from centrode.kinematics.samples import CLOSED
-from centrode.locale import mark
+from centrode.locale import _, mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.scans import Reduction, Scan, evaluate, room_of, together
+from centrode.numerics.scans import LINE, Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import NUMBER, ArraysExecutor, SweepTask, fill_columns
 from centrode.sweeps.designs import Rows
-from centrode.sweeps.outputs import SweepColumn
+from centrode.sweeps.outputs import OutputFormula, SweepColumn, table_variable
 
 # Folds of traced formulas: what is reduced over samples becomes a state of a scan, and then a number of the
 # mechanism.
@@ -78,6 +78,22 @@ class Fold:
         return Reduction({self.name: as_node(extreme(self.value, so_far))}, {self.name: start})
 
 
+NEUTRAL = {"sum": 0.0, "min": math.inf, "max": -math.inf}
+"""What changes nothing in a fold."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """The samples at which the tables of a formula have numbers: a variable that is 1 there, and how many they are."""
+
+    name: str
+    count: int
+
+    def only(self, value: Operand, otherwise: float) -> Operand:
+        """A value there, elsewhere another one."""
+        return EXPRESSIONS.where(EXPRESSIONS.equal(variable(self.name), 1.0), value, otherwise)
+
+
 @dataclass
 class Folds(Expressions):
     """Namespace that traces formulas of so many samples; the folds they ask for are listed in `found`."""
@@ -85,18 +101,23 @@ class Folds(Expressions):
     samples: int
     found: dict[tuple[str, bytes], Fold] = field(default_factory=dict)
 
-    def fold(self, name: str, value: Operand) -> Operand:
+    def fold(self, name: str, value: Operand, known: Known | None = None) -> Operand:
         # range and mean are made of simpler folds, which other formulas may share
-        """The number that a fold of FOLDS gives."""
+        """The number that a fold of FOLDS gives; of some samples alone where `known` says which."""
         if name == "range":
-            return self.fold("max", value) - self.fold("min", value)
+            return self.fold("max", value, known) - self.fold("min", value, known)
         if name == "mean":
-            return self.fold("sum", value) / float(self.samples)
-        node = as_node(value)
+            count = self.samples if known is None else known.count
+            return self.fold("sum", value, known) / float(count)
+        node = as_node(value if known is None else known.only(value, NEUTRAL[name]))
         key = name, node.key
         if key not in self.found:
             self.found[key] = Fold(f"fold {len(self.found)}", name, node, self._depth(node))
         return variable(self.found[key].name)
+
+    def within(self, known: Known | None) -> Expressions:
+        """The namespace whose folds take the known samples alone."""
+        return self if known is None else FoldsWithin(self, known)
 
     def at_depth(self, depth: int) -> Sequence[Fold]:
         """The folds that need so many passes before their own."""
@@ -113,7 +134,19 @@ class Folds(Expressions):
         return 1 + max((fold.depth for fold in self.found.values() if fold.name in used), default=-1)
 
 
-# Derivatives of what is reduced by the values that vary, as expressions: reverse mode through samples and
+@dataclass
+class FoldsWithin(Expressions):
+    """Namespace whose folds take some samples alone; what they find is listed with all others."""
+
+    folds: Folds
+    known: Known
+
+    def fold(self, name: str, value: Operand) -> Operand:
+        """The number that a fold of FOLDS gives."""
+        return self.folds.fold(name, value, self.known)
+
+
+# Derivatives of what is requested by the values that vary, as expressions: reverse mode through samples and
 # folds.
 
 Through: TypeAlias = Sequence[tuple[Node, Operand]]
@@ -324,10 +357,9 @@ class Expressed:
         asked, solved = self.task.asked, self.traced.solved
         given = {path: box_array([variable(path)]) for path in self.task.paths}
         if asked.formulas:
-            return {
-                formula.name: [as_node(formula.trace(self.folds, solved, given))]
-                for formula in asked.formulas
-            }
+            given |= {name: box_array([variable(name)]) for name in map(table_variable, asked.tables)}
+            before: dict[str, Any] = {}
+            return {formula.name: [self._formula(formula, given, before)] for formula in asked.formulas}
         columns = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
         if asked.reduction is None:
             return {name: [as_node(x) for x in nodes] for name, nodes in columns.items()}
@@ -336,10 +368,24 @@ class Expressed:
             for name, nodes in columns.items()
         }
 
+    def _formula(self, formula: OutputFormula, given: Mapping[str, Any], before: dict[str, Any]) -> Node:
+        known = _known_of(formula)
+        value = formula.trace(self.folds.within(known), self.traced.solved, given, before)
+        # at a sample where a table has no number there is none
+        return as_node(known.only(value, math.nan) if known is not None and formula.at_samples else value)
+
     @cached_property
     def outputs(self) -> dict[str, Node]:
-        """All numbers of a sample, column by column."""
-        return {f"{name} {k}": node for name, nodes in self.columns.items() for k, node in enumerate(nodes)}
+        """All numbers of a sample, column by column as the result has them."""
+        return {
+            f"{name} {k}": node for name, nodes in self.written.items() for k, node in enumerate(nodes)
+        }
+
+    @cached_property
+    def written(self) -> dict[str, list[Node]]:
+        """Column -> its numbers, of those that have a number of every sample."""
+        every = self._with_slopes
+        return {column.name: every[column.name] for column in streamed_columns(self.task.asked.columns)}
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -355,6 +401,10 @@ class Expressed:
     @cached_property
     def final(self) -> dict[str, list[Node]]:
         """Reduced columns, and those of derivatives, from the folds."""
+        return {name: nodes for name, nodes in self._with_slopes.items() if name not in self.written}
+
+    @cached_property
+    def _with_slopes(self) -> dict[str, list[Node]]:
         columns = dict(self.columns)
         for name, slope in self.task.asked.slopes.items():
             columns[slope] = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
@@ -387,8 +437,14 @@ class Expressed:
 
     @cached_property
     def inputs(self) -> Values:
-        """Values of the variables of a place at the samples: name -> (samples,)."""
-        return inputs_of(self.task.ready.kinematics.path, self.task.span)
+        """Values of the variables of a place at the samples, tables among them: name -> (samples,)."""
+        asked, values = self.task.asked, inputs_of(self.task.ready.kinematics.path, self.task.span)
+        values |= {table_variable(name): table.values for name, table in asked.tables.items()}
+        for formula in asked.formulas:
+            known = _known_of(formula)
+            if known is not None and formula.known is not None:
+                values[known.name] = formula.known.astype(np.float64)
+        return values
 
     @cached_property
     def way(self) -> Way:
@@ -408,6 +464,13 @@ class Expressed:
         # radicand two at most. The last two are the judges over all samples. Only the number of lanes follows from
         # this, and that is `KERNEL_LANES` up to some 120 numbers.
         return len(self.varied.names) + folds + angles + walked + 2 * len(self.traced.radicands) + 2
+
+
+def _known_of(formula: OutputFormula) -> Known | None:
+    """The samples at which the tables of a formula have numbers; None where that is everywhere."""
+    known = formula.known
+    # formulas of the same tables share what they fold
+    return None if known is None else Known(f"known {' '.join(sorted(formula.tables))}", int(known.sum()))
 
 
 # How machine code passes samples: each for itself, or along the path where groups of higher class ask for it.
@@ -519,21 +582,26 @@ class StreamedColumns(dict[str, AnyArray]):
 
 def streamed_columns(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
     """The columns that have a float64 of every sample."""
-    return [
-        column for column in columns if column.dimensions[:1] == ("sample",) and column.kind == np.float64
-    ]
+    return [column for column in columns if column.at_samples and column.kind == np.float64]
 
 
-def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColumns:
-    """Fresh memory for columns, with streams where there is any."""
+def columns_for(
+    columns: Sequence[SweepColumn], mechanisms: int, out: npt.NDArray[np.float64] | None = None
+) -> StreamedColumns:
+    """Memory for columns, with streams where there is any: fresh, or that of `out`.
+
+    Raises InputError where `out` has too little room, or is no array that numbers can be written to.
+    """
     kept = streamed_columns(columns)
     streamed = StreamedColumns(
         # what has no sample dimension is an array of its own, in the order of the result
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
+    if out is not None:
+        _check_room(out, mechanisms * sum(math.prod(column.shape) for column in kept))
     if kept:
         numbers = [math.prod(column.shape[1:]) for column in kept]
-        streamed.streams = np.empty((sum(numbers), mechanisms, kept[0].shape[0]))
+        streamed.streams = _streams((sum(numbers), mechanisms, kept[0].shape[0]), out)
         first = 0
         for column, count in zip(kept, numbers, strict=True):
             streams = streamed.streams[first : first + count].reshape(
@@ -543,6 +611,34 @@ def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColu
             streamed[column.name] = np.moveaxis(streams, (-2, -1), (0, 1))
             first += count
     return streamed
+
+
+def _streams(shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None) -> npt.NDArray[np.float64]:
+    """Room for streams; fresh memory begins where a line of the cache does."""
+    numbers = math.prod(shape)
+    if out is not None:
+        return out.reshape(-1)[:numbers].reshape(shape)
+    spare = LINE // NUMBER
+    whole = np.empty(numbers + spare)
+    first = (-whole.ctypes.data % LINE) // NUMBER
+    return whole[first : first + numbers].reshape(shape)
+
+
+def _check_room(out: object, numbers: int) -> None:
+    if not numbers:
+        what = _("nothing is kept of every sample")
+        raise InputError("out", what, _("omit it, or request outputs that are not reduced"))
+    if (
+        not isinstance(out, np.ndarray)
+        or out.dtype != np.float64
+        or not out.flags.c_contiguous
+        or not out.flags.writeable
+    ):
+        what = _("an array of float64 that is contiguous and can be written to is required")
+        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
+    if out.size < numbers:
+        what = _("it has room for {size} numbers, {numbers} are needed").format(size=out.size, numbers=numbers)
+        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
 
 
 # Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
@@ -731,7 +827,7 @@ class MachineCodeExecutor:
         return clear
 
     def _fill_reductions(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
-        """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
+        """Fill in one number, or a few, of each motion; returns what is known of mechanisms then."""
         rows = dict(rows)
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
@@ -759,7 +855,12 @@ class MachineCodeExecutor:
     def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
-        every = EverySample(self.asked.columns, results, at, self.asked.samples)
+        # formulas of every sample may name what is folded
+        if self.asked.final or self.asked.folds.found:
+            rows = self._fill_reductions(rows, at, results)
+            # what is written is judged as it is written
+            rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
+        every = EverySample(self.asked.written, results, at, self.asked.samples)
         return self._passing.write_samples(rows, every.rooms())
 
 
