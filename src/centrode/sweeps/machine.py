@@ -405,9 +405,12 @@ class Expressed:
 
     @cached_property
     def _with_slopes(self) -> dict[str, list[Node]]:
-        columns = dict(self.columns)
+        columns, formulas = dict(self.columns), {formula.name: formula for formula in self.task.asked.formulas}
         for name, slope in self.task.asked.slopes.items():
-            columns[slope] = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
+            slopes = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
+            known = _known_of(formulas[name]) if name in formulas and formulas[name].at_samples else None
+            # where a formula has no number it has no derivative either
+            columns[slope] = [x if known is None else as_node(known.only(x, math.nan)) for x in slopes]
         return columns
 
     @cached_property
@@ -728,8 +731,7 @@ class MachineCodeExecutor:
         Raises Untraceable, with a reason for the user.
         """
         # reported before anything is traced
-        if kernels == MACHINE_CODE and not machine_code.PRESENT:
-            raise Untraceable(mark("llvmlite is not installed"))
+        check_present(kernels)
         varied = varied_of(numbers, values)
         asked = Expressed(
             task,
@@ -862,6 +864,12 @@ class MachineCodeExecutor:
             rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
         every = EverySample(self.asked.written, results, at, self.asked.samples)
         return self._passing.write_samples(rows, every.rooms())
+
+
+def check_present(kernels: str) -> None:
+    """Raise Untraceable where machine code is requested and llvmlite is not installed."""
+    if kernels == MACHINE_CODE and not machine_code.PRESENT:
+        raise Untraceable(mark("llvmlite is not installed"))
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:
