@@ -441,8 +441,17 @@ class Expressed:
     @cached_property
     def inputs(self) -> Values:
         """Values of the variables of a place at the samples, tables among them: name -> (samples,)."""
-        asked, values = self.task.asked, inputs_of(self.task.ready.kinematics.path, self.task.span)
-        values |= {table_variable(name): table.values for name, table in asked.tables.items()}
+        return inputs_of(self.task.ready.kinematics.path, self.task.span) | self._tables
+
+    @property
+    def further(self) -> tuple[str, ...]:
+        """Names of the inputs that tables give."""
+        return tuple(self._tables)
+
+    @cached_property
+    def _tables(self) -> Values:
+        asked = self.task.asked
+        values = {table_variable(name): table.values for name, table in asked.tables.items()}
         for formula in asked.formulas:
             known = _known_of(formula)
             if known is not None and formula.known is not None:
@@ -537,11 +546,12 @@ class Along:
 
     def reduce(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         asked = self.asked
-        return Walking(asked.judging.walk, reduction).reduce(asked.way, rows, asked.kernels, asked.threads)
+        walking = Walking(asked.judging.walk, reduction, further=asked.further)
+        return walking.reduce(asked.way, rows, asked.kernels, asked.threads)
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
-        walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
+        walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs, asked.further)
         parts = []
         for part, room in rooms:
             some = {name: row[part] for name, row in rows.items()}

@@ -274,7 +274,8 @@ def frame_of(
             name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
         }
     if PATH in used:
-        coordinates[PATH] = (PATH, list(design.coordinates))
+        # texts of any length, as all other labels: a store has no standard for those of one length
+        coordinates[PATH] = (PATH, np.array(list(design.coordinates), dtype=object))
     for path, (dimension, values) in design.coordinates.items():
         coordinates[path] = ((dimension,), values, {"units": units[path]})
     told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
