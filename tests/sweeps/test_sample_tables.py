@@ -93,9 +93,7 @@ def test_samples_without_a_target_are_omitted(executor: str) -> None:
     found = ct.sweep("crank-rocker", VARY, FORMULAS, SAMPLES, executor=executor, tables=tables)
     dx, dy = differences(tables)
     some = slice(1, 3)  # where both have a number
-    np.testing.assert_allclose(
-        found["error"], (dx**2 + dy**2)[:, some].mean(axis=1), rtol=SAMPLES * EPS
-    )
+    np.testing.assert_allclose(found["error"], (dx**2 + dy**2)[:, some].mean(axis=1), rtol=SAMPLES * EPS)
     assert np.isnan(found["dx"].values[:, 3:]).all()
     assert (found["dx"].values[:, :3] == dx[:, :3]).all()
     worst = ct.sweep(
@@ -109,9 +107,7 @@ def test_samples_without_a_target_are_omitted(executor: str) -> None:
 def test_mechanisms_with_events(executor: str) -> None:
     tables = targets()
     vary = {"links.AB.length": [3.5, 1.9, 20.0]}
-    found = ct.sweep(
-        "crank-rocker", vary, FORMULAS, SAMPLES, executor=executor, tables=tables, gradient=True
-    )
+    found = ct.sweep("crank-rocker", vary, FORMULAS, SAMPLES, executor=executor, tables=tables, gradient=True)
     dx, dy = differences(tables, vary)
     ok = found["status"].values == 0
     assert (found["samples_ok"].values == ok.sum(axis=1)).all()
@@ -124,9 +120,7 @@ def test_mechanisms_with_events(executor: str) -> None:
 
 def test_formulas_reduced_by_a_name() -> None:
     tables = targets()
-    found = ct.sweep(
-        "crank-rocker", VARY, {"dx": FORMULAS["dx"]}, SAMPLES, reduce="max", tables=tables
-    )
+    found = ct.sweep("crank-rocker", VARY, {"dx": FORMULAS["dx"]}, SAMPLES, reduce="max", tables=tables)
     assert (found["dx"].values == differences(tables)[0].max(axis=1)).all()
 
 

@@ -377,9 +377,7 @@ class Expressed:
     @cached_property
     def outputs(self) -> dict[str, Node]:
         """All numbers of a sample, column by column as the result has them."""
-        return {
-            f"{name} {k}": node for name, nodes in self.written.items() for k, node in enumerate(nodes)
-        }
+        return {f"{name} {k}": node for name, nodes in self.written.items() for k, node in enumerate(nodes)}
 
     @cached_property
     def written(self) -> dict[str, list[Node]]:
@@ -405,7 +403,10 @@ class Expressed:
 
     @cached_property
     def _with_slopes(self) -> dict[str, list[Node]]:
-        columns, formulas = dict(self.columns), {formula.name: formula for formula in self.task.asked.formulas}
+        columns, formulas = (
+            dict(self.columns),
+            {formula.name: formula for formula in self.task.asked.formulas},
+        )
         for name, slope in self.task.asked.slopes.items():
             slopes = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
             known = _known_of(formulas[name]) if name in formulas and formulas[name].at_samples else None
@@ -650,7 +651,9 @@ def _check_room(out: object, numbers: int) -> None:
         what = _("an array of float64 that is contiguous and can be written to is required")
         raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
     if out.size < numbers:
-        what = _("it has room for {size} numbers, {numbers} are needed").format(size=out.size, numbers=numbers)
+        what = _("it has room for {size} numbers, {numbers} are needed").format(
+            size=out.size, numbers=numbers
+        )
         raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
 
 

@@ -445,7 +445,9 @@ class _Formulas:
                 tables |= self.found[variable.source].tables
         known = common_known(list(tables.values()))
         if known is not None and not known.any():
-            what = _("at no sample do all of its tables have a value: {names}").format(names=", ".join(tables))
+            what = _("at no sample do all of its tables have a value: {names}").format(
+                names=", ".join(tables)
+            )
             raise InputError(where, what, _("give one value or more"))
         return tables
 
@@ -615,8 +617,8 @@ def _asked_formulas(
         attributes = {"long_name": formula.name, "formula": formula.text.text}
         if formula.reduction is not None:
             attributes["reduction"] = formula.reduction
-        along = ((SAMPLE,), (motion.sizes[SAMPLE],)) if formula.at_samples else ((), ())
-        columns.append(SweepColumn(formula.name, *along, np.float64, attributes))
+        along, count = ((SAMPLE,), (motion.sizes[SAMPLE],)) if formula.at_samples else ((), ())
+        columns.append(SweepColumn(formula.name, along, count, np.float64, attributes))
     if any(column.at_samples for column in columns):
         columns.append(_status_column(motion))
     used = {name for formula in formulas for name in formula.tables}

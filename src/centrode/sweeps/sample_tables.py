@@ -106,9 +106,7 @@ def _table(where: str, given: Any, samples: int) -> SampleTable:
         )
         raise InputError(where, what, _("give one value for each sample, NaN where there is none"))
     if np.isinf(values).any():
-        what = _("the value of sample {number} is infinite").format(
-            number=int(np.isinf(values).argmax())
-        )
+        what = _("the value of sample {number} is infinite").format(number=int(np.isinf(values).argmax()))
         raise InputError(where, what, _("give NaN where there is no value"))
     known = ~np.isnan(values)
     if not known.any():

@@ -291,9 +291,7 @@ def frame_of(
 class InMemory:
     """A result in arrays; what is not computed is empty."""
 
-    def __init__(
-        self, frame: SweepFrame, blocks: Blocks, out: npt.NDArray[np.float64] | None = None
-    ) -> None:
+    def __init__(self, frame: SweepFrame, blocks: Blocks, out: npt.NDArray[np.float64] | None = None) -> None:
         self.frame = frame
         self.blocks = blocks
         self.tally = Tally()

@@ -33,7 +33,7 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import METHODS, Design, Grid, Sample, design_of, grid, sample, unit_of
 from centrode.sweeps.executors import Executor, check_executor, check_threads, executor_of
 from centrode.sweeps.kept_plans import KeptValues
-from centrode.sweeps.outputs import SAMPLE, Outputs, Reduce, asked_of, with_slopes
+from centrode.sweeps.outputs import Outputs, Reduce, asked_of, with_slopes
 from centrode.sweeps.sample_tables import Tables
 from centrode.sweeps.store import (
     Blocks,
@@ -130,7 +130,13 @@ def sweep(
     mechanism = mechanism_of(mechanism)
     if compute is not None:
         _refuse_of_motions(
-            start=start, stop=stop, reduce=reduce, gradient=gradient or None, store=store, tables=tables, out=out
+            start=start,
+            stop=stop,
+            reduce=reduce,
+            gradient=gradient or None,
+            store=store,
+            tables=tables,
+            out=out,
         )
         if isinstance(outputs, Mapping):
             what = _("formulas belong to sweeps of motions")
@@ -238,7 +244,7 @@ def sweep_results(
 
 def check_table(data: xr.Dataset) -> None:
     """Raise InputError where a sweep is no table: it is not reduced, or has more than `TABLE_ROWS` mechanisms."""
-    if SAMPLE in data.dims:
+    if "sample" in data.dims:
         raise InputError("", _("a table holds reduced results only"), _("reduce them, or write zarr"))
     count = data["samples_ok"].size
     if count > TABLE_ROWS:
