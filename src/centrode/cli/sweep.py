@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -39,12 +40,25 @@ TABLE, STORE = ".csv", ".zarr"
         "a table .csv or a folder with table and figure."
     ),
 )
+@click.option(
+    "--table",
+    "values",
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("A CSV file of numbers at every sample, such as targets, that formulas of the study name."),
+)
 @no_figures_option
 @tables_options
 @click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
-def sweep(study: str, out: Path | None, no_figures: bool, force: bool) -> None:
+def sweep(study: str, out: Path | None, values: Path | None, no_figures: bool, force: bool) -> None:
     """Compute and write; exit code 3 if no mechanism moves anywhere (the results are written)."""
     asked = library.read_sweep(study)
+    if values is not None:
+        if asked.tables is not None:
+            raise InputError(
+                "--table", _("the study has tables of its own"), _("give them in one of the two places")
+            )
+        asked = replace(asked, tables=values)
     if asked.compute is not None:
         _parameter_study(asked, study, out, figures=not no_figures, force=force)
         return
@@ -94,7 +108,7 @@ def _parameter_study(asked: SweepStudy, study: str, out: Path | None, *, figures
 
 
 def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
-    if asked.reduce is None:
+    if asked.reduce is None and not isinstance(asked.outputs, Mapping):
         raise InputError(
             str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
         )
@@ -173,4 +187,5 @@ def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
             progress=tell,
             compute=asked.compute,
             dependent=asked.dependent or None,
+            tables=asked.tables,
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -41,6 +41,8 @@ class SweepTask:
     span: SampleGrid
     asked: SweepOutputs
     paths: tuple[str, ...]
+    kept: dict[tuple[str, int], Any] = field(default_factory=dict, compare=False, repr=False)
+    """What executors have made ready of the task, by their kernels and threads: a task computed again finds it."""
 
     @property
     def places(self) -> int:

@@ -25,6 +25,7 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS, read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
+from centrode.sweeps.kept_plans import KeptValues
 
 # What a sweep may take of memory and ask for at most; named here, explained in docs/sweeps.md.
 
@@ -73,6 +74,9 @@ PATHS = 100
 OUTPUTS = 200
 """Outputs, or formulas, of one sweep."""
 
+TABLES = 100
+"""Tables of one sweep."""
+
 
 # Varied values as they are given: numbers in SI, texts with a unit, ranges.
 
@@ -87,6 +91,13 @@ _ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
 
 def kind_of(mechanism: Mechanism, path: str) -> str:
     """Kind of the number at a path, which tells its units; InputError where there is no such path."""
+    return _kinds.get(mechanism, path, functools.partial(_kind_of, mechanism, path))
+
+
+_kinds: KeptValues[str] = KeptValues(1000)
+
+
+def _kind_of(mechanism: Mechanism, path: str) -> str:
     try:
         value_at(mechanism, path)
     except InputError as error:

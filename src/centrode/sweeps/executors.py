@@ -18,7 +18,7 @@ from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor, Results, SweepTask
 from centrode.sweeps.designs import Design, Rows
-from centrode.sweeps.machine import MachineCodeExecutor
+from centrode.sweeps.machine import MachineCodeExecutor, check_present
 
 KNOWN = (AUTO, ArraysExecutor.name, MACHINE_CODE)
 
@@ -89,11 +89,17 @@ def _machine_code_executor(
 ) -> MachineCodeExecutor:
     if task.asked.has_hinge_angles:
         raise Untraceable(mark("angles at hinges, whose turns are counted on the mesh"))
+    check_present(kernels)
+    found = task.kept.get((kernels, threads))
+    if isinstance(found, MachineCodeExecutor):
+        return found
     # one mechanism shows which numbers vary, and by what algebra
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
     executor = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
-    _ = executor.asked.columns  # what expressions cannot say is told before anything is computed
+    # what expressions cannot say is told before anything is computed; all are known then, and threads share them
+    _ = executor.asked.written, executor.asked.final
+    task.kept[kernels, threads] = executor
     return executor
 
 

@@ -8,6 +8,7 @@ groups of higher class they are computed by arrays), and what is requested is ta
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,7 +17,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.errors import Status
+from centrode.errors import InputError, Status
 from centrode.kinematics.machine_code.event_screening import EventScreening
 from centrode.kinematics.machine_code.events import Eventful
 from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, Way, beginnings, way_of
@@ -38,19 +39,19 @@ from centrode.kinematics.machine_code.variables import (
     winding_of,
 )
 from centrode.kinematics.samples import CLOSED
-from centrode.locale import mark
+from centrode.locale import _, mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.scans import Reduction, Scan, evaluate, room_of, together
+from centrode.numerics.scans import LINE, Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import NUMBER, ArraysExecutor, SweepTask, fill_columns
 from centrode.sweeps.designs import Rows
-from centrode.sweeps.outputs import SweepColumn
+from centrode.sweeps.outputs import OutputFormula, SweepColumn, table_variable
 
 # Folds of traced formulas: what is reduced over samples becomes a state of a scan, and then a number of the
 # mechanism.
@@ -79,6 +80,22 @@ class Fold:
         return Reduction({self.name: as_node(extreme(self.value, so_far))}, {self.name: start})
 
 
+NEUTRAL = {"sum": 0.0, "min": math.inf, "max": -math.inf}
+"""What changes nothing in a fold."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """The samples at which the tables of a formula have numbers: a variable that is 1 there, and how many they are."""
+
+    name: str
+    count: int
+
+    def only(self, value: Operand, otherwise: float) -> Operand:
+        """A value there, elsewhere another one."""
+        return EXPRESSIONS.where(EXPRESSIONS.equal(variable(self.name), 1.0), value, otherwise)
+
+
 @dataclass
 class Folds(Expressions):
     """Namespace that traces formulas of so many samples; the folds they ask for are listed in `found`."""
@@ -86,18 +103,23 @@ class Folds(Expressions):
     samples: int
     found: dict[tuple[str, bytes], Fold] = field(default_factory=dict)
 
-    def fold(self, name: str, value: Operand) -> Operand:
+    def fold(self, name: str, value: Operand, known: Known | None = None) -> Operand:
         # range and mean are made of simpler folds, which other formulas may share
-        """The number that a fold of FOLDS gives."""
+        """The number that a fold of FOLDS gives; of some samples alone where `known` says which."""
         if name == "range":
-            return self.fold("max", value) - self.fold("min", value)
+            return self.fold("max", value, known) - self.fold("min", value, known)
         if name == "mean":
-            return self.fold("sum", value) / float(self.samples)
-        node = as_node(value)
+            count = self.samples if known is None else known.count
+            return self.fold("sum", value, known) / float(count)
+        node = as_node(value if known is None else known.only(value, NEUTRAL[name]))
         key = name, node.key
         if key not in self.found:
             self.found[key] = Fold(f"fold {len(self.found)}", name, node, self._depth(node))
         return variable(self.found[key].name)
+
+    def within(self, known: Known | None) -> Expressions:
+        """The namespace whose folds take the known samples alone."""
+        return self if known is None else FoldsWithin(self, known)
 
     def at_depth(self, depth: int) -> Sequence[Fold]:
         """The folds that need so many passes before their own."""
@@ -114,7 +136,19 @@ class Folds(Expressions):
         return 1 + max((fold.depth for fold in self.found.values() if fold.name in used), default=-1)
 
 
-# Derivatives of what is reduced by the values that vary, as expressions: reverse mode through samples and
+@dataclass
+class FoldsWithin(Expressions):
+    """Namespace whose folds take some samples alone; what they find is listed with all others."""
+
+    folds: Folds
+    known: Known
+
+    def fold(self, name: str, value: Operand) -> Operand:
+        """The number that a fold of FOLDS gives."""
+        return self.folds.fold(name, value, self.known)
+
+
+# Derivatives of what is requested by the values that vary, as expressions: reverse mode through samples and
 # folds.
 
 Through: TypeAlias = Sequence[tuple[Node, Operand]]
@@ -327,10 +361,9 @@ class Expressed:
         asked, solved = self.task.asked, self.traced.solved
         given = {path: box_array([variable(path)]) for path in self.task.paths}
         if asked.formulas:
-            return {
-                formula.name: [as_node(formula.trace(self.folds, solved, given))]
-                for formula in asked.formulas
-            }
+            given |= {name: box_array([variable(name)]) for name in map(table_variable, asked.tables)}
+            before: dict[str, Any] = {}
+            return {formula.name: [self._formula(formula, given, before)] for formula in asked.formulas}
         columns = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
         if asked.reduction is None:
             return {name: [as_node(x) for x in nodes] for name, nodes in columns.items()}
@@ -339,10 +372,22 @@ class Expressed:
             for name, nodes in columns.items()
         }
 
+    def _formula(self, formula: OutputFormula, given: Mapping[str, Any], before: dict[str, Any]) -> Node:
+        known = _known_of(formula)
+        value = formula.trace(self.folds.within(known), self.traced.solved, given, before)
+        # at a sample where a table has no number there is none
+        return as_node(known.only(value, math.nan) if known is not None and formula.at_samples else value)
+
     @cached_property
     def outputs(self) -> dict[str, Node]:
-        """All numbers of a sample, column by column."""
-        return {f"{name} {k}": node for name, nodes in self.columns.items() for k, node in enumerate(nodes)}
+        """All numbers of a sample, column by column as the result has them."""
+        return {f"{name} {k}": node for name, nodes in self.written.items() for k, node in enumerate(nodes)}
+
+    @cached_property
+    def written(self) -> dict[str, list[Node]]:
+        """Column -> its numbers, of those that have a number of every sample."""
+        every = self._with_slopes
+        return {column.name: every[column.name] for column in streamed_columns(self.task.asked.columns)}
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -358,9 +403,19 @@ class Expressed:
     @cached_property
     def final(self) -> dict[str, list[Node]]:
         """Reduced columns, and those of derivatives, from the folds."""
-        columns = dict(self.columns)
+        return {name: nodes for name, nodes in self._with_slopes.items() if name not in self.written}
+
+    @cached_property
+    def _with_slopes(self) -> dict[str, list[Node]]:
+        columns, formulas = (
+            dict(self.columns),
+            {formula.name: formula for formula in self.task.asked.formulas},
+        )
         for name, slope in self.task.asked.slopes.items():
-            columns[slope] = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
+            slopes = [x for node in columns[name] for x in self.slopes.of_node(node).values()]
+            known = _known_of(formulas[name]) if name in formulas and formulas[name].at_samples else None
+            # where a formula has no number it has no derivative either
+            columns[slope] = [x if known is None else as_node(known.only(x, math.nan)) for x in slopes]
         return columns
 
     @cached_property
@@ -419,8 +474,23 @@ class Expressed:
 
     @cached_property
     def inputs(self) -> Values:
-        """Values of the variables of a place at the samples: name -> (samples,)."""
-        return inputs_of(self.task.ready.kinematics.path, self.task.span)
+        """Values of the variables of a place at the samples, tables among them: name -> (samples,)."""
+        return inputs_of(self.task.ready.kinematics.path, self.task.span) | self._tables
+
+    @property
+    def further(self) -> tuple[str, ...]:
+        """Names of the inputs that tables give."""
+        return tuple(self._tables)
+
+    @cached_property
+    def _tables(self) -> Values:
+        asked = self.task.asked
+        values = {table_variable(name): table.values for name, table in asked.tables.items()}
+        for formula in asked.formulas:
+            known = _known_of(formula)
+            if known is not None and formula.known is not None:
+                values[known.name] = formula.known.astype(np.float64)
+        return values
 
     @cached_property
     def way(self) -> Way:
@@ -440,6 +510,13 @@ class Expressed:
         # radicand two at most. The last two are the judges over all samples. Only the number of lanes follows from
         # this, and that is `KERNEL_LANES` up to some 120 numbers.
         return len(self.varied.names) + folds + angles + walked + 2 * len(self.traced.radicands) + 2
+
+
+def _known_of(formula: OutputFormula) -> Known | None:
+    """The samples at which the tables of a formula have numbers; None where that is everywhere."""
+    known = formula.known
+    # formulas of the same tables share what they fold
+    return None if known is None else Known(f"known {' '.join(sorted(formula.tables))}", int(known.sum()))
 
 
 # How machine code passes samples: each for itself, or along the path where groups of higher class ask for it.
@@ -515,7 +592,7 @@ class Along:
 
     def reducing(self, reduction: Reduction) -> Reducing:
         asked = self.asked
-        walking = Walking(asked.judging.walk, reduction)
+        walking = Walking(asked.judging.walk, reduction, further=asked.further)
 
         def reduce(rows: PassedValues) -> dict[str, Array]:
             return walking.reduce(asked.way, rows, asked.kernels, asked.threads)
@@ -524,7 +601,7 @@ class Along:
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
-        walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
+        walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs, asked.further)
         parts = []
         for part, room in rooms:
             some = {name: row[part] for name, row in rows.items()}
@@ -568,21 +645,26 @@ class StreamedColumns(dict[str, AnyArray]):
 
 def streamed_columns(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
     """The columns that have a float64 of every sample."""
-    return [
-        column for column in columns if column.dimensions[:1] == ("sample",) and column.kind == np.float64
-    ]
+    return [column for column in columns if column.at_samples and column.kind == np.float64]
 
 
-def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColumns:
-    """Fresh memory for columns, with streams where there is any."""
+def columns_for(
+    columns: Sequence[SweepColumn], mechanisms: int, out: npt.NDArray[np.float64] | None = None
+) -> StreamedColumns:
+    """Memory for columns, with streams where there is any: fresh, or that of `out`.
+
+    Raises InputError where `out` has too little room, or is no array that numbers can be written to.
+    """
     kept = streamed_columns(columns)
     streamed = StreamedColumns(
         # what has no sample dimension is an array of its own, in the order of the result
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
+    if out is not None:
+        _check_room(out, mechanisms * sum(math.prod(column.shape) for column in kept))
     if kept:
         numbers = [math.prod(column.shape[1:]) for column in kept]
-        streamed.streams = np.empty((sum(numbers), mechanisms, kept[0].shape[0]))
+        streamed.streams = _streams((sum(numbers), mechanisms, kept[0].shape[0]), out)
         first = 0
         for column, count in zip(kept, numbers, strict=True):
             streams = streamed.streams[first : first + count].reshape(
@@ -592,6 +674,36 @@ def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColu
             streamed[column.name] = np.moveaxis(streams, (-2, -1), (0, 1))
             first += count
     return streamed
+
+
+def _streams(shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None) -> npt.NDArray[np.float64]:
+    """Room for streams; fresh memory begins where a line of the cache does."""
+    numbers = math.prod(shape)
+    if out is not None:
+        return out.reshape(-1)[:numbers].reshape(shape)
+    spare = LINE // NUMBER
+    whole = np.empty(numbers + spare)
+    first = (-whole.ctypes.data % LINE) // NUMBER
+    return whole[first : first + numbers].reshape(shape)
+
+
+def _check_room(out: object, numbers: int) -> None:
+    if not numbers:
+        what = _("nothing is kept of every sample")
+        raise InputError("out", what, _("omit it, or request outputs that are not reduced"))
+    if (
+        not isinstance(out, np.ndarray)
+        or out.dtype != np.float64
+        or not out.flags.c_contiguous
+        or not out.flags.writeable
+    ):
+        what = _("an array of float64 that is contiguous and can be written to is required")
+        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
+    if out.size < numbers:
+        what = _("it has room for {size} numbers, {numbers} are needed").format(
+            size=out.size, numbers=numbers
+        )
+        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
 
 
 # Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
@@ -670,6 +782,7 @@ class MachineCodeExecutor:
     threads: int
     kernels: str
     _foldings: dict[tuple[int, bool], Reducing] = field(default_factory=dict)
+    _one_at_a_time: threading.Lock = field(default_factory=threading.Lock)
     blocks = designs.BLOCKS_OF_KERNELS
     arrays = ArraysExecutor()
 
@@ -686,8 +799,7 @@ class MachineCodeExecutor:
         Raises Untraceable, with a reason for the user.
         """
         # reported before anything is traced
-        if kernels == MACHINE_CODE and not machine_code.PRESENT:
-            raise Untraceable(mark("llvmlite is not installed"))
+        check_present(kernels)
         varied = varied_of(numbers, values)
         asked = Expressed(
             task,
@@ -746,10 +858,12 @@ class MachineCodeExecutor:
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
         """Fill in the mechanisms that have events: their motions as machine code, columns as by arrays."""
-        for lanes, solved in self._eventful.solve_lanes(numbers, left):
-            parts = self._room(len(lanes))
-            fill_columns(self.task, solved, _rows_at(values, lanes), parts)
-            _put_columns(parts, lanes, results)
+        # an executor is kept, so two sweeps may share it; what is written for one part is overwritten by the next
+        with self._one_at_a_time:
+            for lanes, solved in self._eventful.solve_lanes(numbers, left):
+                parts = self._room(len(lanes))
+                fill_columns(self.task, solved, _rows_at(values, lanes), parts)
+                _put_columns(parts, lanes, results)
 
     def _on_arrays(
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
@@ -791,7 +905,7 @@ class MachineCodeExecutor:
     def _fill_reductions(
         self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool
     ) -> Values:
-        """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
+        """Fill in one number, or a few, of each motion; returns what is known of mechanisms then."""
         rows = dict(rows)
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
@@ -844,8 +958,19 @@ class MachineCodeExecutor:
     def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
-        every = EverySample(self.asked.columns, results, at, self.asked.samples)
+        # formulas of every sample may name what is folded
+        if self.asked.final or self.asked.folds.found:
+            rows = self._fill_reductions(rows, at, results, certain=False)
+            # what is written is judged as it is written
+            rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
+        every = EverySample(self.asked.written, results, at, self.asked.samples)
         return self._passing.write_samples(rows, every.rooms())
+
+
+def check_present(kernels: str) -> None:
+    """Raise Untraceable where machine code is requested and llvmlite is not installed."""
+    if kernels == MACHINE_CODE and not machine_code.PRESENT:
+        raise Untraceable(mark("llvmlite is not installed"))
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:

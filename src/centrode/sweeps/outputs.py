@@ -24,6 +24,7 @@ from centrode.numerics.text_formula import TEXT_LENGTH, TextFormula, compile_for
 from centrode.quantities import QUANTITIES
 from centrode.sweeps import designs
 from centrode.sweeps.designs import MECHANISM, Design, Rows
+from centrode.sweeps.sample_tables import NAME, SampleTable, common_known, tables_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -243,23 +244,33 @@ RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sam
 
 # no word inside a number (1e5) or behind a dot
 _WORD = re.compile(r"(?<![\w.])[^\W\d]\w*")
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
+
+
+TABLE = "table"
+"""Before the name of a table: the variable of its numbers. No path of a number has a space."""
 
 
 @dataclass(frozen=True)
 class Variable:
-    """What a name in a formula stands for: a number of the motion, the time, a drive's value, a varied value."""
+    """What a name in a formula stands for.
 
-    kind: Literal["output", "time", "drive", "varied"]
+    A number of the motion, the time, a drive's value, a varied value, a table, a formula before this one.
+    """
+
+    kind: Literal["output", "time", "drive", "varied", "table", "formula"]
     source: str
     output: Output | None = None
 
-    def of(self, solved: Solved, values: Rows) -> Array:
+    def of(self, solved: Solved, values: Rows, tables: Mapping[str, SampleTable]) -> Array:
         """Values of the variable, (lanes, n) or what broadcasts to it."""
         if self.output is not None:
             return self.output.of(solved, values)
         if self.kind == "varied":
             return np.asarray(values[self.source])[:, None]
+        if self.kind == TABLE:
+            # of a traced motion the table is a variable as well
+            own = table_variable(self.source)
+            return np.asarray(values[own])[:, None] if own in values else tables[self.source].values[None, :]
         if self.kind == "time":
             return solved.span.time[None, :]
         path = solved.ready.kinematics.path
@@ -267,42 +278,97 @@ class Variable:
         return np.broadcast_to(drives[self.source], (1, len(solved.span.time)))
 
 
+def table_variable(name: str) -> str:
+    """Name of the variable of a table's numbers."""
+    return f"{TABLE} {name}"
+
+
 @dataclass(frozen=True)
 class OutputFormula:
-    """A formula with what its names stand for."""
+    """A formula with what its names stand for.
+
+    Attributes
+    ----------
+    tables : those that it names, itself or by way of other formulas
+    at_samples : whether it has a value at every sample, else one of a mechanism
+    reduction : one of REDUCTIONS, by which what it gives at the samples is made one number
+    """
 
     name: str
     text: TextFormula
     variables: Mapping[str, Variable]
+    tables: Mapping[str, SampleTable] = field(default_factory=dict, compare=False)
+    at_samples: bool = False
+    reduction: str | None = None
 
-    def of(self, solved: Solved, values: Rows, ok: Mask) -> Array:
-        """Value of the formula for each mechanism (lanes,); NaN where no sample is ok."""
-        given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
+    @property
+    def known(self) -> Mask | None:
+        """The samples at which its tables have numbers, (n,); None where that is everywhere."""
+        return common_known(list(self.tables.values()))
+
+    def of(self, solved: Solved, values: Rows, ok: Mask, before: dict[str, Any]) -> Array:
+        """Value of the formula for each mechanism (lanes,), NaN where no sample is ok; or at each sample (lanes, n).
+
+        `before` are values of the formulas before this one; its own is put there too.
+        """
+        known = self.known
+        counted = ok if known is None else ok & known
         with np.errstate(all="ignore"):
-            value = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
+            value = np.asarray(
+                self._value(Folding(counted), self._given(solved, values, before)), dtype=np.float64
+            )
+        before[self.name] = value
+        if self.at_samples:
+            everywhere = np.broadcast_to(value, ok.shape)
+            return everywhere if known is None else np.where(known, everywhere, np.nan)
         # one number a mechanism stands in a column of one
         flat = np.broadcast_to(value, (len(ok), 1))[:, 0]
-        return np.where(ok.any(axis=1), flat, np.nan)
+        return np.where(counted.any(axis=1), flat, np.nan)
 
-    def trace(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
+    def trace(self, m: Any, solved: Solved, values: Mapping[str, Any], before: dict[str, Any]) -> Any:
         """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
-        given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
-        return self.text(m, **given)
+        before[self.name] = value = self._value(m, self._given(solved, values, before, of_one=True))
+        return value
+
+    def _value(self, m: Any, given: Mapping[str, Any]) -> Any:
+        value = self.text(m, **given)
+        return value if self.reduction is None else m.fold(self.reduction, value)
+
+    def _given(
+        self, solved: Solved, values: Mapping[str, Any], before: Mapping[str, Any], *, of_one: bool = False
+    ) -> dict[str, Any]:
+        given: dict[str, Any] = {}
+        for name, variable in self.variables.items():
+            if variable.kind == "formula":
+                given[name] = before[variable.source]
+            else:
+                value = variable.of(solved, values, self.tables)
+                given[name] = value.item() if of_one else value
+        return given
 
 
 def formulas_of(
-    motion: xr.Dataset, design: Design, asked: Mapping[str, str] | str
+    motion: xr.Dataset,
+    design: Design,
+    asked: Mapping[str, str] | str,
+    tables: Mapping[str, SampleTable],
+    where: str = "reduce",
+    reduction: str | None = None,
 ) -> tuple[OutputFormula, ...]:
     """The formulas of these texts; `motion` is a motion of the mechanism.
 
-    Raises InputError: a name that is none, an unknown variable, not a formula, a value that still varies from
-    sample to sample.
+    A formula may name those before it. What varies from sample to sample is refused under `where` = "reduce"; as
+    "outputs" it has a value at every sample, or is reduced by `reduction`.
+
+    Raises InputError: a name that is none, an unknown variable, not a formula.
     """
     texts = {VALUE: asked} if isinstance(asked, str) else dict(asked)
     if not 1 <= len(texts) <= designs.OUTPUTS:
-        raise InputError("reduce", _("give 1 to {most} formulas").format(most=designs.OUTPUTS))
-    known = dict(_variables(motion, design))
-    return tuple(_formula(motion, name, text, known) for name, text in texts.items())
+        raise InputError(where, _("give 1 to {most} formulas").format(most=designs.OUTPUTS))
+    reader = _Formulas(motion, dict(names_of_motion(motion, design)), tables, where, reduction)
+    for name, text in texts.items():
+        reader.read(name, text)
+    return tuple(reader.found.values())
 
 
 def identifier(*words: str) -> str:
@@ -310,8 +376,8 @@ def identifier(*words: str) -> str:
     return "_".join(re.sub(r"\W", "_", word) for word in words)
 
 
-def _variables(motion: xr.Dataset, design: Design) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Name -> what it stands for, as words."""
+def names_of_motion(motion: xr.Dataset, design: Design) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Name -> what it stands for in a formula, as words."""
     yield "time", ("time",)
     for drive in motion["drive"].values.tolist():
         yield identifier("drive", drive), ("drive", drive)
@@ -321,25 +387,82 @@ def _variables(motion: xr.Dataset, design: Design) -> Iterator[tuple[str, tuple[
         yield identifier(*words), words
 
 
-def _formula(
-    motion: xr.Dataset, name: object, text: object, known: Mapping[str, tuple[str, ...]]
-) -> OutputFormula:
-    taken = isinstance(name, str) and (name in RESERVED or name in motion.dims)
-    # a name that means something else in the result would hide it
-    if not isinstance(name, str) or not _NAME.fullmatch(name) or taken:
-        what = _("{name} cannot be the name of a result").format(name=value_text(name))
-        raise InputError("reduce", what, _("use letters, digits and underscores"))
-    where = "reduce" if name == VALUE else f"reduce {name}"
-    if not isinstance(text, str):
-        raise InputError(where, _("a formula is a text"), _('such as "range(position_C_x)"'))
-    # only words of the motion become variables: a formula may have hundreds to choose from
-    words = dict.fromkeys(_WORD.findall(text[:TEXT_LENGTH]))
-    used = tuple(word for word in words if word in known)
-    _refuse_unknown(where, words, known)
-    formula = compile_formula(text, used, where, FOLDS)
-    variables = {word: _variable(motion, known[word]) for word in used if word in formula.used}
-    _refuse_varying(where, formula, variables)
-    return OutputFormula(name, formula, variables)
+class _Formulas:
+    """Reads formulas one after the other; `found` are those read so far."""
+
+    def __init__(
+        self,
+        motion: xr.Dataset,
+        known: Mapping[str, tuple[str, ...]],
+        tables: Mapping[str, SampleTable],
+        where: str,
+        reduction: str | None,
+    ) -> None:
+        self._motion, self._tables, self._where, self._reduction = motion, tables, where, reduction
+        self._known = {**known, **{name: (TABLE, name) for name in tables}}
+        self.found: dict[str, OutputFormula] = {}
+
+    def read(self, name: object, text: object) -> None:
+        """Add a formula to `found`."""
+        motion = self._motion
+        taken = isinstance(name, str) and (
+            name in RESERVED or name in motion.dims or name in motion.coords or name in self._tables
+        )
+        # a name that means something else in the result would hide it
+        if not isinstance(name, str) or not NAME.fullmatch(name) or taken:
+            what = _("{name} cannot be the name of a result").format(name=value_text(name))
+            raise InputError(self._where, what, _("use letters, digits and underscores"))
+        where = self._where if name == VALUE else f"{self._where} {name}"
+        if not isinstance(text, str):
+            raise InputError(where, _("a formula is a text"), _('such as "range(position_C_x)"'))
+        # a number of the motion comes before a formula of the same name
+        known = {**{other: ("formula", other) for other in self.found}, **self._known}
+        # only words of the motion become variables: a formula may have hundreds to choose from
+        words = dict.fromkeys(_WORD.findall(text[:TEXT_LENGTH]))
+        used = tuple(word for word in words if word in known)
+        _refuse_unknown(where, words, known)
+        formula = compile_formula(text, used, where, FOLDS)
+        variables = {word: _variable(motion, known[word]) for word in used if word in formula.used}
+        varying = self._varies(formula, variables)
+        if varying and self._where == "reduce":
+            what = _("the formula has a value at every sample, not one per mechanism")
+            raise InputError(
+                where, what, _("reduce the samples: min(...), max(...), range(...), mean(...), sum(...)")
+            )
+        tables = self._tables_of(where, variables)
+        reduction = self._reduction if varying else None
+        at_samples = varying and reduction is None
+        self.found[name] = OutputFormula(name, formula, variables, tables, at_samples, reduction)
+
+    def _varies(self, formula: TextFormula, variables: Mapping[str, Variable]) -> bool:
+        """Whether the value is not one number a mechanism: two samples tell."""
+        # of two samples: what still has two values varies from sample to sample
+        two = {name: np.ones((1, self._values_of(variable))) for name, variable in variables.items()}
+        with np.errstate(all="ignore"):
+            value = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
+        return np.shape(value)[-1:] == (2,)
+
+    def _values_of(self, variable: Variable) -> int:
+        """How many values a variable has at two samples."""
+        if variable.kind == "formula":
+            return 2 if self.found[variable.source].at_samples else 1
+        return 1 if variable.kind == "varied" else 2
+
+    def _tables_of(self, where: str, variables: Mapping[str, Variable]) -> dict[str, SampleTable]:
+        """The tables that a formula names; those of a formula that has one number already are that one's own affair."""
+        tables: dict[str, SampleTable] = {}
+        for variable in variables.values():
+            if variable.kind == TABLE:
+                tables[variable.source] = self._tables[variable.source]
+            elif variable.kind == "formula" and self.found[variable.source].at_samples:
+                tables |= self.found[variable.source].tables
+        known = common_known(list(tables.values()))
+        if known is not None and not known.any():
+            what = _("at no sample do all of its tables have a value: {names}").format(
+                names=", ".join(tables)
+            )
+            raise InputError(where, what, _("give one value or more"))
+        return tables
 
 
 def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[str, ...]]) -> None:
@@ -351,27 +474,11 @@ def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[
 
 
 def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
-    if words[0] == "time":
-        return Variable("time", "time")
-    if words[0] == "drive":
-        return Variable("drive", words[1])
-    if words[0] == "varied":
-        return Variable("varied", words[1])
-    rest = ".".join(words[1:])
-    return Variable("output", ".".join(words), output_of_quantity(motion, ".".join(words), words[0], rest))
-
-
-def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
-    """The value must be one number a mechanism: two samples tell."""
-    # of two samples: what still has two values varies from sample to sample
-    two = {name: np.ones((1, 1 if variable.kind == "varied" else 2)) for name, variable in variables.items()}
-    with np.errstate(all="ignore"):
-        value = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
-    if np.shape(value)[-1:] == (2,):
-        what = _("the formula has a value at every sample, not one per mechanism")
-        raise InputError(
-            where, what, _("reduce the samples: min(...), max(...), range(...), mean(...), sum(...)")
-        )
+    kind, *rest = words
+    if kind in ("time", "drive", "varied", TABLE, "formula"):
+        return Variable(kind, words[-1])  # type: ignore[arg-type]
+    name = ".".join(words)
+    return Variable("output", name, output_of_quantity(motion, name, kind, ".".join(rest)))
 
 
 # What a sweep computes: outputs at every sample, outputs reduced, or formulas.
@@ -379,8 +486,8 @@ def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Va
 AnyArray: TypeAlias = npt.NDArray[Any]
 Reduce: TypeAlias = str | Mapping[str, str] | None
 
-PATH = "path"
-"""Dimension of derivatives: one for each path that varies."""
+PATH, SAMPLE = "path", "sample"
+"""Dimension of derivatives, one for each path that varies; and that of samples."""
 
 
 @dataclass(frozen=True)
@@ -396,6 +503,11 @@ class SweepColumn:
     kind: npt.DTypeLike
     attributes: Mapping[str, Any]
     empty: float | int = np.nan
+
+    @property
+    def at_samples(self) -> bool:
+        """Whether it has a number, or more, of every sample."""
+        return self.dimensions[:1] == (SAMPLE,)
 
     @property
     def bytes(self) -> int:
@@ -418,6 +530,7 @@ class SweepOutputs:
     reduction: str | None
     formulas: tuple[OutputFormula, ...]
     columns: tuple[SweepColumn, ...] = field(compare=False)
+    tables: Mapping[str, SampleTable] = field(default_factory=dict, compare=False)
 
     @property
     def slopes(self) -> dict[str, str]:
@@ -427,8 +540,8 @@ class SweepOutputs:
 
     @property
     def is_reduced(self) -> bool:
-        """Whether a mechanism has one number of its samples."""
-        return bool(self.reduction or self.formulas)
+        """Whether nothing is kept of every sample."""
+        return not any(column.at_samples for column in self.columns)
 
     @property
     def has_hinge_angles(self) -> bool:
@@ -440,7 +553,9 @@ class SweepOutputs:
     def results(self, solved: Solved, values: Rows, ok: npt.NDArray[np.bool_]) -> dict[str, AnyArray]:
         """The columns of some mechanisms (lanes, ...) from their motion, but for those of JUDGED."""
         if self.formulas:
-            return {formula.name: formula.of(solved, values, ok) for formula in self.formulas}
+            before: dict[str, Any] = {}
+            found = {formula.name: formula.of(solved, values, ok, before) for formula in self.formulas}
+            return found if self.is_reduced else {"status": solved.status} | found
         if self.reduction is not None:
             return {
                 output.name: fold_samples(self.reduction, output.of(solved, values), ok)
@@ -455,14 +570,9 @@ def slope_of(name: str) -> str:
 
 
 def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
-    """Sweep outputs with the derivatives of every reduced column by the values that vary.
-
-    Raises InputError where nothing is reduced.
-    """
-    if not asked.is_reduced:
-        what = _("derivatives are those of reduced outputs")
-        raise InputError("gradient", what, _("give a reduction"))
-    reduced = [column for column in asked.columns if column not in JUDGED]
+    """Sweep outputs with the derivatives of every column by the values that vary."""
+    told = [column for column in asked.columns if column in JUDGED or column.name == STATUS]
+    numbers = [column for column in asked.columns if column not in told]
     words = "derivatives by the varied values [SI]; NaN for mechanisms that are not ok everywhere or meet an event"
     slopes = [
         SweepColumn(
@@ -472,22 +582,40 @@ def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
             np.float64,
             {"long_name": f"derivatives of {column.name}", "comment": words},
         )
-        for column in reduced
+        for column in numbers
     ]
-    return replace(asked, columns=(*reduced, *slopes, *JUDGED))
+    return replace(asked, columns=(*numbers, *slopes, *told))
+
+
+Outputs: TypeAlias = Sequence[str] | str | Mapping[str, str] | None
+"""Names of outputs, or name -> formula."""
 
 
 def asked_of(
-    motion: xr.Dataset, design: Design, outputs: Sequence[str] | str | None, reduce: Reduce
+    motion: xr.Dataset, design: Design, outputs: Outputs, reduce: Reduce, tables: object = None
 ) -> SweepOutputs:
     """Outputs that these arguments of `sweep` mean; `motion` is a motion of the mechanism. Raises InputError."""
-    if reduce is None or (isinstance(reduce, str) and reduce in REDUCTIONS):
-        listed = outputs_of(motion, outputs if outputs is not None else ())
-        return SweepOutputs(listed, reduce, (), _columns(motion, listed, reduce))
-    if not isinstance(reduce, str | Mapping):
+    names = dict(names_of_motion(motion, design)) if tables is not None else {}
+    taken = {*names, *map(str, motion.dims), *map(str, motion.coords), *RESERVED}
+    found = tables_of(tables, motion.sizes[SAMPLE], taken, FOLDS)
+    if not isinstance(reduce, str | Mapping | None):
         raise InputError(
             "reduce", _("it is one of {names}, or a formula").format(names=", ".join(REDUCTIONS))
         )
+    if isinstance(outputs, Mapping):
+        if reduce is not None and reduce not in REDUCTIONS:
+            what = _("outputs are formulas already")
+            raise InputError(
+                "reduce", what, _("omit it, or reduce by one of {names}").format(names=", ".join(REDUCTIONS))
+            )
+        assert reduce is None or isinstance(reduce, str)
+        return _asked_formulas(formulas_of(motion, design, outputs, found, "outputs", reduce), motion, found)
+    if reduce is None or (isinstance(reduce, str) and reduce in REDUCTIONS):
+        if found:
+            what = _("no formula is given that could name them")
+            raise InputError("tables", what, _("omit them, or give formulas as outputs"))
+        listed = outputs_of(motion, outputs if outputs is not None else ())
+        return SweepOutputs(listed, reduce, (), _columns(motion, listed, reduce))
     if isinstance(reduce, str) and reduce.isidentifier():
         what = _("unknown reduction {name}").format(name=value_text(reduce))
         raise InputError("reduce", what, nearest(reduce, REDUCTIONS))
@@ -497,30 +625,49 @@ def asked_of(
             _("formulas request the outputs they use themselves"),
             _("omit outputs, or reduce by one of {names}").format(names=", ".join(REDUCTIONS)),
         )
-    formulas = formulas_of(motion, design, reduce)
-    columns = tuple(
-        SweepColumn(
-            formula.name, (), (), np.float64, {"long_name": formula.name, "formula": formula.text.text}
-        )
-        for formula in formulas
-    )
-    return SweepOutputs((), None, formulas, (*columns, *JUDGED))
+    return _asked_formulas(formulas_of(motion, design, reduce, found), motion, found)
+
+
+def _asked_formulas(
+    formulas: tuple[OutputFormula, ...], motion: xr.Dataset, tables: Mapping[str, SampleTable]
+) -> SweepOutputs:
+    """What formulas ask for; of the tables those that are named."""
+    columns = []
+    for formula in formulas:
+        attributes = {"long_name": formula.name, "formula": formula.text.text}
+        if formula.reduction is not None:
+            attributes["reduction"] = formula.reduction
+        along, count = ((SAMPLE,), (motion.sizes[SAMPLE],)) if formula.at_samples else ((), ())
+        columns.append(SweepColumn(formula.name, along, count, np.float64, attributes))
+    if any(column.at_samples for column in columns):
+        columns.append(_status_column(motion))
+    used = {name for formula in formulas for name in formula.tables}
+    named = {name: table for name, table in tables.items() if name in used}
+    return SweepOutputs((), None, formulas, (*columns, *JUDGED), named)
 
 
 def _columns(
     motion: xr.Dataset, outputs: tuple[Output, ...], reduction: str | None
 ) -> tuple[SweepColumn, ...]:
-    along: tuple[str, ...] = () if reduction else ("sample",)
-    count = () if reduction else (motion.sizes["sample"],)
+    along: tuple[str, ...] = () if reduction else (SAMPLE,)
+    count = () if reduction else (motion.sizes[SAMPLE],)
     more = {"reduction": reduction} if reduction else {}
     columns = [
         SweepColumn(x.name, along + x.dimensions, count + x.shape, np.float64, {**x.attributes, **more})
         for x in outputs
     ]
     if reduction is None:
-        attributes = {
-            key: value.tolist() if isinstance(value, np.ndarray) else value
-            for key, value in motion["status"].attrs.items()
-        }
-        columns.append(SweepColumn("status", along, count, np.int8, attributes, -1))
+        columns.append(_status_column(motion))
     return (*columns, *JUDGED)
+
+
+STATUS = "status"
+
+
+def _status_column(motion: xr.Dataset) -> SweepColumn:
+    """The status of every sample."""
+    attributes = {
+        key: value.tolist() if isinstance(value, np.ndarray) else value
+        for key, value in motion[STATUS].attrs.items()
+    }
+    return SweepColumn(STATUS, (SAMPLE,), (motion.sizes[SAMPLE],), np.int8, attributes, -1)

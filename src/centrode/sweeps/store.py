@@ -41,7 +41,7 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import Design, path_digests
 from centrode.sweeps.executors import bare
 from centrode.sweeps.machine import StreamedColumns, columns_for
-from centrode.sweeps.outputs import PATH, SweepColumn, SweepOutputs
+from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
 
 # The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.
 
@@ -193,12 +193,12 @@ def tally_of(asked: SweepOutputs, samples: int, results: Mapping[str, npt.NDArra
     ok = results["samples_ok"]
     worst = float(np.fmax.reduce(results["worst_residual"]))
     extremes: Extremes = {}
-    if asked.is_reduced:
-        for column in asked.columns:
-            # derivatives have no extremes of interest, and the variables of whole mechanisms have theirs
-            if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):
-                flat = results[column.name].reshape(len(ok), math.prod(column.shape))
-                extremes[column.name] = [_extremes(flat[:, k]) for k in range(flat.shape[1])]
+    # derivatives have no extremes of interest, and the variables of whole mechanisms have theirs
+    others = {"samples_ok", "worst_residual", *asked.slopes.values()}
+    for column in asked.columns:
+        if not column.at_samples and column.name not in others:
+            flat = results[column.name].reshape(len(ok), math.prod(column.shape))
+            extremes[column.name] = [_extremes(flat[:, k]) for k in range(flat.shape[1])]
     return Tally(len(ok), int(np.sum(ok == samples)), int(np.sum(ok == 0)), worst, extremes)
 
 
@@ -263,14 +263,19 @@ def frame_of(
     used = {dimension for column in asked.columns for dimension in column.dimensions}
     labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
     coordinates: dict[Any, Any] = {dimension: motion.coords[dimension] for dimension in labels}
-    if "sample" in used:
+    if SAMPLE in used:
         coordinates |= {
             "time": motion["time"],
             "drive": motion["drive"],
             "drive_value": motion["drive_value"],
         }
+        # what formulas compare the motion with stands beside it
+        coordinates |= {
+            name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
+        }
     if PATH in used:
-        coordinates[PATH] = (PATH, list(design.coordinates))
+        # texts of any length, as all other labels: a store has no standard for those of one length
+        coordinates[PATH] = (PATH, np.array(list(design.coordinates), dtype=object))
     for path, (dimension, values) in design.coordinates.items():
         coordinates[path] = ((dimension,), values, {"units": units[path]})
     told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
@@ -286,11 +291,11 @@ def frame_of(
 class InMemory:
     """A result in arrays; what is not computed is empty."""
 
-    def __init__(self, frame: SweepFrame, blocks: Blocks) -> None:
+    def __init__(self, frame: SweepFrame, blocks: Blocks, out: npt.NDArray[np.float64] | None = None) -> None:
         self.frame = frame
         self.blocks = blocks
         self.tally = Tally()
-        self.arrays = columns_for(frame.asked.columns, frame.mechanisms)
+        self.arrays = columns_for(frame.asked.columns, frame.mechanisms, out)
 
     def has(self, block: int) -> bool:
         return False
@@ -663,7 +668,12 @@ def _study(frame: SweepFrame, task: SweepTask) -> dict[str, Any]:
         "vary": path_digests(frame.design),
         "samples": [len(parameter), float(parameter[0]), float(parameter[-1])],
         "outputs": [output.name for output in asked.outputs],
-        "reduce": {formula.name: formula.text.text for formula in asked.formulas} or asked.reduction,
+        "reduce": {
+            formula.name: [formula.text.text, formula.reduction] if formula.reduction else formula.text.text
+            for formula in asked.formulas
+        }
+        or asked.reduction,
+        "tables": {name: table.digest for name, table in asked.tables.items()} or None,
         "gradient": bool(asked.slopes),
         "executor": bare(told["executor"]),
     }

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import functools
 import importlib
+import json
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
@@ -27,9 +30,11 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask
-from centrode.sweeps.designs import METHODS, Grid, Sample, design_of, grid, sample, unit_of
+from centrode.sweeps.designs import METHODS, Design, Grid, Sample, design_of, grid, sample, unit_of
 from centrode.sweeps.executors import Executor, check_executor, check_threads, executor_of
-from centrode.sweeps.outputs import Reduce, asked_of, with_slopes
+from centrode.sweeps.kept_plans import KeptValues
+from centrode.sweeps.outputs import Outputs, Reduce, asked_of, with_slopes
+from centrode.sweeps.sample_tables import Tables
 from centrode.sweeps.store import (
     Blocks,
     InMemory,
@@ -51,7 +56,7 @@ _studies = functools.partial(importlib.import_module, "centrode.sweeps.parameter
 def sweep(
     mechanism: MechanismSource,
     vary: Mapping[str, Any] | Grid | Sample,
-    outputs: Sequence[str] | str | None = None,
+    outputs: Outputs = None,
     samples: int | None = None,
     start: float | str | None = None,
     stop: float | str | None = None,
@@ -63,6 +68,8 @@ def sweep(
     threads: int = 1,
     compute: str | None = None,
     dependent: Mapping[str, str] | None = None,
+    tables: Tables = None,
+    out: npt.NDArray[np.float64] | None = None,
 ) -> xr.Dataset:
     """Motions of many mechanisms of one structure, or one number of each motion, in bounded memory.
 
@@ -72,16 +79,16 @@ def sweep(
     ----------
     vary : path -> values, `grid` or `sample`
         Dimensions that vary; numbers are SI, texts have a unit.
-    outputs : names
+    outputs : names, or name -> formula
         Quantities of the motion: of everything ("velocity"), of one point, link or guide ("position.C", "angle.AC"),
-        one coordinate ("position.C.x").
+        one coordinate ("position.C.x"). A formula has a value at every sample, or folds them: "mean(position_C_x)".
     samples, start, stop :
         As those of `motion`.
     reduce : None, "min", "max", "range", "mean", a formula, or name -> formula
         One number of the samples that are ok; a formula names the numbers of the motion itself (docs: sweeps).
     gradient : bool
-        Also the derivatives of every reduced output by each of the values that vary; NaN for mechanisms that
-        are not ok everywhere.
+        Also the derivatives of every output, at each sample or reduced, by each of the values that vary; NaN for
+        mechanisms that are not ok everywhere.
     executor : "auto", "arrays" or "machine code"
         What computes; the one used stands in the attributes.
     store : a folder for a result too great for memory
@@ -94,6 +101,11 @@ def sweep(
         vary too.
     dependent : path -> formula
         Of a parameter study: numbers that follow from those that vary, as "pi/3 - links_AB_length".
+    tables : name -> (samples,) numbers [SI], or a CSV file with headings
+        Targets, measured values: formulas name them. Where one is NaN the sample is omitted.
+    out : array of float64
+        Room for what is kept of every sample: the result's arrays are views of it. A call after call then writes
+        to memory that is there.
 
     Returns
     -------
@@ -117,7 +129,18 @@ def sweep(
     """
     mechanism = mechanism_of(mechanism)
     if compute is not None:
-        _refuse_of_motions(start=start, stop=stop, reduce=reduce, gradient=gradient or None, store=store)
+        _refuse_of_motions(
+            start=start,
+            stop=stop,
+            reduce=reduce,
+            gradient=gradient or None,
+            store=store,
+            tables=tables,
+            out=out,
+        )
+        if isinstance(outputs, Mapping):
+            what = _("formulas belong to sweeps of motions")
+            raise InputError("outputs", what, _("give names, or omit compute"))
         study: xr.Dataset = _studies().parameter_study(
             mechanism, vary, compute, outputs, samples, dependent, progress
         )
@@ -126,19 +149,15 @@ def sweep(
         raise InputError("dependent", _("it belongs to a parameter study"), _("give compute too"))
     name = check_executor(executor)
     design = design_of(mechanism, vary)
-    prepared = ready(mechanism)
-    span = requested_grid(prepared, samples, start, stop)
-    # the description's own motion says what there is to name
-    motion = _first(solve(prepared, span), outputs, reduce)
-    paths = tuple(design.coordinates)
-    asked = asked_of(motion, design, outputs, reduce)
-    task = SweepTask(prepared, span, with_slopes(asked, len(paths)) if gradient else asked, paths)
+    if store is not None and out is not None:
+        raise InputError("out", _("a store keeps its results itself"), _("give one of store and out"))
+    motion, task = _task_of(mechanism, design, outputs, reduce, gradient, tables, (samples, start, stop))
     chosen, told_of_it = executor_of(name, task, design, check_threads(threads))
     units = {path: unit_of(mechanism, path) for path in design.coordinates}
     frame = frame_of(motion, design, units, task.asked, told_of_it)
     blocks = _blocks(frame, task, chosen)
     if store is None:
-        return _in_memory(frame, blocks, task, chosen, progress).assign_attrs(topic="sweep")
+        return _in_memory(frame, blocks, task, chosen, progress, out).assign_attrs(topic="sweep")
     _check_size(frame, designs.IN_STORE, _("reduce it, or choose fewer"))
     with open_store(Path(store), frame, blocks, task) as kept:
         finished = kept.tally.mechanisms
@@ -146,6 +165,44 @@ def sweep(
     data = with_tally(read_store(Path(store), frame), frame, kept.tally)
     # a store says what was computed, and not how that is shown: the topic is only in what is returned
     return data.assign_attrs(mechanisms_found=finished, topic="sweep")
+
+
+MOST_SAMPLES = 20_000
+"""Samples of a sweep whose plan is kept for the next one."""
+_plans: KeptValues[tuple[xr.Dataset, SweepTask]] = KeptValues(16)
+
+
+def _task_of(
+    mechanism: Mechanism,
+    design: Design,
+    outputs: Outputs,
+    reduce: Reduce,
+    gradient: bool,
+    tables: Tables,
+    span: tuple[Any, Any, Any],
+) -> tuple[xr.Dataset, SweepTask]:
+    """The description's own motion, and the task; what was requested before is not made again."""
+
+    def make() -> tuple[xr.Dataset, SweepTask]:
+        prepared = ready(mechanism)
+        grid_of_samples = requested_grid(prepared, *span)
+        # the description's own motion says what there is to name
+        motion = _first(solve(prepared, grid_of_samples), outputs, reduce)
+        asked = asked_of(motion, design, outputs, reduce, tables)
+        paths = tuple(design.coordinates)
+        return motion, SweepTask(
+            prepared, grid_of_samples, with_slopes(asked, len(paths)) if gradient else asked, paths
+        )
+
+    # tables are compared by nobody; a long motion would stay in memory
+    if tables is not None or not isinstance(span[0], int | None) or (span[0] or 0) > MOST_SAMPLES:
+        return make()
+    try:
+        # as text whole numbers, numbers and truth values differ
+        key = json.dumps([list(design.coordinates), outputs, reduce, gradient, span])
+    except (TypeError, ValueError):
+        return make()
+    return _plans.get(mechanism, key, make)
 
 
 def _refuse_of_motions(**options: object) -> None:
@@ -195,7 +252,7 @@ def check_table(data: xr.Dataset) -> None:
         raise InputError("", what.format(most=TABLE_ROWS, count=count), _("write zarr"))
 
 
-def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
+def _first(solved: Solved, outputs: Outputs, reduce: Reduce) -> xr.Dataset:
     """The description's own motion, with its reduction where that is requested."""
     motion = dataset_of(solved)
     # reductions are computed only where they are named: masses need not be complete otherwise
@@ -220,10 +277,16 @@ def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor) -> Blocks:
 
 
 def _in_memory(
-    frame: SweepFrame, blocks: Blocks, task: SweepTask, executor: Executor, progress: Progress | None
+    frame: SweepFrame,
+    blocks: Blocks,
+    task: SweepTask,
+    executor: Executor,
+    progress: Progress | None,
+    out: npt.NDArray[np.float64] | None,
 ) -> xr.Dataset:
-    _check_size(frame, designs.IN_MEMORY, _("reduce it, choose fewer, or give a store"))
-    kept = InMemory(frame, blocks)
+    if out is None:
+        _check_size(frame, designs.IN_MEMORY, _("reduce it, choose fewer, or give a store"))
+    kept = InMemory(frame, blocks, out)
     try:
         _compute(frame, kept, task, executor, progress)
     except KeyboardInterrupt:
@@ -264,6 +327,7 @@ def _compute(
 WAYS = ("vary", "grid", "sample")
 KEYS = (
     "mechanism", "compute", *WAYS, "dependent", "outputs", "samples", "from", "to", "reduce", "gradient", "executor",
+    "tables",
 )  # fmt: skip
 RANGE = ("from", "to", "count")
 SAMPLE = ("count", "method", "seed", "ranges")
@@ -282,7 +346,7 @@ class SweepStudy:
     name: str
     mechanism: Mechanism
     vary: Mapping[str, Any] | Grid | Sample
-    outputs: tuple[str, ...]
+    outputs: tuple[str, ...] | Mapping[str, str]
     samples: int | None
     start: float | str | None
     stop: float | str | None
@@ -291,6 +355,7 @@ class SweepStudy:
     executor: str
     compute: str | None = None
     dependent: Mapping[str, str] = field(default_factory=dict)
+    tables: Tables = None
 
 
 def read_sweep(path: str | Path) -> SweepStudy:
@@ -337,6 +402,7 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
         _text("executor", tables.get("executor", "auto")),
         _text("compute", tables["compute"]) if "compute" in tables else None,
         _dependent(tables.get("dependent", {})),
+        _tables(tables.get("tables"), folder),
     )
 
 
@@ -431,6 +497,18 @@ def _dependent(given: object) -> Mapping[str, str]:
     return dict(_paths(given, ()))
 
 
+def _tables(given: object, folder: Path) -> Tables:
+    """Tables by name, or the path of a CSV file that lies beside the study."""
+    if given is None:
+        return None
+    if isinstance(given, str):
+        return folder / given
+    if not isinstance(given, dict):
+        what = _("expected a table of lists, or the path of a CSV file, got {value}")
+        raise InputError("tables", what.format(value=value_text(given)))
+    return given
+
+
 def _sample(table: Mapping[str, Any]) -> Sample:
     _refuse_unknown("[sample]", table, SAMPLE)
     ranges = table.get("ranges")
@@ -449,9 +527,11 @@ def _range_of_sample(path: str, value: object) -> Any:
     return tuple(value.get(key) for key in RANGE[:2])
 
 
-def _outputs(given: object) -> tuple[str, ...]:
+def _outputs(given: object) -> tuple[str, ...] | Mapping[str, str]:
     if isinstance(given, str):
         return (given,)
+    if isinstance(given, dict):
+        return given
     if (
         not isinstance(given, list)
         or len(given) > designs.OUTPUTS

@@ -287,11 +287,13 @@ class Walking:
     ----------
     reduction : over the samples alone
     outputs : name -> node; written at every place
+    further : names of numbers that each sample has besides those of the path
     """
 
     walk: Walk
     reduction: Reduction = NOTHING
     outputs: Mapping[str, Node] = field(default_factory=dict)
+    further: tuple[str, ...] = ()
 
     @cached_property
     def scan(self) -> Scan:
@@ -304,9 +306,10 @@ class Walking:
         }
         states = {**self.walk.state, **kept}
         used = Graph({**self.outputs, **{f"next {name}": node for name, node in states.items()}}).variables
+        along = (*ALONG, *self.further)
         return Scan(
-            tuple(name for name in used if name not in states and name not in ALONG),
-            tuple(name for name in ALONG if name in used),
+            tuple(name for name in used if name not in states and name not in along),
+            tuple(name for name in along if name in used),
             self.outputs,
             states,
         )
