@@ -164,6 +164,10 @@ class Node:
     def __abs__(self) -> Node:
         return apply_operation("abs", self)
 
+    def __array_namespace__(self) -> Expressions:
+        """The functions of nodes, for formulas that ask numbers whose they are (`operations.PLAIN`)."""
+        return EXPRESSIONS
+
 
 Operand: TypeAlias = Node | float
 
