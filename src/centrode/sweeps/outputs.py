@@ -271,6 +271,25 @@ class OutputFormula:
         flat = np.broadcast_to(value, (len(ok), 1))[:, 0]
         return np.where(ok.any(axis=1), flat, np.nan)
 
+    @property
+    def varies(self) -> bool:
+        """Whether the formula has a value at every sample, not one a mechanism."""
+        # of two samples: what still has two values varies from sample to sample
+        two = {
+            name: np.ones((1, 1 if variable.kind == "varied" else 2))
+            for name, variable in self.variables.items()
+        }
+        with np.errstate(all="ignore"):
+            value = self.text(Folding(np.ones((1, 2), dtype=bool)), **two)
+        return np.shape(value)[-1:] == (2,)
+
+    def at_samples(self, solved: Solved, values: Rows, ok: Mask) -> Array:
+        """Values of a formula of samples (lanes, n)."""
+        given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
+        with np.errstate(all="ignore"):
+            value = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
+        return np.where(ok, np.broadcast_to(value, ok.shape), np.nan)
+
     def trace(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
         """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
         given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
@@ -278,9 +297,9 @@ class OutputFormula:
 
 
 def formulas_of(
-    motion: xr.Dataset, design: Design, asked: Mapping[str, str] | str
+    motion: xr.Dataset, design: Design, asked: Mapping[str, str] | str, *, of_samples: bool = False
 ) -> tuple[OutputFormula, ...]:
-    """The formulas of these texts; `motion` is a motion of the mechanism.
+    """The formulas of these texts, with `of_samples` also those of a sample; `motion` is a motion of the mechanism.
 
     Raises InputError: a name that is none, an unknown variable, not a formula, a value that still varies from
     sample to sample.
@@ -289,7 +308,7 @@ def formulas_of(
     if not 1 <= len(texts) <= designs.OUTPUTS:
         raise InputError("reduce", _("give 1 to {most} formulas").format(most=designs.OUTPUTS))
     known = dict(_variables(motion, design))
-    return tuple(_formula(motion, name, text, known) for name, text in texts.items())
+    return tuple(_formula(motion, name, text, known, of_samples) for name, text in texts.items())
 
 
 def identifier(*words: str) -> str:
@@ -309,7 +328,7 @@ def _variables(motion: xr.Dataset, design: Design) -> Iterator[tuple[str, tuple[
 
 
 def _formula(
-    motion: xr.Dataset, name: object, text: object, known: Mapping[str, tuple[str, ...]]
+    motion: xr.Dataset, name: object, text: object, known: Mapping[str, tuple[str, ...]], of_samples: bool
 ) -> OutputFormula:
     taken = isinstance(name, str) and (name in RESERVED or name in motion.dims)
     # a name that means something else in the result would hide it
@@ -325,8 +344,13 @@ def _formula(
     _refuse_unknown(where, words, known)
     formula = compile_formula(text, used, where, FOLDS)
     variables = {word: _variable(motion, known[word]) for word in used if word in formula.used}
-    _refuse_varying(where, formula, variables)
-    return OutputFormula(name, formula, variables)
+    made = OutputFormula(name, formula, variables)
+    if made.varies and not of_samples:
+        what = _("the formula has a value at every sample, not one per mechanism")
+        raise InputError(
+            where, what, _("reduce the samples: min(...), max(...), range(...), mean(...), sum(...)")
+        )
+    return made
 
 
 def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[str, ...]]) -> None:
@@ -346,19 +370,6 @@ def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
         return Variable("varied", words[1])
     rest = ".".join(words[1:])
     return Variable("output", ".".join(words), output_of_quantity(motion, ".".join(words), words[0], rest))
-
-
-def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
-    """The value must be one number a mechanism: two samples tell."""
-    # of two samples: what still has two values varies from sample to sample
-    two = {name: np.ones((1, 1 if variable.kind == "varied" else 2)) for name, variable in variables.items()}
-    with np.errstate(all="ignore"):
-        value = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
-    if np.shape(value)[-1:] == (2,):
-        what = _("the formula has a value at every sample, not one per mechanism")
-        raise InputError(
-            where, what, _("reduce the samples: min(...), max(...), range(...), mean(...), sum(...)")
-        )
 
 
 # What a sweep computes: outputs at every sample, outputs reduced, or formulas.

@@ -129,7 +129,7 @@ def sweep(
     prepared = ready(mechanism)
     span = requested_grid(prepared, samples, start, stop)
     # the description's own motion says what there is to name
-    motion = _first(solve(prepared, span), outputs, reduce)
+    motion = motion_with_names(solve(prepared, span), f"{outputs} {reduce}")
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)
     task = SweepTask(prepared, span, with_slopes(asked, len(paths)) if gradient else asked, paths)
@@ -195,11 +195,11 @@ def check_table(data: xr.Dataset) -> None:
         raise InputError("", what.format(most=TABLE_ROWS, count=count), _("write zarr"))
 
 
-def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
-    """The description's own motion, with its reduction where that is requested."""
+def motion_with_names(solved: Solved, words: str) -> xr.Dataset:
+    """The description's own motion, with its reduction where the words of what is requested name it."""
     motion = dataset_of(solved)
     # reductions are computed only where they are named: masses need not be complete otherwise
-    if "reduced_" not in f"{outputs} {reduce}":
+    if "reduced_" not in words:
         return motion
     check_reducible(solved)
     reduction = reduction_of(solved)

@@ -1,22 +1,10 @@
-"""The plan of one mechanism whose numbers at free paths change, traced and compiled once.
-
-What a trace leaves behind is kept on disk with its object code: names, small tables and the rows of what is written.
-So a process that meets the same mechanism with the same free paths and samples neither traces nor compiles.
-"""
+"""The plan of one mechanism whose numbers at free paths change, traced and compiled once."""
 
 from __future__ import annotations
 
-import functools
-import hashlib
-import json
-import threading
-from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.metadata import version
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -29,12 +17,10 @@ from centrode.kinematics.machine_code.frame_kernels import (
     SINES,
     SLACK_AT_SAMPLES,
     FrameKernels,
-    FrameLayout,
     FrameMemory,
     FramePlaces,
     FreeNumbers,
     Known,
-    MeshLayout,
     PlaceScan,
     Quantity,
     closes,
@@ -46,18 +32,14 @@ from centrode.kinematics.machine_code.frame_kernels import (
     sample_places,
 )
 from centrode.kinematics.machine_code.path_continuation import SURE, Walking, Way, beginnings, way_of
-from centrode.kinematics.machine_code.trace import Traced, trace_motion
+from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import SCALE, Varied, varied_of
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready
-from centrode.model.files import mechanism_text
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.executors import MACHINE_CODE
 from centrode.numerics.expressions import Node
-from centrode.numerics.graphs import Graph, graph_of_rows, graph_rows
 from centrode.numerics.scans import room_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.version import __version__
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Given: TypeAlias = Sequence[float]
