@@ -374,6 +374,10 @@ Number: TypeAlias = Any
 class Expressions:
     """Namespace `m` of nodes. Plain numbers pass through to plain numbers, so jets keep their literal zeros."""
 
+    def asarray(self, x: Operand) -> Operand:
+        """A node or number as it is: what formulas call that make arrays of numbers first."""
+        return x
+
     def sqrt(self, x: Operand) -> Operand:
         return apply_operation("sqrt", x) if isinstance(x, Node) else square_root(x)
 
