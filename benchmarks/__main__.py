@@ -11,7 +11,19 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import animations, cold, forces, kernels, machine, motions, peer, reports, simulation, sweeps  # noqa: E402
+from benchmarks import (  # noqa: E402
+    animations,
+    cold,
+    forces,
+    kernels,
+    machine,
+    motions,
+    peer,
+    reports,
+    simulation,
+    solver,
+    sweeps,
+)
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.numerics import machine_code  # noqa: E402
@@ -37,6 +49,7 @@ SECTIONS: Mapping[str, Section] = {
     "kernels": (
         f"Machine code, {LANES} mechanisms of {SAMPLES} samples, a position", kernels.kernels,
     ),
+    "solver": (f"One mechanism whose numbers change, {solver.SAMPLES} samples", solver.moves),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}

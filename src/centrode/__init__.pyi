@@ -71,8 +71,6 @@ from .cams.parameter_choice.search import choose_cam as choose_cam
 from .assignments.results import variants as variants
 from .sweeps.sweep import sweep as sweep
 from .sweeps.solver import solver as solver
-from .sweeps.solver import Solver as Solver
-from .sweeps.solver import Frame as Frame
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
 

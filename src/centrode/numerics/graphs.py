@@ -140,7 +140,9 @@ def graph_rows(graph: Graph) -> list[Row]:
     """
     places = {node: k for k, node in enumerate(graph.order)}
     rows: list[Row] = [
-        [node.operation, *(places[x] for x in node.arguments)] if node.arguments else [node.operation, node.detail]
+        [node.operation, *(places[x] for x in node.arguments)]
+        if node.arguments
+        else [node.operation, node.detail]
         for node in graph.order
     ]
     return rows + [["output", name, places[node]] for name, node in graph.outputs.items()]

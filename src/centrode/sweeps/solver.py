@@ -125,7 +125,9 @@ class Solver:
     False
     """
 
-    def __init__(self, mechanism: Mechanism, free: Sequence[str], grid: tuple[Any, ...], outputs: Asked) -> None:
+    def __init__(
+        self, mechanism: Mechanism, free: Sequence[str], grid: tuple[Any, ...], outputs: Asked
+    ) -> None:
         self.mechanism, self.free = mechanism, tuple(free)
         self._settings = grid, outputs
         self._kinds = _kinds(mechanism, self.free)
@@ -337,7 +339,9 @@ class Solver:
 
     def _require_outputs(self) -> Any:
         if self._outputs is None:
-            raise InputError("outputs", _("no output is given"), _('name one, such as "position.C" or "angle"'))
+            raise InputError(
+                "outputs", _("no output is given"), _('name one, such as "position.C" or "angle"')
+            )
         return self._outputs
 
 
@@ -382,7 +386,12 @@ def solver(
     mechanism = mechanism_of(mechanism)
     paths = [free] if isinstance(free, str) else list(free)
     if not 1 <= len(paths) <= designs.PATHS or len(set(paths)) < len(paths):
-        raise InputError("free", _("give 1 to {most} different paths").format(most=designs.PATHS))
+        what = _("{count} paths are given, of which {different} differ")
+        raise InputError(
+            "free",
+            what.format(count=len(paths), different=len(set(paths))),
+            _("give 1 to {most} different paths").format(most=designs.PATHS),
+        )
     return Solver(mechanism, paths, (samples, start, stop, at), outputs)
 
 

@@ -72,7 +72,8 @@ class SolverOutputs:
     def without_values(self) -> dict[str, Any]:
         """The outputs of a mechanism that cannot be."""
         return {
-            column.name: np.full(column.shape, np.nan) if column.shape else math.nan for column in self.columns
+            column.name: np.full(column.shape, np.nan) if column.shape else math.nan
+            for column in self.columns
         }
 
     def joined(self, outputs: Mapping[str, Any]) -> Any:
@@ -102,7 +103,9 @@ class SolverOutputs:
         return parts
 
 
-def asked_outputs(ready: Ready, span: SampleGrid, paths: tuple[str, ...], asked: Asked) -> SolverOutputs | None:
+def asked_outputs(
+    ready: Ready, span: SampleGrid, paths: tuple[str, ...], asked: Asked
+) -> SolverOutputs | None:
     """The outputs that are requested. Raises InputError: an unknown quantity, name or label, not a formula."""
     if asked is None:
         return None
@@ -188,7 +191,9 @@ class LiveOutputs:
             if column.of_samples:
                 rows.append(slopes[column.name].reshape(-1, len(self.free.paths)))
             else:
-                rows.append(np.array([[reduced[f"{column.name} by {path}"] for path in self.free.paths]], float))
+                rows.append(
+                    np.array([[reduced[f"{column.name} by {path}"] for path in self.free.paths]], float)
+                )
         return self.asked.alone(np.concatenate(rows))
 
     def require_slopes(self) -> None:
@@ -240,7 +245,9 @@ class LiveOutputs:
             for fold in folds:
                 nodes["fold", fold.name] = fold.value
                 if slopes:
-                    nodes |= {("part", fold.name, x): y for x, y in self._slopes.states_of(fold.name).parts.items()}
+                    nodes |= {
+                        ("part", fold.name, x): y for x, y in self._slopes.states_of(fold.name).parts.items()
+                    }
             for column in of_samples:
                 for k, node in enumerate(self.nodes[column.name]):
                     if self._depth(node) != depth:
@@ -249,7 +256,9 @@ class LiveOutputs:
                         nodes["column", column.name, k] = node
                         continue
                     by = self._slopes.of_node(node)
-                    nodes |= {("slope", column.name, k, j): by[path] for j, path in enumerate(self.free.paths)}
+                    nodes |= {
+                        ("slope", column.name, k, j): by[path] for j, path in enumerate(self.free.paths)
+                    }
             scan = self.plan.samples_of({str(k): node for k, node in enumerate(nodes.values())})
             yield _Part(scan, {key: k for k, key in enumerate(nodes)}, folds)
 
@@ -265,7 +274,9 @@ class LiveOutputs:
         if known is None:
             return None
         samples, free = len(self.free.span.parameter), len(self.free.paths)
-        columns = {x.name: np.empty((samples, len(self.nodes[x.name]))) for x in self.asked.columns if x.of_samples}
+        columns = {
+            x.name: np.empty((samples, len(self.nodes[x.name]))) for x in self.asked.columns if x.of_samples
+        }
         slopes = {name: np.empty((*array.shape, free)) for name, array in columns.items()}
         for part in parts:
             room = part.scan.room()
@@ -289,7 +300,11 @@ class LiveOutputs:
 def _fold(known: Known, fold: Fold, rows: Array, places: Mapping[tuple[Any, ...], int]) -> None:
     """Add what is left of a fold over all samples, and of its derivatives: at an extreme those of its first sample."""
     values = rows[places["fold", fold.name]]
-    at = slice(None) if fold.kind == "sum" else int(np.argmin(values) if fold.kind == "min" else np.argmax(values))
+    at = (
+        slice(None)
+        if fold.kind == "sum"
+        else int(np.argmin(values) if fold.kind == "min" else np.argmax(values))
+    )
     known[fold.name] = float(np.sum(values[at]))
     for key, k in places.items():
         if key[:2] == ("part", fold.name):

@@ -341,9 +341,13 @@ def quantities_of(solved: Solved) -> dict[str, Any]:
     return found
 
 
-def frame_outputs(traced: Traced, slack: Node | None) -> tuple[tuple[Quantity, ...], tuple[int, ...], list[Node]]:
+def frame_outputs(
+    traced: Traced, slack: Node | None
+) -> tuple[tuple[Quantity, ...], tuple[int, ...], list[Node]]:
     """Quantities with their rows, rows of the angles whose turns are found, and the node of every row."""
-    nodes = {name: np.asarray(values, dtype=object)[0, 0] for name, values in quantities_of(traced.solved).items()}
+    nodes = {
+        name: np.asarray(values, dtype=object)[0, 0] for name, values in quantities_of(traced.solved).items()
+    }
     name, angle = angles_of(traced.solved)
     turning = [k for k, link in enumerate(traced.solved.layout.angles) if link in traced.turning]
     if not traced.steps:
@@ -430,7 +434,9 @@ class FrameKernels:
             return False
         self.write.fill({**known, **further}, memory.room)
         rows = memory.rows
-        if not closes(rows[RESIDUAL].max(), rows[SLACK_AT_SAMPLES].min() if SLACK_AT_SAMPLES in rows else None):
+        if not closes(
+            rows[RESIDUAL].max(), rows[SLACK_AT_SAMPLES].min() if SLACK_AT_SAMPLES in rows else None
+        ):
             return False
         if self.angles:
             angle = np.arctan2(rows[SINES], rows[COSINES])
@@ -499,7 +505,9 @@ def frame_kernels(
 
     def drives(places: Mapping[str, Array], count: int) -> Array:
         values = evaluate(layout.winders, places)
-        return np.array([np.broadcast_to(values[drive], (count,)) for drive in winders]).reshape(len(winders), count)
+        return np.array([np.broadcast_to(values[drive], (count,)) for drive in winders]).reshape(
+            len(winders), count
+        )
 
     judge = MeshJudge(
         layout.mesh,

@@ -192,7 +192,9 @@ class WalkedPlan:
         if known is None or not self._written[1].fill(known, memory.room):
             return False
         rows = memory.rows
-        return closes(rows[RESIDUAL].max(), rows[SLACK_AT_SAMPLES].min() if SLACK_AT_SAMPLES in rows else None)
+        return closes(
+            rows[RESIDUAL].max(), rows[SLACK_AT_SAMPLES].min() if SLACK_AT_SAMPLES in rows else None
+        )
 
     def samples_of(self, outputs: Mapping[str, Node]) -> SampleScan:
         return WalkedSamples(self, Walking(self.screening.walk, outputs=outputs), len(outputs))
