@@ -15,7 +15,7 @@ import numpy as np
 import centrode as ct
 from benchmarks.plans import SIX
 from benchmarks.table import Promise, Row
-from benchmarks.timing import paired_times, ratio
+from benchmarks.timing import Task, paired_times, ratio
 from centrode.kinematics.machine_code.event_screening import EventScreening
 from centrode.kinematics.machine_code.outputs import Writer, nodes_of
 from centrode.kinematics.machine_code.trace import trace_motion
@@ -75,7 +75,7 @@ def _move(name: str, most: float | None) -> Row:
     return Row(name, numbers, promises=promises)
 
 
-def _direct(lever: Solver) -> object:
+def _direct(lever: Solver) -> Task:
     """Judging and writing of the same plan as sweeps do it, called with a batch of one."""
     prepared = ready(lever.mechanism)
     span = requested_grid(prepared, SAMPLES, None, None)
@@ -110,7 +110,8 @@ def _with_outputs() -> Row:
 
 def _first_frame() -> Row:
     """Processor time of a six-bar's first frame in processes of their own, after another mechanism loaded LLVM."""
-    empty, kept = [], []
+    empty: list[float] = []
+    kept: list[float] = []
     for _round in range(5):
         with tempfile.TemporaryDirectory() as folder:
             environment = os.environ | {"CENTRODE_CACHE": folder}

@@ -28,7 +28,7 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.numerics.executors import AUTO, choose_executor
 from centrode.sweeps import designs
-from centrode.sweeps.solver_outputs import Asked, LiveOutputs, asked_outputs
+from centrode.sweeps.solver_outputs import Asked, LiveOutputs, SolverOutputs, asked_outputs
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = Sequence[float | str] | Mapping[str, float | str] | Array
@@ -337,7 +337,7 @@ class Solver:
         found = None if self._live is None else self._live.values(given, self._memory())
         return asked.of(self._solved(given), given) if found is None else found
 
-    def _require_outputs(self) -> Any:
+    def _require_outputs(self) -> SolverOutputs:
         if self._outputs is None:
             raise InputError(
                 "outputs", _("no output is given"), _('name one, such as "position.C" or "angle"')

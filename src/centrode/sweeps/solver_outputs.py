@@ -117,7 +117,7 @@ def asked_outputs(
     columns: list[LiveColumn] = []
     for k, text in enumerate(texts):
         name, formula = (text, texts[text]) if isinstance(texts, dict) else (text, text)
-        if isinstance(formula, str) and formula.partition(".")[0] in known:
+        if str(formula).partition(".")[0] in known:
             (output,) = outputs_of(motion, [formula])
             columns.append(LiveColumn(str(name), output, True, (samples, *output.shape)))
             continue

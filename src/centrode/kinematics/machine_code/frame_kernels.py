@@ -110,7 +110,7 @@ def _directions(varied: Varied) -> dict[str, tuple[Any, ...]]:
     for wheel, track in varied.numbers.gearing.track.items():
         if isinstance(track, Straight):
             found[f"rolling.{wheel}.along.direction"] = track.direction
-    return {path: x for path, x in found.items() if len(x) == 2 and all(isinstance(y, Node) for y in x)}
+    return {path: x for path, x in found.items() if all(isinstance(y, Node) for y in x)}
 
 
 def scalar_function(graph: Graph, output: str) -> Callable[[Known], float]:
@@ -305,7 +305,8 @@ class MeshJudge:
         ranges = [self._about(angles, np.broadcast_to(kind, (len(angles), drives)))[0] for kind in kinds]
         # NaN, of an angle without value, must not win
         best = np.argmin(np.nan_to_num(np.stack(ranges), nan=np.inf), axis=0)
-        return np.stack(kinds)[best]
+        chosen: Array = np.stack(kinds)[best]
+        return chosen
 
 
 # What is written at every sample.
