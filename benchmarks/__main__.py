@@ -23,6 +23,7 @@ from benchmarks import (  # noqa: E402
     peer,
     reports,
     simulation,
+    solver,
     sweeps,
 )
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
@@ -53,6 +54,7 @@ SECTIONS: Mapping[str, Section] = {
     "kernels": (
         f"Machine code, {LANES} mechanisms of {SAMPLES} samples, a position", kernels.kernels,
     ),
+    "solver": (f"One mechanism whose numbers change, {solver.SAMPLES} samples", solver.moves),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}

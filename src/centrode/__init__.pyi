@@ -75,6 +75,7 @@ from .cams.parameter_choice.search import choose_cam as choose_cam
 # Many mechanisms
 from .assignments.results import variants as variants
 from .sweeps.sweep import sweep as sweep
+from .sweeps.solver import solver as solver
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
 

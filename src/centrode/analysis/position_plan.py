@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -13,6 +13,9 @@ import xarray as xr
 
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
+from centrode.kinematics.plan_evaluation import layout_of
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.samples import MotionOnPath
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
@@ -208,10 +211,7 @@ def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tupl
     # strictly: a rate that is zero at a sample is no root of a cell but that sample itself, taken below
     cells = np.flatnonzero(rate[:-1] * rate[1:] < 0)
 
-    def there(value: Array) -> Array:
-        return _rate(mechanism, motion(mechanism, at=value), name)
-
-    turned = interpolated_roots(there, by[cells], by[cells + 1])
+    turned = interpolated_roots(_rate_on(mechanism, by, name), by[cells], by[cells + 1])
     # the last sample is left out: it is the first again
     places = [*turned.tolist(), *by[:-1][rate[:-1] == 0].tolist()]
     turn = by[-1] - by[0]
@@ -219,6 +219,21 @@ def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tupl
     places = [place - turn if abs(by[-1] - place) < SAME * abs(turn) else place for place in places]
     # in the sense of the drive, which may run backwards
     return tuple(sorted(places, key=lambda place: (place - by[0]) / turn))
+
+
+def _rate_on(mechanism: Mechanism, by: Array, name: str) -> Callable[[Array], Array]:
+    """Velocity coefficients at any values of the drive in a range, whose events are looked for once."""
+    prepared = ready(mechanism)
+    places = MotionOnPath.along(prepared, prepared.kinematics, by)
+    layout = layout_of(prepared.kinematics)
+
+    def there(values: Array) -> Array:
+        samples = places.at(values)
+        if name in mechanism.link_names:
+            return np.asarray(samples.angles[1, layout.angles.index(name), 0])
+        return np.asarray(samples.columns[1, layout.first_slide + layout.guides.index(name), 0])
+
+    return there
 
 
 def _length(path: xr.Dataset) -> float:

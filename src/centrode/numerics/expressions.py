@@ -164,6 +164,10 @@ class Node:
     def __abs__(self) -> Node:
         return apply_operation("abs", self)
 
+    def __array_namespace__(self) -> Expressions:
+        """The functions of nodes, for formulas that ask numbers whose they are (`operations.PLAIN`)."""
+        return EXPRESSIONS
+
 
 Operand: TypeAlias = Node | float
 
@@ -369,6 +373,10 @@ Number: TypeAlias = Any
 
 class Expressions:
     """Namespace `m` of nodes. Plain numbers pass through to plain numbers, so jets keep their literal zeros."""
+
+    def asarray(self, x: Operand) -> Operand:
+        """A node or number as it is: what formulas call that make arrays of numbers first."""
+        return x
 
     def sqrt(self, x: Operand) -> Operand:
         return apply_operation("sqrt", x) if isinstance(x, Node) else square_root(x)

@@ -128,6 +128,48 @@ def split_graph(
     return Graph({name: node for name, node in parts.items() if name in rest.variables}), rest
 
 
+# Graphs as plain data: rows of words and numbers, from which the same graph is built again in another process.
+
+Row = list[str | float | int]
+
+
+def graph_rows(graph: Graph) -> list[Row]:
+    """The nodes in order, each as [operation, places of its arguments ...] or [operation, detail]; then the outputs.
+
+    Outputs are rows ["output", name, place of the node].
+    """
+    places = {node: k for k, node in enumerate(graph.order)}
+    rows: list[Row] = [
+        [node.operation, *(places[x] for x in node.arguments)]
+        if node.arguments
+        else [node.operation, node.detail]
+        for node in graph.order
+    ]
+    return rows + [["output", name, places[node]] for name, node in graph.outputs.items()]
+
+
+def graph_of_rows(rows: Iterable[Row]) -> Graph:
+    """The graph of such rows.
+
+    Raises ValueError where they are none.
+    """
+    nodes: list[Node] = []
+    outputs: dict[str, Node] = {}
+    try:
+        for operation, *rest in rows:
+            if operation == "output":
+                outputs[str(rest[0])] = nodes[int(rest[1])]
+            elif operation == VARIABLE:
+                nodes.append(variable(str(rest[0])))
+            elif operation == CONSTANT:
+                nodes.append(as_node(float(rest[0])))
+            else:
+                nodes.append(apply_operation(str(operation), *(nodes[int(k)] for k in rest)))
+    except (IndexError, KeyError, TypeError) as error:
+        raise ValueError("the rows are no graph") from error
+    return Graph(outputs)
+
+
 # Gradients, from graph to graph: the derivatives of one output by many variables for a few times its cost.
 #
 # Reverse mode: Griewank and Walther, Evaluating Derivatives (2nd ed., 2008), section 3.2.

@@ -355,7 +355,7 @@ def formulas_of(
     where: str = "reduce",
     reduction: str | None = None,
 ) -> tuple[OutputFormula, ...]:
-    """The formulas of these texts; `motion` is a motion of the mechanism.
+    """The formulas of these texts, with `of_samples` also those of a sample; `motion` is a motion of the mechanism.
 
     A formula may name those before it. What varies from sample to sample is refused under `where` = "reduce"; as
     "outputs" it has a value at every sample, or is reduced by `reduction`.

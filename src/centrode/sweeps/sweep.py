@@ -187,7 +187,7 @@ def _task_of(
         prepared = ready(mechanism)
         grid_of_samples = requested_grid(prepared, *span)
         # the description's own motion says what there is to name
-        motion = _first(solve(prepared, grid_of_samples), outputs, reduce)
+        motion = motion_with_names(solve(prepared, grid_of_samples), f"{outputs} {reduce}")
         asked = asked_of(motion, design, outputs, reduce, tables)
         paths = tuple(design.coordinates)
         return motion, SweepTask(
@@ -252,11 +252,11 @@ def check_table(data: xr.Dataset) -> None:
         raise InputError("", what.format(most=TABLE_ROWS, count=count), _("write zarr"))
 
 
-def _first(solved: Solved, outputs: Outputs, reduce: Reduce) -> xr.Dataset:
-    """The description's own motion, with its reduction where that is requested."""
+def motion_with_names(solved: Solved, words: str) -> xr.Dataset:
+    """The description's own motion, with its reduction where words name a number of it."""
     motion = dataset_of(solved)
     # reductions are computed only where they are named: masses need not be complete otherwise
-    if "reduced_" not in f"{outputs} {reduce}":
+    if "reduced_" not in words:
         return motion
     check_reducible(solved)
     reduction = reduction_of(solved)

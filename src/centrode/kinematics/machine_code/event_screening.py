@@ -58,6 +58,14 @@ SPARSE = 4
 START = "start"
 
 
+def sparse_nodes(mesh: Array, initial: float) -> tuple[npt.NDArray[np.intp], int]:
+    """Numbers of the nodes at which angles are followed, and that of the node nearest to the initial position."""
+    start = int(np.argmin(np.abs(mesh - initial)))
+    nodes = np.arange(len(mesh))
+    # turns are counted from the initial position, so its node is looked at; the ends bound the range of the angle
+    return np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]])), start
+
+
 @dataclass(frozen=True)
 class Centring:
     """Kernels that find centres of the angles of some links of a traced plan."""
@@ -81,11 +89,7 @@ class Centring:
     @cached_property
     def _sparse(self) -> Values:
         """Every fourth node, the one nearest to the initial position among them."""
-        start = int(np.argmin(np.abs(self.mesh - self.path.initial)))
-        nodes = np.arange(len(self.mesh))
-        # turns are counted from the initial position, so its node is looked at; the ends bound the range of
-        # the angle
-        chosen = np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]]))
+        chosen, start = sparse_nodes(self.mesh, self.path.initial)
         return {
             **places_of(self.path, self.mesh[chosen], ORDERS - 1),
             START: (chosen == start).astype(np.float64),
@@ -347,6 +351,11 @@ class EventScreening:
         if slacks:
             parts.append(least(SLACK, least_of(slacks)))
         return together(*parts)
+
+    @property
+    def over_mesh(self) -> tuple[Reduction, Values]:
+        """What is reduced over the nodes of the mesh, and what the variables of a place stand for there."""
+        return self._of_events, self._nodes
 
     @cached_property
     def slack_at_samples(self) -> Node | None:

@@ -69,10 +69,11 @@ TYPES = [ctypes.c_int64 if argument.startswith("i64") else ctypes.c_void_p for a
 
 @dataclass(frozen=True)
 class Loaded:
-    """A function in memory, with what keeps it there. While it runs, other threads do too."""
+    """A function in memory, with what keeps it there, and its object code. While it runs, other threads do too."""
 
     call: Any
     engine: Any
+    code: bytes
 
 
 def machine(target: Target) -> Any:
@@ -106,4 +107,4 @@ def load_object_code(code: bytes, target: Target) -> Loaded:
     address = engine.get_function_address(FUNCTION)
     if not address:
         raise ValueError(f"no function {FUNCTION} in the object code")
-    return Loaded(ctypes.CFUNCTYPE(None, *TYPES)(address), engine)
+    return Loaded(ctypes.CFUNCTYPE(None, *TYPES)(address), engine, code)

@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from centrode.numerics.expressions import constant
+from centrode.numerics.graphs import graph_of_rows, graph_rows
 from centrode.numerics.machine_code import cache
 from centrode.numerics.machine_code.compile import (
     VERSIONS,
@@ -26,7 +28,13 @@ from centrode.numerics.machine_code.compile import (
     object_code,
 )
 from centrode.numerics.machine_code.language import Vector
-from centrode.numerics.machine_code.loops import LoopShape, Tables, function_text, with_reciprocals
+from centrode.numerics.machine_code.loops import (
+    ConstantTable,
+    LoopShape,
+    Tables,
+    function_text,
+    with_reciprocals,
+)
 from centrode.numerics.scans import Array, Call, Scan, Scanned, call_of
 
 NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
@@ -169,6 +177,39 @@ def _compile_kernel(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine
         rest = with_reciprocals(rest, rest.parameters if shape.lanes_inside else rest.inputs)
     text = function_text(rest, shape)
     return Kernel(scan, tables, rest, shape, number, _function(text, machine))
+
+
+# A kernel as data, from which another process has it again without what it was traced from.
+
+Record = dict[str, Any]
+
+
+def kernel_record(kernel: Kernel) -> tuple[Record, bytes]:
+    """Names and tables of a kernel, as what JSON can hold, and its object code."""
+    scan, tables = kernel.scan, kernel.tables
+    record: Record = {
+        "parameters": list(scan.parameters),
+        "inputs": list(scan.inputs),
+        "outputs": len(scan.outputs),
+        "of steps": graph_rows(tables.of_steps.graph),
+        "of lanes": graph_rows(tables.of_lanes.graph),
+    }
+    return record, kernel.function.code
+
+
+def kernel_of_record(record: Record, code: bytes) -> Kernel:
+    """The kernel of a record made on a machine of this kind, of float64 with the lanes inside.
+
+    Its scan has the names alone: what it computes is in the object code. Raises ValueError, KeyError or TypeError
+    where the record is none.
+    """
+    machine, number = host(), np.dtype(np.float64)
+    parameters, inputs = tuple(map(str, record["parameters"])), tuple(map(str, record["inputs"]))
+    scan = Scan(parameters, inputs, {str(k): constant(0.0) for k in range(int(record["outputs"]))})
+    of_steps, of_lanes = graph_of_rows(record["of steps"]), graph_of_rows(record["of lanes"])
+    tables = Tables(ConstantTable(inputs, of_steps), ConstantTable(parameters, of_lanes), scan)
+    shape = LoopShape(Vector("double", machine.width(64)), machine.has_fma, lanes_inside=True, relaxed=False)
+    return Kernel(scan, tables, scan, shape, number, load_object_code(code, machine))
 
 
 def _function(text: str, machine: Target) -> Loaded:
