@@ -105,7 +105,8 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
     """
     given: object = asked
     if not isinstance(given, Iterable):
-        raise InputError("outputs", _('an output is a text such as "position.C"'))
+        what = _("an output is a text such as {example}").format(example='"position.C"')
+        raise InputError("outputs", what)
     names = [asked] if isinstance(asked, str) else list(asked)
     if not names:
         raise InputError("outputs", _("no output is given"), _('name one, such as "position.C" or "angle"'))

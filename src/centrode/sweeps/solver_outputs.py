@@ -111,7 +111,8 @@ def asked_outputs(
         return None
     given: object = asked
     if not isinstance(given, Iterable):
-        raise InputError("outputs", _('an output is a text such as "position.C"'))
+        what = _("an output is a text such as {example}").format(example='"position.C"')
+        raise InputError("outputs", what)
     named = isinstance(asked, Mapping)
     texts = dict(asked) if isinstance(asked, Mapping) else [asked] if isinstance(asked, str) else list(asked)
     motion = motion_with_names(solve(ready, span), str(texts))
