@@ -384,3 +384,25 @@ def test_what_is_clear_has_no_event_nearby(monkeypatch: pytest.MonkeyPatch) -> N
     (clear,) = kept
     assert not clear[lengths <= 2.0].any()
     assert clear[lengths > 2.0 + 1e-6].all(), "closed forms need no more room than that"
+
+
+@pytest.mark.parametrize(
+    ("path", "values"),
+    [
+        ("links.BF.length", [1.0, 1.1, 1.2]),
+        # in the second one the axes of the wheels coincide: it has no position
+        ("frame.points.A.longitude", [1.0, np.pi / 2.0, 2.0]),
+    ],
+)
+@pytest.mark.parametrize("reduce", [None, "max"])
+def test_residuals_of_gears_on_the_sphere(
+    path: str, values: list[float], reduce: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Residuals of bevel gears have angles with their turns: in reduced sweeps and beside events as well."""
+    monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
+    machine, arrays = (
+        ct.sweep("bevel-pair", {path: values}, ["position"], 25, reduce=reduce, executor=executor)
+        for executor in (MACHINE, ARRAYS)
+    )
+    assert machine.samples_ok.values.tolist() == arrays.samples_ok.values.tolist()
+    np.testing.assert_allclose(machine.position, arrays.position, rtol=0.0, atol=64.0 * EPS)

@@ -13,6 +13,7 @@ import xarray as xr
 import centrode as ct
 from centrode.cli.main import main
 from centrode.numerics.machine_code import PRESENT
+from centrode.sweeps.sample_tables import read_columns
 
 EXECUTORS = ["arrays", pytest.param("machine code", marks=pytest.mark.skipif(not PRESENT, reason="llvmlite"))]
 SAMPLES = 37
@@ -253,3 +254,13 @@ def test_a_plan_that_is_kept_gives_the_same_bits() -> None:
     again = ct.sweep(mechanism, other, **run)  # type: ignore[arg-type]
     fresh = ct.sweep(ct.example("crank-rocker"), other, **run)  # type: ignore[arg-type]
     xr.testing.assert_identical(again, fresh)
+
+
+def test_a_file_of_one_column(tmp_path: Path) -> None:
+    """A blank line is the empty cell of a single column, and a comma in it is that of a decimal."""
+    file = tmp_path / "measured.csv"
+    file.write_text("\ufeffheight [mm]\n1,5\n\n2,5\n\n", encoding="utf-8")
+    (values,) = read_columns(file).values()
+    np.testing.assert_array_equal(values, [1.5e-3, np.nan, 2.5e-3])
+    file.write_text("a,b\n1,2\n\n3,4\n", encoding="utf-8")
+    assert read_columns(file) == {"a": [1.0, 3.0], "b": [2.0, 4.0]}

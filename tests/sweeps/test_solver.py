@@ -208,3 +208,17 @@ def test_graphs_as_rows_are_the_same_graphs() -> None:
     assert evaluate(graph_of_rows(graph_rows(graph)), {"x": 2.0})["z"] == 4.0
     with pytest.raises(ValueError, match="no graph"):
         graph_of_rows([["add", 5, 6]])
+
+
+@pytest.mark.parametrize("free", [[3], None])
+def test_free_paths_that_are_no_texts(free: object) -> None:
+    with pytest.raises(ct.InputError, match="as texts"):
+        ct.solver("crank-rocker", free)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("outputs", "what"), [(3, "an output is a text"), (["angle", "angle"], "given twice")]
+)
+def test_outputs_of_a_solver_that_are_none(outputs: object, what: str) -> None:
+    with pytest.raises(ct.InputError, match=what):
+        ct.solver("crank-rocker", ["links.AB.length"], 37, outputs=outputs)  # type: ignore[arg-type]

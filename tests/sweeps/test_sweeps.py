@@ -238,3 +238,24 @@ def test_an_interruption_keeps_whole_blocks() -> None:
     np.testing.assert_array_equal(part["angle"][:kept], whole["angle"][:kept])
     assert np.isnan(part["angle"][kept:]).all()
     assert (part["samples_ok"][kept:] == -1).all()
+
+
+def test_what_is_written_to_a_result_stays_in_it() -> None:
+    """The description's own motion is kept for the next sweep: a result holds copies of its coordinates."""
+    mechanism = ct.example("crank-rocker")
+
+    def computed() -> xr.Dataset:
+        return ct.sweep(mechanism, {"links.AB.length": [3.4, 3.6]}, ["angle.DB"], 37)
+
+    first = computed()
+    expected = first.copy(deep=True)
+    for name in ("time", "drive_value"):
+        first[name].values[...] = 7.0
+        first[name].attrs.clear()
+    xr.testing.assert_identical(computed(), expected)
+
+
+@pytest.mark.parametrize("reduce", [None, "max"])
+def test_outputs_that_are_no_names(reduce: str | None) -> None:
+    with pytest.raises(ct.InputError, match="an output is a text"):
+        ct.sweep("crank-rocker", {"links.AB.length": [3.4]}, 3, 37, reduce=reduce)  # type: ignore[arg-type]

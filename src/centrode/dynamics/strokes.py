@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from math import tau
 
 import numpy as np
@@ -15,7 +14,7 @@ from centrode.kinematics.path import grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.numerics.search import extremes
 
 Array = npt.NDArray[np.float64]
@@ -24,7 +23,7 @@ NODES = 361
 """Of the mesh over the motion: between two of them a slider turns round at most once."""
 
 
-@lru_cache(maxsize=16)
+@kept_by_mechanism(16)
 def ends_of_stroke(mechanism: Mechanism, guide: str, where: str) -> tuple[float, float]:
     """Least and greatest displacement along a guide [m]: over a turn of a drive that turns fully, else over the range.
 

@@ -22,7 +22,7 @@ from centrode.kinematics.solve import Progress, Solved, grid_of, solve
 from centrode.locale import _, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import kind_at, mechanism_text
-from centrode.model.mechanism import Mechanism, order_of_names
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
@@ -269,21 +269,18 @@ def labels_of(names: tuple[str, ...]) -> Any:
     return pd.Index(names, dtype=object)
 
 
-@functools.lru_cache(maxsize=32)
-def _text_of(mechanism: Mechanism, _order: tuple[object, ...]) -> str:
-    return mechanism_text(mechanism)
+_text_of = kept_by_mechanism(32)(mechanism_text)
 
 
 def attributes_of(solved: Solved, topic: str | None = None) -> dict[str, Any]:
     """What a result says of itself: the topic of the registry that shows it, its mechanism as text, how exact it is."""
     mechanism = solved.ready.mechanism
-    order = order_of_names(mechanism)
     with speaking("en"):
         worst = solved.worst_constraint.label
     return {
         **({} if topic is None else {"topic": topic}),
         "title": mechanism.title,
-        "mechanism": mechanism_text(mechanism) if order is None else _text_of(mechanism, order),
+        "mechanism": _text_of(mechanism),
         "version": __version__,
         "mobility": solved.ready.mobility,
         "worst_residual": float(np.nanmax(solved.residual, initial=0.0)),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,7 +17,7 @@ from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import path_of
 from centrode.kinematics.plan_evaluation import Kinematics, branches_at_start
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism, order_of_names
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.model.motion_parameter import MotionParameter
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions, is_drive
@@ -60,6 +59,8 @@ class Ready:
         return self.kinematics.structure.mechanism
 
 
+# a page or an analysis needs the motion, the reactions and the limits of one mechanism: it is made ready once
+@kept_by_mechanism(32)
 def ready(mechanism: Mechanism) -> Ready:
     """Make a mechanism ready to move.
 
@@ -70,17 +71,6 @@ def ready(mechanism: Mechanism) -> Ready:
     NotComputedYet
         The description names what this version does not compute.
     """
-    order = order_of_names(mechanism)
-    return _prepare(mechanism) if order is None else _kept_ready(mechanism, order)
-
-
-# a page or an analysis needs the motion, the reactions and the limits of one mechanism: it is made ready once
-@lru_cache(maxsize=32)
-def _kept_ready(mechanism: Mechanism, _order: tuple[object, ...]) -> Ready:
-    return _prepare(mechanism)
-
-
-def _prepare(mechanism: Mechanism) -> Ready:
     structure = structure_of(mechanism)
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)

@@ -312,7 +312,10 @@ class UnwoundAngle:
         """Turns along the mesh of what a rotor shows; `initial` [rad] is its angle in the initial position."""
         start = int(np.argmin(np.abs(self.mesh - self.ready.kinematics.path.initial)))
         quick = self.quick.measure(lambda numbers, at: _angle_of(rotor(numbers, at)))
-        return node_turns(rotor(self.numbers, self.on_mesh), initial, start, len(self.mesh), quick)
+        # where a mechanism of the batch has no position, a link may have no direction either
+        with np.errstate(all="ignore"):
+            directions = rotor(self.numbers, self.on_mesh)
+        return node_turns(directions, initial, start, len(self.mesh), quick)
 
     def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:
         """The node nearest to each parameter."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from collections.abc import Callable, Hashable
+from functools import lru_cache, wraps
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Self, TypeVar
 
 from pydantic import model_validator
 
@@ -93,6 +95,41 @@ class Mechanism(Description):
         object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "guides", guides)
         return self
+
+
+Arguments = ParamSpec("Arguments")
+Value = TypeVar("Value")
+
+
+def kept_by_mechanism(
+    most: int,
+) -> Callable[
+    [Callable[Concatenate[Mechanism, Arguments], Value]], Callable[Concatenate[Mechanism, Arguments], Value]
+]:
+    """A function of a mechanism keeps its `most` last values, for mechanisms that are equal down to the order of names.
+
+    Of a mechanism that cannot be hashed nothing is kept.
+    """
+
+    def decorate(
+        function: Callable[Concatenate[Mechanism, Arguments], Value],
+    ) -> Callable[Concatenate[Mechanism, Arguments], Value]:
+        @lru_cache(maxsize=most)
+        def keep(
+            mechanism: Mechanism, _order: Hashable, rest: tuple[Any, ...], named: tuple[Any, ...]
+        ) -> Value:
+            return function(mechanism, *rest, **dict(named))
+
+        @wraps(function)
+        def look(mechanism: Mechanism, /, *rest: Arguments.args, **named: Arguments.kwargs) -> Value:
+            order = order_of_names(mechanism)
+            if order is None:
+                return function(mechanism, *rest, **named)
+            return keep(mechanism, order, rest, tuple(named.items()))
+
+        return look
+
+    return decorate
 
 
 def order_of_names(mechanism: Mechanism) -> tuple[object, ...] | None:

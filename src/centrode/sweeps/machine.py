@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Protocol, TypeAlias
 
@@ -442,8 +442,7 @@ class Expressed:
     def names(self) -> tuple[str, ...]:
         """All that may be known of mechanisms: their numbers, where angles stand, and what samples left behind."""
         known = [*self.judging.names, *self.task.paths, RESIDUAL]
-        for link in self.judging.links:
-            known += [centre_of(link), *(winding_of(link, drive) for drive in self.traced.winders)]
+        known += self._of_angles
         known += [f"largest {group}" for group in self.traced.radicands]
         for fold in self.folds.found.values():
             known.append(fold.name)
@@ -451,13 +450,27 @@ class Expressed:
                 known += self.slopes.states_of(fold.name).parts
         return tuple(dict.fromkeys(known))
 
+    @property
+    def _of_angles(self) -> list[str]:
+        """What is known of angles with their turns: where they stand, and how they wind."""
+        return [
+            name
+            for link in self.judging.links
+            for name in (centre_of(link), *(winding_of(link, drive) for drive in self.traced.winders))
+        ]
+
     def functions(self, rows: Mapping[str, Array]) -> Values:
         """Functions of the numbers of mechanisms, which all passes over their samples have in common."""
         return {} if self.traced.steps else self._over_some.functions(rows)
 
     def check_some(self, rows: Mapping[str, Array]) -> Values:
         """The greatest residual of a few samples, of mechanisms that are certain to close at all of them."""
-        return self._over_some.run(rows, self.kernels, self.threads)
+        return self._checked.run(rows, self.kernels, self.threads)
+
+    @cached_property
+    def _checked(self) -> Pass:
+        # residuals of gears and wheels have angles with their turns, which are known when samples are checked
+        return replace(self._over_some, names=(*self._over_some.names, *self._of_angles))
 
     @cached_property
     def _over_some(self) -> Pass:

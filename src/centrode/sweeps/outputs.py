@@ -103,6 +103,10 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
 
     Raises InputError: none, twice the same, an unknown quantity, point, link, guide or axis.
     """
+    given: object = asked
+    if not isinstance(given, Iterable):
+        what = _("an output is a text such as {example}").format(example='"position.C"')
+        raise InputError("outputs", what)
     names = [asked] if isinstance(asked, str) else list(asked)
     if not names:
         raise InputError("outputs", _("no output is given"), _('name one, such as "position.C" or "angle"'))

@@ -6,7 +6,7 @@ import csv
 import hashlib
 import io
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -128,13 +128,17 @@ def read_columns(path: str | Path) -> dict[str, list[float]]:
     path = Path(path)
     text = read_file(path)
     separator = csv_separator(text)
+    if separator not in text.lstrip().partition("\n")[0]:
+        # of one column commas can only be those of decimals
+        separator = ";"
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
-        rows = [(reader.line_num, cells) for cells in reader if cells]
+        rows = [(reader.line_num, cells) for cells in reader]
     except csv.Error as error:
         what = _("{name} is not a CSV file: {reason}").format(name=value_text(path.name), reason=error)
         place = _("{table}, row {number}").format(table=path.name, number=reader.line_num)
         raise InputError(place, what) from None
+    rows = _without_blank_lines(rows)
     if not rows:
         raise InputError(
             path.name, _("the file is empty"), _("give it a row of headings, and one for each sample")
@@ -157,6 +161,14 @@ def read_columns(path: str | Path) -> dict[str, list[float]]:
                 _number(place, cell if separator == "," else cell.replace(",", ".")) * factor
             )
     return columns
+
+
+def _without_blank_lines(rows: Sequence[tuple[int, list[str]]]) -> list[tuple[int, list[str]]]:
+    """The rows with cells; a blank line among those of a single column is its empty cell."""
+    filled = [number for number, cells in rows if cells]
+    if not filled or any(len(cells) > 1 for _number, cells in rows):
+        return [(number, cells) for number, cells in rows if cells]
+    return [(number, cells or [""]) for number, cells in rows if filled[0] <= number <= filled[-1]]
 
 
 def _heading(table: str, cell: str) -> tuple[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -384,6 +384,10 @@ def solver(
     (361, 4, 2)
     """
     mechanism = mechanism_of(mechanism)
+    given: object = free
+    if not isinstance(given, Iterable) or not all(isinstance(path, str) for path in free):
+        repair = _("give at most {most} paths, as texts").format(most=designs.PATHS)
+        raise InputError("free", repair)
     paths = [free] if isinstance(free, str) else list(free)
     if not 1 <= len(paths) <= designs.PATHS or len(set(paths)) < len(paths):
         what = _("{count} paths are given, of which {different} differ")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -20,6 +20,7 @@ from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
+from centrode.model.reading import value_text
 from centrode.numerics.expressions import Node, as_node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import evaluate
@@ -108,6 +109,10 @@ def asked_outputs(
     """The outputs that are requested. Raises InputError: an unknown quantity, name or label, not a formula."""
     if asked is None:
         return None
+    given: object = asked
+    if not isinstance(given, Iterable):
+        what = _("an output is a text such as {example}").format(example='"position.C"')
+        raise InputError("outputs", what)
     named = isinstance(asked, Mapping)
     texts = dict(asked) if isinstance(asked, Mapping) else [asked] if isinstance(asked, str) else list(asked)
     motion = motion_with_names(solve(ready, span), str(texts))
@@ -124,7 +129,10 @@ def asked_outputs(
         (made,) = formulas_of(motion, design, {label: formula}, {}, where="outputs")
         columns.append(LiveColumn(str(name), made, made.at_samples, (samples,) if made.at_samples else ()))
     names = [column.name for column in columns]
-    if not columns or len(set(names)) < len(names):
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("outputs", _("{name} is given twice").format(name=value_text(name)))
+    if not columns:
         raise InputError("outputs", _("no output is given"), _('name one, such as "position.C" or "angle"'))
     return SolverOutputs(tuple(columns), paths)
 

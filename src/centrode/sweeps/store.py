@@ -262,13 +262,11 @@ def frame_of(
     """The frame of a sweep; `motion` is a motion of the mechanism, and gives it words and labels."""
     used = {dimension for column in asked.columns for dimension in column.dimensions}
     labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
-    coordinates: dict[Any, Any] = {dimension: motion.coords[dimension] for dimension in labels}
     if SAMPLE in used:
-        coordinates |= {
-            "time": motion["time"],
-            "drive": motion["drive"],
-            "drive_value": motion["drive_value"],
-        }
+        labels += ["time", "drive", "drive_value"]
+    # the motion may be kept for the next sweep: whoever writes to a result must not write to it
+    coordinates: dict[Any, Any] = {name: motion[name].copy() for name in labels}
+    if SAMPLE in used:
         # what formulas compare the motion with stands beside it
         coordinates |= {
             name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()

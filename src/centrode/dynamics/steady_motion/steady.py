@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -42,7 +41,7 @@ from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.model.settings import DRIVING_VARIABLES, Machine
 from centrode.numerics.text_formula import compile_formula
 
@@ -150,7 +149,7 @@ def solution_of(
 
 
 # A run asks for the steady motion of one mechanism a dozen times: for its flywheel, its forces, its balance.
-@functools.lru_cache(maxsize=4)
+@kept_by_mechanism(4)
 def _kept_solution(mechanism: Mechanism, kind: MeanSpeed) -> SteadySolution:
     return _solve(mechanism, kind, None)
 

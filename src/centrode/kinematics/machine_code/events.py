@@ -35,6 +35,7 @@ from centrode.kinematics.machine_code.variables import (
     TURN,
     Varied,
     box_array,
+    centre_of,
     inputs_of,
     places_of,
     take_lanes,
@@ -398,9 +399,14 @@ class Eventful:
     def possible(self) -> bool:
         """Whether the bits will be those of the arrays: where the plan leaves no function to a kernel.
 
-        Groups of higher class, whose places hang on one another, are not for this.
+        Groups of higher class, whose places hang on one another, are not for this; nor are residuals of gears that
+        compare angles with their turns, which are counted only when all is written.
         """
-        return not self.plan.steps and all(writer.alike for writer in self._writer({})[1:])
+        writers = self._writer({})[1:]
+        if self.plan.steps or not all(writer.alike for writer in writers):
+            return False
+        centres = {centre_of(link) for link in self.plan.turning}
+        return not any(centres.intersection(writer.graph.variables) for writer in writers)
 
     @cached_property
     def mesh(self) -> Array:
