@@ -171,7 +171,7 @@ class PlaceScan:
     @classmethod
     def of(cls, scan: Scan, places: Mapping[str, Array], executor: str) -> PlaceScan:
         """The scan at places: name -> (places,)."""
-        along = _rows_along(scan, places)
+        along = rows_along(scan.parameters, places)
         return cls(scan.inputs, len(scan.outputs), streamer(scan, along, executor), along.shape[1])
 
     def room(self) -> Array:
@@ -185,8 +185,9 @@ class PlaceScan:
         return True
 
 
-def _rows_along(scan: Scan, places: Mapping[str, Array]) -> Array:
-    return np.stack([places[name] for name in scan.parameters])
+def rows_along(names: Sequence[str], places: Mapping[str, Array]) -> Array:
+    """The named variables at places: (names, places)."""
+    return np.stack([places[name] for name in names])
 
 
 # Whether a mechanism is clear, by what its radicands and divisors are at the nodes of the mesh.

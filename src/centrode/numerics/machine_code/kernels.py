@@ -212,9 +212,14 @@ def kernel_of_record(record: Record, code: bytes) -> Kernel:
     return Kernel(scan, tables, scan, shape, number, load_object_code(code, machine))
 
 
+def circumstances(machine: Target) -> tuple[str, str]:
+    """What object code depends on besides what it computes."""
+    return VERSIONS, repr(machine)
+
+
 def _function(text: str, machine: Target) -> Loaded:
     """The function of a text, from disk if its object code is there."""
-    name = cache.name_of(text, VERSIONS, repr(machine))
+    name = cache.name_of(text, *circumstances(machine))
     code = cache.read_entry(name)
     if code is not None:
         return load_object_code(code, machine)
