@@ -54,10 +54,13 @@ def runner(
     return functools.partial(kernel.run, threads=threads)
 
 
-def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, threads: int = 1) -> Take:
+def streamer(
+    scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, threads: int = 1, hasty: bool = False
+) -> Take:
     """A function (inputs, out) that takes a scan's steps part by part, its lanes the same; `out` has the steps' room.
 
     `parameters` are (parameters, lanes); inputs (inputs, steps) or none; out (outputs, steps, lanes), returned again.
+    `hasty` is that of `kernel_of`.
 
     Raises
     ------
@@ -71,7 +74,8 @@ def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, thread
             return run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1]).outputs
 
         return take
-    stream: Take = _streaming().Stream(_kernels().kernel_of(scan, lanes_inside=True), lanes, threads)
+    kernel = _kernels().kernel_of(scan, lanes_inside=True, hasty=hasty)
+    stream: Take = _streaming().Stream(kernel, lanes, threads)
     return stream
 
 
