@@ -115,26 +115,32 @@ def _directions(varied: Varied) -> dict[str, tuple[Any, ...]]:
 
 def scalar_function(graph: Graph, output: str) -> Callable[[Known], float]:
     """One output of a small graph as a function of plain numbers, rounded as on arrays."""
-    places = {node: k for k, node in enumerate(graph.order)}
+    # it is called at every move: variables and constants come first, and are no steps
+    leaves = [node for node in graph.order if not node.arguments]
+    inner = [node for node in graph.order if node.arguments]
+    places = {node: k for k, node in enumerate(leaves + inner)}
+    names = [(k, str(node.detail)) for k, node in enumerate(leaves) if node.operation == VARIABLE]
+    start: list[Any] = [node.detail for node in leaves]
     steps = [
         (
             # what is rounded correctly everywhere takes a tenth of the time on plain numbers
-            FOLDED.get(node.operation) or FUNCTIONS.get(node.operation),
-            tuple(places[x] for x in node.arguments),
-            node.detail,
-            node.operation == VARIABLE,
+            FOLDED.get(node.operation) or FUNCTIONS[node.operation],
+            [places[x] for x in node.arguments],
+            len(node.arguments),
         )
-        for node in graph.order
+        for node in inner
     ]
     end = places[graph.outputs[output]]
 
     def run(known: Known) -> float:
-        numbers: list[Any] = []
-        for function, arguments, detail, is_variable in steps:
-            if function is None:
-                numbers.append(known[str(detail)] if is_variable else detail)
+        numbers = start.copy()
+        for k, name in names:
+            numbers[k] = known[name]
+        for function, at, count in steps:
+            if count == 2:
+                numbers.append(function(numbers[at[0]], numbers[at[1]]))
             else:
-                numbers.append(function(*[numbers[k] for k in arguments]))
+                numbers.append(function(*[numbers[k] for k in at]))
         return float(numbers[end])
 
     return run
