@@ -139,7 +139,9 @@ def with_head(entry: Path, change: Callable[[dict], None]) -> None:  # type: ign
         lambda head: head.update(quantities=3),
     ],
 )
-def test_an_entry_that_says_something_else_is_ignored(change: Callable[[dict], None], traced: list[str]) -> None:  # type: ignore[type-arg]
+def test_an_entry_that_says_something_else_is_ignored(
+    change: Callable[[dict], None], traced: list[str]
+) -> None:  # type: ignore[type-arg]
     first = made()
     with_head(entry_of(first), change)
     again = made()

@@ -78,7 +78,9 @@ def entry_name(free: FreeMechanism) -> str | None:
     except (TypeError, ValueError):
         return None
     span = free.span
-    grid = [np.ascontiguousarray(x).tobytes() for x in (span.time, span.parameter, span.rate, span.second_rate)]
+    grid = [
+        np.ascontiguousarray(x).tobytes() for x in (span.time, span.parameter, span.rate, span.second_rate)
+    ]
     return cache.name_of(
         "plan of one mechanism", described, json.dumps(free.paths), hashlib.sha256(b"".join(grid)).hexdigest(),
         __version__, np.__version__, sys.version, *code_circumstances(), sources,
