@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import count
 from statistics import median
 
@@ -16,14 +16,9 @@ import centrode as ct
 from benchmarks.plans import SIX
 from benchmarks.table import Promise, Row
 from benchmarks.timing import Task, paired_times, ratio
-from centrode.kinematics.machine_code.event_screening import EventScreening
-from centrode.kinematics.machine_code.outputs import Writer, nodes_of
-from centrode.kinematics.machine_code.trace import trace_motion
-from centrode.kinematics.machine_code.variables import SCALE, inputs_of, varied_of
-from centrode.kinematics.preparation import ready
-from centrode.kinematics.solve import requested_grid
-from centrode.numerics.executors import MACHINE_CODE
-from centrode.structure.dimensions import dimensions_of
+from centrode.kinematics.machine_code.frame_kernels import PlaceScan
+from centrode.kinematics.machine_code.frame_plan import DirectPlan
+from centrode.numerics.machine_code.kernels import Stream, address
 from centrode.sweeps.solver import Solver
 
 SAMPLES = 361
@@ -76,20 +71,36 @@ def _move(name: str, most: float | None) -> Row:
 
 
 def _direct(lever: Solver) -> Task:
-    """Judging and writing of the same plan as sweeps do it, called with a batch of one."""
-    prepared = ready(lever.mechanism)
-    span = requested_grid(prepared, SAMPLES, None, None)
-    values = {path: np.array([x]) for path, x in zip(lever.free, lever.own, strict=True)}
-    numbers = dimensions_of(lever.mechanism, values, np)
-    varied = varied_of(numbers, values)
-    plan = trace_motion(prepared, span, varied)
-    names = tuple(dict.fromkeys([*varied.names, SCALE]))
-    judging = EventScreening(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
-    writer = Writer(nodes_of(plan), inputs_of(prepared.kinematics.path, span), MACHINE_CODE)
-    known, room = varied.values(numbers), writer.room(1)
+    """The solver's own two kernels, called with addresses and nothing around them."""
+    plan = lever._plan
+    assert isinstance(plan, DirectPlan)
+    memory, known = plan.memory(), plan.numbers.known(lever.own)
+    further = plan.kernels.judge.judge(known, memory)
+    assert further is not None
+    judge = _bare_call(plan.kernels.judge.scan, known, memory.mesh)
+    write = _bare_call(plan.kernels.write, known | further, memory.room)
 
     def run() -> None:
-        writer.write(known | judging.judge(known).values, room)
+        judge()
+        write()
+
+    return run
+
+
+def _bare_call(scan: PlaceScan, known: Mapping[str, float], room: np.ndarray) -> Task:
+    """The call of a kernel with one mechanism, all its arguments made before."""
+    stream = scan.take
+    assert isinstance(stream, Stream)
+    size, call = room.itemsize, stream.kernel.function.call
+    rows = stream.kernel.tables.of_steps.below(np.array([[known[name]] for name in scan.names]))
+    lanes = stream.kernel.tables.of_lanes.below(stream.parameters)
+    arguments = (
+        stream.lanes, 1, address(lanes), lanes.strides[0] // size, address(rows), rows.strides[0] // size,
+        0, 0, 0, 0, address(room), room.strides[0] // size, room.strides[1] // size,
+    )  # fmt: skip
+
+    def run(_kept: object = (rows, lanes, room)) -> None:
+        call(*arguments)
 
     return run
 

@@ -184,6 +184,19 @@ def _in_one_line(match: re.Match[str]) -> str:
 # Values of a mechanism by their paths: links.AC.length, frame.points.D.x, guides.C.through.y,
 # drives.OA.speed; those of loads, machine and simulation are in load_paths.
 
+_last_read: tuple[Mechanism, dict[str, Any]] | None = None
+
+
+def _tables_to_read(mechanism: Mechanism) -> dict[str, Any]:
+    """The tables of a mechanism, not to be changed: those of the last one are kept, as many paths are read in turn."""
+    global _last_read
+    # one look and one stroke: another thread may exchange it between the two
+    last = _last_read
+    if last is None or last[0] is not mechanism:
+        _last_read = last = mechanism, document(mechanism)
+    return last[1]
+
+
 _AXES = {"plane": ("x", "y"), "sphere": ("longitude", "latitude")}
 Spot = tuple[Any, Any]
 """A table or list of the document, and the key or index in it."""
@@ -211,7 +224,7 @@ def value_at(mechanism: Mechanism, path: str) -> float:
         return mechanism.guide(words[1]).arc
     if words[0] == "rolling" and words[2:] == ["along", "direction"]:
         return _direction_of_track(mechanism, words[1], path)
-    return _number_at(*_spot(document(mechanism), words, path), path)
+    return _number_at(*_spot(_tables_to_read(mechanism), words, path), path)
 
 
 def _is_dynamic(path: str) -> bool:

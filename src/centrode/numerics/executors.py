@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -54,10 +54,13 @@ def runner(
     return functools.partial(kernel.run, threads=threads)
 
 
-def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, threads: int = 1) -> Take:
+def streamer(
+    scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, threads: int = 1, hasty: bool = False
+) -> Take:
     """A function (inputs, out) that takes a scan's steps part by part, its lanes the same; `out` has the steps' room.
 
     `parameters` are (parameters, lanes); inputs (inputs, steps) or none; out (outputs, steps, lanes), returned again.
+    `hasty` is that of `kernel_of`.
 
     Raises
     ------
@@ -71,5 +74,35 @@ def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, thread
             return run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1]).outputs
 
         return take
-    stream: Take = _streaming().Stream(_kernels().kernel_of(scan, lanes_inside=True), lanes, threads)
+    kernel = _kernels().kernel_of(scan, lanes_inside=True, hasty=hasty)
+    stream: Take = _streaming().Stream(kernel, lanes, threads)
     return stream
+
+
+# A streamer of machine code as data, from which another process has it again without its scan.
+
+StreamerRecord: TypeAlias = tuple[dict[str, Any], bytes]
+"""What JSON can hold, and object code."""
+
+
+def streamer_record(stream: Take) -> StreamerRecord:
+    """What a streamer of machine code is made of, besides its lanes."""
+    made: StreamerRecord = _kernels().kernel_record(stream.kernel)  # type: ignore[attr-defined]
+    return made
+
+
+def streamer_of_record(record: StreamerRecord, parameters: npt.ArrayLike) -> Take:
+    """The streamer of a record made under the same `code_circumstances`, with lanes as those of `streamer`.
+
+    Raises ValueError, KeyError, TypeError or RuntimeError where the record is none.
+    """
+    kernel = _kernels().kernel_of_record(*record)
+    stream: Take = _streaming().Stream(kernel, np.array(parameters, np.float64))
+    return stream
+
+
+def code_circumstances() -> tuple[str, ...]:
+    """What object code depends on besides what it computes: libraries and the machine."""
+    kernels = _kernels()
+    found: tuple[str, ...] = kernels.circumstances(kernels.host())
+    return found

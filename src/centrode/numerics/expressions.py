@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import operator
 import struct
 import threading
 import weakref
@@ -63,11 +64,11 @@ def greatest(a: float, b: float) -> float:
 
 
 FOLDED: Mapping[str, Callable[..., float]] = {
-    "add": lambda a, b: a + b,
-    "subtract": lambda a, b: a - b,
-    "multiply": lambda a, b: a * b,
+    "add": operator.add,
+    "subtract": operator.sub,
+    "multiply": operator.mul,
     "divide": ieee_quotient,
-    "negate": lambda a: -a,
+    "negate": operator.neg,
     "abs": abs,
     "sqrt": square_root,
     "minimum": minimum,

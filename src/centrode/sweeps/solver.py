@@ -13,8 +13,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import InputError, Status
+from centrode.kinematics.machine_code.frame_entries import keep_plan, kept_plan
 from centrode.kinematics.machine_code.frame_kernels import RESIDUAL, quantities_of
-from centrode.kinematics.machine_code.frame_plan import FreeMechanism, traced_plan
+from centrode.kinematics.machine_code.frame_plan import DirectPlan, FramePlan, FreeMechanism, traced_plan
 from centrode.kinematics.machine_code.trace import Untraceable, trace_motion
 from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.plan_evaluation import Event, layout_of
@@ -26,7 +27,7 @@ from centrode.model.files import mechanism_text, parse_mechanism, value_at, with
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
-from centrode.numerics.executors import AUTO, choose_executor
+from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
 from centrode.sweeps import designs
 from centrode.sweeps.solver_outputs import Asked, LiveOutputs, SolverOutputs, asked_outputs
 
@@ -142,17 +143,30 @@ class Solver:
         self._outputs = asked_outputs(prepared, self._span, self.free, outputs)
         executor = choose_executor(AUTO)
         self._reason = ""
-        try:
-            varied = self._free.varied(self.own)
-            traced = trace_motion(prepared, self._span, varied, differentiable=self._outputs is not None)
-            self._plan = traced_plan(self._free, varied, traced, executor)
-        except Untraceable as why:
-            self._plan, self._reason = None, why.reason
-        self._live = None
-        if self._outputs is not None and self._plan is not None:
-            self._live = LiveOutputs(self._outputs, self._plan, traced, varied, self._free)
+        self._live: LiveOutputs | None = None
+        self._plan: FramePlan | None = None
+        # outputs are expressions of the trace, which is not kept: with them it is made anew
+        if self._outputs is None and executor == MACHINE_CODE:
+            self._plan = kept_plan(self._free)
+        if self._plan is None:
+            self._trace(executor)
         self._ok = _sealed(np.zeros(self.samples, dtype=np.int8))
         self._local = threading.local()
+
+    def _trace(self, executor: str) -> None:
+        """Make the plan, which is kept on disk for other processes."""
+        outputs = self._outputs
+        try:
+            varied = self._free.varied(self.own)
+            traced = trace_motion(self._free.ready, self._span, varied, differentiable=outputs is not None)
+            self._plan = traced_plan(self._free, varied, traced, executor)
+        except Untraceable as why:
+            self._reason = why.reason
+            return
+        if outputs is not None and self._plan is not None:
+            self._live = LiveOutputs(outputs, self._plan, traced, varied, self._free)
+        elif isinstance(self._plan, DirectPlan):
+            keep_plan(self._plan)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A solver is handed on by its description; the other process makes its own plan."""

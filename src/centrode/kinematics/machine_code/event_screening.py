@@ -66,6 +66,15 @@ def sparse_nodes(mesh: Array, initial: float) -> tuple[npt.NDArray[np.intp], int
     return np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]])), start
 
 
+def mesh_places(path: Path, mesh: Array) -> Values:
+    """Variables of a place at the nodes of a mesh; with several drives also how far from each the next one may be."""
+    gaps = np.diff(mesh)
+    # the next node on either side: the farther one counts
+    either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
+    values = places_of(path, mesh, ORDERS - 1) | bends_of(path, mesh)
+    return values | ({GAP: either} if path.by_time else {})
+
+
 @dataclass(frozen=True)
 class Centring:
     """Kernels that find centres of the angles of some links of a traced plan."""
@@ -318,12 +327,7 @@ class EventScreening:
 
     @cached_property
     def _nodes(self) -> Values:
-        """The mesh; with several drives also how far from each node the next one may be."""
-        gaps = np.diff(self.mesh)
-        # the next node on either side: the farther one counts
-        either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
-        values = self._places(self.mesh) | bends_of(self._path, self.mesh)
-        return values | ({GAP: either} if self._path.by_time else {})
+        return mesh_places(self._path, self.mesh)
 
     @cached_property
     def _of_events(self) -> Reduction:

@@ -115,26 +115,32 @@ def _directions(varied: Varied) -> dict[str, tuple[Any, ...]]:
 
 def scalar_function(graph: Graph, output: str) -> Callable[[Known], float]:
     """One output of a small graph as a function of plain numbers, rounded as on arrays."""
-    places = {node: k for k, node in enumerate(graph.order)}
+    # it is called at every move: variables and constants come first, and are no steps
+    leaves = [node for node in graph.order if not node.arguments]
+    inner = [node for node in graph.order if node.arguments]
+    places = {node: k for k, node in enumerate(leaves + inner)}
+    names = [(k, str(node.detail)) for k, node in enumerate(leaves) if node.operation == VARIABLE]
+    start: list[Any] = [node.detail for node in leaves]
     steps = [
         (
             # what is rounded correctly everywhere takes a tenth of the time on plain numbers
-            FOLDED.get(node.operation) or FUNCTIONS.get(node.operation),
-            tuple(places[x] for x in node.arguments),
-            node.detail,
-            node.operation == VARIABLE,
+            FOLDED.get(node.operation) or FUNCTIONS[node.operation],
+            [places[x] for x in node.arguments],
+            len(node.arguments),
         )
-        for node in graph.order
+        for node in inner
     ]
     end = places[graph.outputs[output]]
 
     def run(known: Known) -> float:
-        numbers: list[Any] = []
-        for function, arguments, detail, is_variable in steps:
-            if function is None:
-                numbers.append(known[str(detail)] if is_variable else detail)
+        numbers = start.copy()
+        for k, name in names:
+            numbers[k] = known[name]
+        for function, at, count in steps:
+            if count == 2:
+                numbers.append(function(numbers[at[0]], numbers[at[1]]))
             else:
-                numbers.append(function(*[numbers[k] for k in arguments]))
+                numbers.append(function(*[numbers[k] for k in at]))
         return float(numbers[end])
 
     return run
@@ -171,8 +177,10 @@ class PlaceScan:
     @classmethod
     def of(cls, scan: Scan, places: Mapping[str, Array], executor: str) -> PlaceScan:
         """The scan at places: name -> (places,)."""
-        along = _rows_along(scan, places)
-        return cls(scan.inputs, len(scan.outputs), streamer(scan, along, executor), along.shape[1])
+        along = rows_along(scan.parameters, places)
+        # somebody waits for the first frame, and kernels take a tenth of a move
+        take = streamer(scan, along, executor, hasty=True)
+        return cls(scan.inputs, len(scan.outputs), take, along.shape[1])
 
     def room(self) -> Array:
         """Memory for the outputs: (outputs, 1, places)."""
@@ -185,8 +193,9 @@ class PlaceScan:
         return True
 
 
-def _rows_along(scan: Scan, places: Mapping[str, Array]) -> Array:
-    return np.stack([places[name] for name in scan.parameters])
+def rows_along(names: Sequence[str], places: Mapping[str, Array]) -> Array:
+    """The named variables at places: (names, places)."""
+    return np.stack([places[name] for name in names])
 
 
 # Whether a mechanism is clear, by what its radicands and divisors are at the nodes of the mesh.

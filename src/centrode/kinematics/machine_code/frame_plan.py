@@ -17,6 +17,7 @@ from centrode.kinematics.machine_code.frame_kernels import (
     SINES,
     SLACK_AT_SAMPLES,
     FrameKernels,
+    FrameLayout,
     FrameMemory,
     FramePlaces,
     FreeNumbers,
@@ -102,6 +103,7 @@ class DirectPlan:
 
     free: FreeMechanism
     numbers: FreeNumbers
+    layout: FrameLayout
     kernels: FrameKernels
     executor: str
 
@@ -219,4 +221,4 @@ def traced_plan(free: FreeMechanism, varied: Varied, traced: Traced, executor: s
     mesh = PlaceScan.of(scans.mesh, places.mesh, executor)
     samples = PlaceScan.of(scans.samples, places.samples, executor)
     kernels = frame_kernels(free.ready, free.span, scans.layout, mesh, samples)
-    return DirectPlan(free, numbers, kernels, executor)
+    return DirectPlan(free, numbers, scans.layout, kernels, executor)

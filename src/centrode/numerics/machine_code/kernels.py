@@ -24,6 +24,7 @@ from centrode.numerics.machine_code.compile import (
     Loaded,
     Target,
     host,
+    in_haste,
     load_object_code,
     object_code,
 )
@@ -130,6 +131,7 @@ def kernel_of(
     lanes_inside: bool = False,
     relaxed: bool = False,
     target: Target | None = None,
+    hasty: bool = False,
 ) -> Kernel:
     """The kernel of a scan, from memory or disk if it has been compiled before.
 
@@ -140,10 +142,13 @@ def kernel_of(
     lanes_inside : take every step along all lanes; only for scans without a state
     relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
     target : the machine to compile for; this one if left out
+    hasty : the code is waited for, see `in_haste`
     """
     if np.dtype(number) not in NUMBERS:
         raise ValueError(f"numbers of a kernel are float64 or float32, not {np.dtype(number)}")
     machine = target or host()
+    if hasty:
+        machine = in_haste(machine)
     vector = Vector(NUMBERS[np.dtype(number)], 1)
     vector = replace(vector, width=width or machine.width(vector.bits))
     if lanes_inside and scan.state:
@@ -212,9 +217,14 @@ def kernel_of_record(record: Record, code: bytes) -> Kernel:
     return Kernel(scan, tables, scan, shape, number, load_object_code(code, machine))
 
 
+def circumstances(machine: Target) -> tuple[str, str]:
+    """What object code depends on besides what it computes."""
+    return VERSIONS, repr(machine)
+
+
 def _function(text: str, machine: Target) -> Loaded:
     """The function of a text, from disk if its object code is there."""
-    name = cache.name_of(text, VERSIONS, repr(machine))
+    name = cache.name_of(text, *circumstances(machine))
     code = cache.read_entry(name)
     if code is not None:
         return load_object_code(code, machine)
