@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 
 TOGETHER = 200
 """Objects of one stream."""
@@ -33,10 +34,11 @@ def packed_pdf(document: bytes) -> bytes:
     places, trailer = _places(document, int(found.group(1)))
     if b"/Encrypt" in trailer:
         return document
-    ends = sorted([*places.values(), int(found.group(1))])
+    starts = sorted([*places.values(), int(found.group(1))])
+    ends = dict(pairwise(starts))
     objects: dict[int, bytes] = {}
     for number, place in places.items():
-        text = document[place : ends[ends.index(place) + 1]]
+        text = document[place : ends[place]]
         head = _OBJECT.match(text)
         if head is None or int(head.group(1)) != number:
             return document
