@@ -51,6 +51,12 @@ def test_counts(links: int, mobility: int) -> None:
         assert sorted(link for one in chain.inversions for link in one.alike) == list(range(links))
 
 
+def test_chains_with_cut_links_come_last() -> None:
+    for links, mobility in ((7, 2), (9, 2), (8, 3)):
+        found = ct.chains(links, mobility)
+        assert ct.chains(links, mobility, cut_links=True)[: len(found)] == found
+
+
 def test_chains_of_twelve_links() -> None:
     assert len(ct.chains(12)) == 6856
 
@@ -85,7 +91,7 @@ def test_all_graphs_looked_through(links: int, mobility: int) -> None:
 
 
 @pytest.mark.skipif(GENG is None, reason="nauty is not installed")
-@pytest.mark.parametrize(("links", "mobility"), [(8, 1), (9, 2), (8, 3), (9, 0)])
+@pytest.mark.parametrize(("links", "mobility"), [(8, 1), (9, 2), (8, 3), (9, 0), (11, 0)])
 def test_graphs_of_nauty(links: int, mobility: int) -> None:
     joints = (3 * (links - 1) - mobility) // 2
     assert GENG is not None

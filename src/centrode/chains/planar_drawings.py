@@ -1,9 +1,9 @@
 """Sketches of kinematic chains: joints as points of the plane, links as polygons that do not cross.
 
 Joints are the vertices of a plane graph whose edges are the sides of links: a binary link is one side, another link a
-polygon round its joints in the order in which an embedding of the chain's graph has them. Its longest loop, or one
-with a bridge, goes outside, and every other joint stands in the middle of its neighbours (W. T. Tutte, How to draw a graph, 1963), so no
-two sides cross. Then sides are made more alike as long as nothing crosses.
+polygon round its joints in the order in which an embedding of the chain's graph has them. Its longest loop, or one with
+a bridge, goes outside, and every other joint stands in the middle of its neighbours (W. T. Tutte, How to draw a graph,
+1963), so no two sides cross. Then sides are made more alike as long as nothing crosses.
 """
 
 from __future__ import annotations
@@ -76,7 +76,9 @@ def chain_sketch(chain: KinematicChain) -> ChainSketch:
     loops = list(_loops(embedding, number)) if embedding is not None else []
     # a loop passes a bridge twice: outside, where the first passage counts, both parts are held apart
     loops.sort(key=lambda loop: (len(loop) - len(set(loop)), len(loop)))
-    places = _barycentric(around, loops[:-1], list(dict.fromkeys(loops[-1]))) if loops else _circle(len(number))
+    places = (
+        _barycentric(around, loops[:-1], list(dict.fromkeys(loops[-1]))) if loops else _circle(len(number))
+    )
     places = _evened(
         places / np.linalg.norm(places[sides[:, 0]] - places[sides[:, 1]], axis=1).mean(), around
     )

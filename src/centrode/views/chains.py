@@ -85,7 +85,7 @@ def chain_text(found: ChainOfMechanism) -> Text:
                 "not named: more than {most} links, or hinges of too many links", most=_whole(GREATEST)
             )
         case "dimensions":
-            return Sentence("not named: special dimensions alone let so many links and joints move")
+            return Sentence("not named: so many links and joints move by special dimensions or directions alone")
         case "":
             chain = _inversions(found.inversions)
             if not found.passive:
