@@ -32,6 +32,8 @@ COUNTS = {
     (5, 0): (1, 1, 2),
     (7, 0): (3, 3, 10),
     (9, 0): (28, 28, 173),
+    # not of the literature: every graph of nauty's without triangles was judged by the definition
+    (11, 0): (562, 562, 5438),
 }
 """Links and mobility -> chains without cut links, with them, inversions (of trusses: Assur groups)."""
 GENG = shutil.which("geng") or shutil.which("nauty-geng")
@@ -91,7 +93,7 @@ def test_all_graphs_looked_through(links: int, mobility: int) -> None:
 
 
 @pytest.mark.skipif(GENG is None, reason="nauty is not installed")
-@pytest.mark.parametrize(("links", "mobility"), [(8, 1), (9, 2), (8, 3), (9, 0), (11, 0)])
+@pytest.mark.parametrize(("links", "mobility"), [(8, 1), (9, 2), (8, 3), (9, 0)])
 def test_graphs_of_nauty(links: int, mobility: int) -> None:
     joints = (3 * (links - 1) - mobility) // 2
     assert GENG is not None
