@@ -184,7 +184,8 @@ def chains(links: int, mobility: int = 1, *, cut_links: bool = False) -> tuple[K
     Returns
     -------
     tuple of KinematicChain
-        By their contracted graphs, those with cut links last; with mobility 1 there are 1, 2, 16, 230 and 6856 of 4, 6, 8, 10 and 12 links.
+        By their contracted graphs, those with cut links last; with mobility 1 there are 1, 2, 16, 230 and 6856 of 4, 6,
+        8, 10 and 12 links.
 
     Raises
     ------
