@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import pytest
+import tomli_w
 
 import centrode as ct
+from centrode.chains import identification
 from centrode.chains.identification import family_of
 from centrode.chains.planar_drawings import chain_sketch
 from centrode.chains.start_descriptions import start_description, start_texts
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import initial_place
+from centrode.model.mechanism import Mechanism
 
 NAMED = {
     "crank-rocker": ("four-bar", 1),
@@ -27,6 +30,9 @@ NAMED = {
     "third-class-triad": ("Stephenson", 3),
     "fourth-class-group": ("Stephenson", 2),
 }
+
+
+ROW = ["AE", "BF", "CG", "DH", "EF", "FG", "GH", "EJ", "JH", "BJ"]
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -60,6 +66,63 @@ def test_a_truss_is_one_link() -> None:
     # both triangles of Jansen's leg are three bars each in the description
     found = ct.chain_of("jansen-leg")
     assert (found.links, found.joints) == (8, 10)
+
+
+def _mechanism(points: dict[str, tuple[int, int]], links: list[str], drives: list[str]) -> Mechanism:
+    """Links named after their points; the points of the first are those of the frame."""
+    frame, *moving = links
+    tables = {
+        "points": {name: list(place) for name, place in points.items()},
+        "frame": {"points": list(frame)},
+        "links": {name: {"points": list(name)} for name in moving},
+        "drives": [{"link": name, "speed": 1} for name in drives],
+    }
+    return ct.parse_mechanism(tomli_w.dumps(tables))
+
+
+FOUR_BAR = {"A": (0, 0), "D": (30, 0), "B": (0, 10), "C": (25, 20)}
+
+
+def test_a_truss_without_triangles_is_one_link() -> None:
+    # the coupler is the truss of five links: BEFG and CHIJ, three bars between them
+    more = {"E": (5, 15), "F": (10, 12), "G": (4, 20), "H": (15, 22), "I": (16, 26), "J": (20, 15)}
+    mechanism = _mechanism(FOUR_BAR | more, ["AD", "AB", "BEFG", "CHIJ", "EH", "FI", "GJ", "CD"], ["AB"])
+    found = ct.chain_of(mechanism)
+    assert ct.check(mechanism).mobility == 1
+    assert [one.family for one in found.inversions] == ["four-bar"]
+    assert (found.links, found.joints, found.passive) == (4, 4, ())
+
+
+def test_a_mechanism_without_drives_has_a_chain() -> None:
+    found = ct.chain_of(_mechanism(FOUR_BAR, ["AD", "AB", "BC", "CD"], []))
+    assert [one.family for one in found.inversions] == ["four-bar"]
+
+
+WEDGES = """
+links.wedge = { points = { P = [0, 0] } }
+links.follower = { points = { Q = [0, 0] } }
+guides = [
+    { point = "P", through = [0, 0], direction = [1, 0], link = "wedge" },
+    { point = "Q", through = [0, 0], direction = [0, 1], link = "follower" },
+    { point = "Q", name = "S", on = "wedge", through = "P", direction = [1, 1], link = "follower" },
+]
+drives = [{ guide = "P", speed = 1 }]
+"""
+
+
+def test_wedges_have_no_chain_of_the_formula() -> None:
+    found = ct.chain_of(ct.parse_mechanism(WEDGES))
+    assert (found.links, found.joints, found.sliding, found.unnamed) == (3, 3, 3, "dimensions")
+
+
+def test_ways_to_split_hinges_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    # six hinges of three links, of which one link is left out
+    points = {name: (100 * k, 0) for k, name in enumerate("ABCD")}
+    points |= {name: (100 * k + 50, 80) for k, name in enumerate("EFGH")}
+    mechanism = _mechanism(points | {"J": (100, 200)}, ["ABCD", *ROW], ["AE"])
+    assert ct.chain_of(mechanism).inversions
+    monkeypatch.setattr(identification, "MOST_WAYS", 50)
+    assert ct.chain_of(mechanism).unnamed == "many links"
 
 
 def test_a_link_that_only_follows_is_left_out() -> None:

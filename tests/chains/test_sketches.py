@@ -10,6 +10,7 @@ import networkx
 import pytest
 
 import centrode as ct
+from centrode.chains.kinematic_chains import KinematicChain
 from centrode.chains.planar_drawings import ChainSketch, chain_sketch
 
 Place = tuple[Fraction, Fraction]
@@ -74,6 +75,24 @@ def test_chains_of_other_numbers() -> None:
         planar, _embedding = networkx.check_planarity(networkx.Graph(chain.joints))
         if planar:
             _assert_clear(chain_sketch(chain))
+
+
+def test_chains_with_bridges() -> None:
+    with_bridges = [
+        chain
+        for chain in (*ct.chains(8, 3, cut_links=True), *ct.chains(10, 3, cut_links=True))
+        if networkx.has_bridges(networkx.Graph(chain.joints))
+    ]
+    assert len(with_bridges) == 6
+    for chain in with_bridges:
+        _assert_clear(chain_sketch(chain))
+
+
+def test_bridges_at_both_sides_of_a_loop_come_to_one() -> None:
+    # four links in a loop, two of which bear a loop of four more at the end of a bridge
+    joints = [(0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 6), (2, 8), (3, 9), (3, 11)]
+    chain = KinematicChain.of([*joints, (4, 5), (6, 7), (7, 8), (9, 10), (10, 11)])
+    _assert_clear(chain_sketch(chain))
 
 
 def test_a_chain_without_planar_embedding_is_sketched() -> None:

@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 
 import centrode as ct
+from centrode.chains import planar_drawings
+from centrode.chains.lists import chain_list
 from centrode.cli.main import main
+from centrode.views.chains import chains_sheet
 
 
 def test_the_list_of_six_links(capsys: pytest.CaptureFixture[str]) -> None:
@@ -54,6 +57,26 @@ def test_a_long_list_is_not_printed(capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr().out
     assert "1834" in printed
     assert len(printed.splitlines()) < 12
+
+
+def test_pages_of_an_atlas_stand_in_order() -> None:
+    pictures = list(chains_sheet(chain_list(10)).pictures)
+    assert len(pictures) == 12
+    assert pictures == sorted(pictures)
+
+
+def test_sketches_need_networkx(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(planar_drawings, "find_spec", lambda _name: None)
+    assert main(["chains", "6", "--out", str(tmp_path / "six")]) == 2
+    said = capsys.readouterr().err
+    assert "networkx" in said
+    assert "figures" in said
+    assert not list(tmp_path.iterdir())
+    # the list, and tables of groups, have no sketches
+    assert main(["chains", "6"]) == 0
+    assert main(["chains", "4", "--groups", "--no-figures", "--out", str(tmp_path / "four")]) == 0
 
 
 @pytest.mark.parametrize(

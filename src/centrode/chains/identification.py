@@ -1,15 +1,15 @@
 """The kinematic chain of a mechanism, and which of its inversions the mechanism is.
 
-Sliders and the parts of cylinders are links, sliding pairs are joints. Links that make a triangle of hinges are one
-body. A hinge of k links is k - 1 joints, which may join the links in different ways: a mechanism with such hinges is
-the limit of one inversion or of several.
+Sliders and the parts of cylinders are links, sliding pairs are joints. Links that make a truss, such as a triangle of
+hinges, are one body. A hinge of k links is k - 1 joints, which may join the links in different ways: a mechanism with
+such hinges is the limit of one inversion or of several.
 """
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, product
 from typing import Literal, TypeAlias
@@ -32,8 +32,8 @@ from centrode.structure.pairs import KinematicPair, PairedBody, kinematic_pairs
 Unnamed: TypeAlias = Literal["", "higher pairs", "open", "many links", "dimensions"]
 Family: TypeAlias = Literal["", "four-bar", "Watt", "Stephenson"]
 
-MOST_SPLITS = 2_000
-"""Ways to split hinges of many links that are looked at."""
+MOST_WAYS = 5_000
+"""Ways to split hinges of many links that are looked at, whichever links are left out, all together."""
 NUMBERED = 10
 """Links of chains that get their number here: to list those of twelve takes some seconds."""
 WATT = ((0, 1, 0), (0, 1, 2), (0, 1, 2))
@@ -93,8 +93,8 @@ class ChainOfMechanism(PrintsSummary):
     split : points where three links or more are hinged
     passive : links that only follow, which the chain lacks
     unnamed : "higher pairs" with gears or rolling wheels, named in `higher`; "open" where a link has a single joint;
-        "many links" beyond 12 links, or with too many hinges to split; "dimensions" where special dimensions alone let
-        the links move
+        "many links" beyond 12 links, or with too many hinges to split; "dimensions" where special dimensions, or
+        guides of special directions, alone let the links move
     higher : names of its gears and rolling wheels
     """
 
@@ -127,32 +127,54 @@ def chain_of(mechanism: MechanismSource) -> ChainOfMechanism:
     mechanism = mechanism_of(mechanism)
     pairs = kinematic_pairs(mechanism)
     joined = _joined_bodies(pairs)
-    freedom = len(mechanism.drives)
-    found = ChainOfMechanism(
+    found = _counted(mechanism, joined, tuple(one.name for one in pairs if one.kind in ("gear", "rolling")))
+    if found.higher:
+        return replace(found, unnamed="higher pairs")
+    if min(joined.degrees.values(), default=0) < 2:
+        return replace(found, unnamed="open")
+    # rank can make a mechanism no less mobile than the formula; drives may not be given yet
+    freedom = max(len(mechanism.drives), joined.formula)
+    # each link with two joints that only follows takes a degree of freedom from the formula
+    surplus = freedom - joined.formula
+    free = [body for body in joined.followers if body.name not in _driven(mechanism)]
+    if len(joined.bodies) > GREATEST:
+        return replace(found, unnamed="many links")
+    ways = 0
+    for passive in combinations(free, surplus):
+        rest = joined.without(passive)
+        ways += rest.splits
+        if ways > MOST_WAYS:
+            return replace(found, unnamed="many links")
+        inversions = _inversions(rest, freedom)
+        if inversions:
+            return replace(found, inversions=inversions, passive=tuple(body.name for body in passive))
+    if surplus:
+        return replace(found, unnamed="dimensions")
+    stiff = _with_trusses_as_links(joined)
+    inversions = _inversions(stiff, freedom)
+    return replace(
+        _counted(mechanism, stiff, ()), inversions=inversions, unnamed="" if inversions else "dimensions"
+    )
+
+
+def _counted(mechanism: Mechanism, joined: _JoinedBodies, higher: tuple[str, ...]) -> ChainOfMechanism:
+    """The numbers of links and joints."""
+    return ChainOfMechanism(
         mechanism,
         (),
         len(joined.bodies),
         joined.joints,
         len(joined.sliding),
         tuple(name for name, bodies in joined.hinges.items() if len(bodies) > 2),
-        higher=tuple(pair.name for pair in pairs if pair.kind in ("gear", "rolling")),
+        higher=higher,
     )
-    if found.higher:
-        return replace(found, unnamed="higher pairs")
-    if min(joined.degrees.values(), default=0) < 2:
-        return replace(found, unnamed="open")
-    if joined.splits > MOST_SPLITS or len(joined.bodies) > GREATEST:
-        return replace(found, unnamed="many links")
-    # each link with two joints that only follows takes a degree of freedom from the formula
-    surplus = freedom - (3 * (len(joined.bodies) - 1) - 2 * joined.joints)
-    driven = {drive.link for drive in mechanism.drives}
-    for passive in combinations(
-        [body for body in joined.followers if body.name not in driven], max(0, surplus)
-    ):
-        inversions = _inversions(joined.without(passive), freedom)
-        if inversions:
-            return replace(found, inversions=inversions, passive=tuple(body.name for body in passive))
-    return replace(found, unnamed="dimensions")
+
+
+def _driven(mechanism: Mechanism) -> set[str | None]:
+    """Names of the links at both ends of drives."""
+    links = {guide.id: guide.link for guide in mechanism.guides}
+    ends = ((drive.link, drive.relative_to, links.get(drive.guide or "")) for drive in mechanism.drives)
+    return {name for names in ends for name in names}
 
 
 @dataclass(frozen=True)
@@ -177,6 +199,11 @@ class _JoinedBodies:
         )
 
     @property
+    def formula(self) -> int:
+        """Mobility by the formula."""
+        return 3 * (len(self.bodies) - 1) - 2 * self.joints
+
+    @property
     def splits(self) -> int:
         """Number of ways in which hinges of several links are joints."""
         return math.prod(max(1, len(bodies) ** (len(bodies) - 2)) for bodies in self.hinges.values())
@@ -189,14 +216,26 @@ class _JoinedBodies:
 
     def without(self, left_out: Sequence[PairedBody]) -> _JoinedBodies:
         """The same without some bodies."""
+        return self.among([body for body in self.bodies if body not in left_out])
+
+    def among(self, chosen: Collection[PairedBody]) -> _JoinedBodies:
+        """Some of the bodies, with the joints between them."""
         hinges = {
-            name: tuple(body for body in bodies if body not in left_out)
-            for name, bodies in self.hinges.items()
+            name: tuple(body for body in bodies if body in chosen) for name, bodies in self.hinges.items()
         }
         return _JoinedBodies(
-            tuple(body for body in self.bodies if body not in left_out),
+            tuple(body for body in self.bodies if body in chosen),
             {name: bodies for name, bodies in hinges.items() if len(bodies) > 1},
-            tuple(pair for pair in self.sliding if not set(pair) & set(left_out)),
+            tuple((one, other) for one, other in self.sliding if one in chosen and other in chosen),
+        )
+
+    def merged(self, same: Mapping[PairedBody, PairedBody]) -> _JoinedBodies:
+        """The same with bodies put in place of others, as parts of one."""
+        hinges = {name: tuple(dict.fromkeys(same[body] for body in of)) for name, of in self.hinges.items()}
+        return _JoinedBodies(
+            tuple(body for body in self.bodies if same[body] is body),
+            {name: bodies for name, bodies in hinges.items() if len(bodies) > 1},
+            tuple((same[one], same[other]) for one, other in self.sliding if same[one] is not same[other]),
         )
 
 
@@ -221,12 +260,26 @@ def _joined_bodies(pairs: Sequence[KinematicPair]) -> _JoinedBodies:
         for body in bodies:
             if same[body] in triangle:
                 same[body] = triangle[0]
-    merged = {name: tuple(dict.fromkeys(same[body] for body in hinged)) for name, hinged in hinges.items()}
-    sliding = (pair.bodies for pair in pairs if pair.kind == "sliding")
-    return _JoinedBodies(
-        tuple(body for body in bodies if same[body] is body),
-        {name: hinged for name, hinged in merged.items() if len(hinged) > 1},
-        tuple((same[one], same[other]) for one, other in sliding if same[one] is not same[other]),
+    sliding = tuple(pair.bodies for pair in pairs if pair.kind == "sliding")
+    given = {name: tuple(hinged) for name, hinged in hinges.items()}
+    return _JoinedBodies(tuple(bodies), given, sliding).merged(same)
+
+
+def _with_trusses_as_links(joined: _JoinedBodies) -> _JoinedBodies:
+    """Bodies with each part of some that has no freedom by the formula as one, smaller ones first."""
+    part = next(
+        (
+            part
+            for count in range(2, len(joined.bodies))
+            for part in combinations(joined.bodies, count)
+            if joined.among(part).formula == 0
+        ),
+        (),
+    )
+    if not part:
+        return joined
+    return _with_trusses_as_links(
+        joined.merged({body: part[0] if body in part else body for body in joined.bodies})
     )
 
 

@@ -184,7 +184,8 @@ def chains(links: int, mobility: int = 1, *, cut_links: bool = False) -> tuple[K
     Returns
     -------
     tuple of KinematicChain
-        By their contracted graphs; with mobility 1 there are 1, 2, 16, 230 and 6856 of 4, 6, 8, 10 and 12 links.
+        By their contracted graphs, those with cut links last; with mobility 1 there are 1, 2, 16, 230 and 6856 of 4, 6,
+        8, 10 and 12 links.
 
     Raises
     ------
@@ -239,7 +240,9 @@ def _enumerated(links: int, mobility: int, cut_links: bool) -> tuple[KinematicCh
         for edges in weighted(graph, binary, mobility + 1):
             if is_movable(graph.vertices, edges, groups):
                 found.add(ContractedGraph.of(graph.colours, edges))
-    return tuple(map(KinematicChain, sorted(found, key=lambda graph: (graph.vertices, graph))))
+    ordered = map(KinematicChain, sorted(found, key=lambda graph: (graph.vertices, graph)))
+    # those with a cut link come last, so that the others have the same numbers with and without them
+    return tuple(sorted(ordered, key=lambda chain: chain.has_cut_link) if cut_links else ordered)
 
 
 Groups: TypeAlias = Sequence[tuple[int, tuple[int, ...]]]

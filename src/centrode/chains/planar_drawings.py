@@ -1,9 +1,9 @@
 """Sketches of kinematic chains: joints as points of the plane, links as polygons that do not cross.
 
 Joints are the vertices of a plane graph whose edges are the sides of links: a binary link is one side, another link a
-polygon round its joints in the order in which an embedding of the chain's graph has them. Its longest loop goes
-outside, and every other joint stands in the middle of its neighbours (W. T. Tutte, How to draw a graph, 1963), so no
-two sides cross. Then sides are made more alike as long as nothing crosses.
+polygon round its joints in the order in which an embedding of the chain's graph has them. Its longest loop, or one with
+a bridge, goes outside, and every other joint stands in the middle of its neighbours (W. T. Tutte, How to draw a graph,
+1963), so no two sides cross. Then sides are made more alike as long as nothing crosses.
 """
 
 from __future__ import annotations
@@ -36,6 +36,9 @@ CLEARANCE = 0.7
 TRIES = 40
 """Times a step is halved before a sketch is left as it is."""
 
+_BEYOND = -1
+"""Vertex beside the links of a graph, towards the loop outside."""
+
 
 @dataclass(frozen=True)
 class ChainSketch:
@@ -46,7 +49,7 @@ class ChainSketch:
     chain : KinematicChain
     places : (joints, 2) where joints stand, in the order of the chain; sides are some 1 long
     outlines : for each link its joints in the order round it
-    crossings : number of pairs of sides that cross; none where the graph of the chain is planar, with no bridge in it
+    crossings : number of pairs of sides that cross; none where the graph of the chain is planar
     """
 
     chain: KinematicChain
@@ -63,18 +66,19 @@ def chain_sketch(chain: KinematicChain) -> ChainSketch:
     InputError
         networkx, whose test of planarity is used, is not installed.
     """
-    planar, embedding = _networkx().check_planarity(_networkx().Graph(chain.joints))
+    embedding = _embedding(chain)
     number = {joint: k for k, joint in enumerate(chain.joints)}
     around = [
         [number[min(link, other), max(link, other)] for other in _neighbours(chain, embedding, link)]
         for link in range(chain.links)
     ]
     sides = _sides(around)
-    loops = list(_loops(embedding, number)) if planar else []
-    outside = max(loops, key=len, default=[])
-    # a bridge is passed twice by the loop outside: there nothing holds both parts of the chain apart
-    is_circle = 2 < len(outside) == len(set(outside))
-    places = _barycentric(around, loops, outside) if is_circle else _circle(len(chain.joints))
+    loops = list(_loops(embedding, number)) if embedding is not None else []
+    # a loop passes a bridge twice: outside, where the first passage counts, both parts are held apart
+    loops.sort(key=lambda loop: (len(loop) - len(set(loop)), len(loop)))
+    places = (
+        _barycentric(around, loops[:-1], list(dict.fromkeys(loops[-1]))) if loops else _circle(len(number))
+    )
     places = _evened(
         places / np.linalg.norm(places[sides[:, 0]] - places[sides[:, 1]], axis=1).mean(), around
     )
@@ -90,6 +94,22 @@ def _networkx() -> Any:
             "", _("sketches of chains need networkx, which is not installed"), how_to_install("figures")
         )
     return _load()
+
+
+def _embedding(chain: KinematicChain) -> Any:
+    """An embedding of the chain's graph in the plane, all its bridges along one loop; None where there is none."""
+    networkx = _networkx()
+    graph = networkx.Graph(chain.joints)
+    # links that one more vertex can be joined with lie along one loop
+    graph.add_edges_from([(_BEYOND, link) for bridge in networkx.bridges(graph) for link in bridge])
+    planar, found = networkx.check_planarity(graph)
+    if not planar:
+        return None
+    around = {link: [k for k in order if k != _BEYOND] for link, order in found.get_data().items()}
+    around.pop(_BEYOND, None)
+    embedding = networkx.PlanarEmbedding()
+    embedding.set_data(around)
+    return embedding
 
 
 def _neighbours(chain: KinematicChain, embedding: Any, link: int) -> list[int]:
@@ -125,12 +145,12 @@ def _round(ring: Sequence[int]) -> list[tuple[int, int]]:
     return [*pairwise(ring), *closing]
 
 
-def _barycentric(around: Rings, loops: Rings, outside: Sequence[int]) -> Array:
+def _barycentric(around: Rings, inside: Rings, outside: Sequence[int]) -> Array:
     """Places of joints in the middle of their neighbours, those of the outer loop on a circle."""
     count = 1 + max(joint for ring in around for joint in ring)
     # a place of its own inside each loop and each large polygon holds its corners apart: so well connected, no
     # joints fall together
-    inner = [loop for loop in loops if loop is not outside] + [ring for ring in around if len(ring) > 3]
+    inner = [*inside, *(ring for ring in around if len(ring) > 3)]
     sides = [(int(u), int(v)) for u, v in _sides(around)]
     sides += [(joint, count + k) for k, loop in enumerate(inner) for joint in loop]
     laplacian = np.zeros((count + len(inner),) * 2)

@@ -85,7 +85,9 @@ def chain_text(found: ChainOfMechanism) -> Text:
                 "not named: more than {most} links, or hinges of too many links", most=_whole(GREATEST)
             )
         case "dimensions":
-            return Sentence("not named: special dimensions alone let so many links and joints move")
+            return Sentence(
+                "not named: so many links and joints move by special dimensions or directions alone"
+            )
         case "":
             chain = _inversions(found.inversions)
             if not found.passive:
@@ -268,12 +270,11 @@ def _pages(title: Sentence, names: Sequence[Text], cell: CellOf) -> Mapping[str,
     """Pictures of an atlas, as many as are needed."""
     firsts = range(0, len(names), CELLS)
     page = partial(_page, title, names, cell)
-    return Deferred(
-        {
-            f"atlas-{k}" if len(firsts) > 1 else "atlas": partial(page, first)
-            for k, first in enumerate(firsts, 1)
-        }
-    )
+    if len(firsts) == 1:
+        return Deferred({"atlas": partial(page, 0)})
+    # as many figures in each number, so that folders list the pages in order
+    wide = len(str(len(firsts)))
+    return Deferred({f"atlas-{k:0{wide}d}": partial(page, first) for k, first in enumerate(firsts, 1)})
 
 
 def _page(title: Sentence, names: Sequence[Text], cell: CellOf, first: int) -> ChainAtlas:
