@@ -54,7 +54,7 @@ FILES: dict[str, tuple[str, tuple[str, ...]]] = {
 """Commands that write one file, and its name."""
 STUDIES = {"sweep", "variants"}
 """Commands that read a study or a table beside a mechanism; tested below."""
-READ_NO_FILE = {"examples", "schema"}
+READ_NO_FILE = {"examples", "schema", "chains"}
 WRITE_NO_FILE = {"check"}
 
 

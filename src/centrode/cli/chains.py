@@ -102,9 +102,9 @@ def _write(sheet: Sheet, listed: Listed, draft: Path, no_figures: bool, progress
     for number, chain in listed:
         progress.say(_("writing descriptions"), number, listed[-1][0])
         for inversion, text in enumerate(library.start_texts(chain), start=1):
-            path = draft / "start" / f"chain-{number}-inversion-{inversion}.toml"
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
+            (draft / "start").mkdir(exist_ok=True)
+            name = f"chain-{number}-inversion-{inversion}.toml"
+            (draft / "start" / name).write_text(text, encoding="utf-8", newline="\n")
     return ""
 
 

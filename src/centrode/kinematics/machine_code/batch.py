@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
+from centrode.kinematics.hinge_angles import moving_hinges
 from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
 from centrode.kinematics.machine_code.events import Eventful
 from centrode.kinematics.machine_code.outputs import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
@@ -65,7 +66,9 @@ def solve_many(
     # the search for events looks at the mesh, the motion at the samples: the longer of the two says what the
     # work is
     places = max(len(span.parameter), len(mesh_of(ready.kinematics.path, span.parameter)))
-    if lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
+    # angles at hinges on the sphere take their turns from the search of the arrays
+    turns_hinges = ready.mechanism.space == "sphere" and bool(moving_hinges(ready.mechanism))
+    if lanes * places < WORTH_COMPILING or not machine_code.PRESENT or turns_hinges:
         return solve(ready, span, numbers, lanes, progress)
     varied = varied_of(numbers, {})
     try:
@@ -224,6 +227,8 @@ class _Many:
         size = max(1, CHUNK // self._places)
         worst = np.fmax.reduce(residual, axis=1)
         lanes = np.nonzero(worst == np.fmax.reduce(worst))[0]
+        # Newton's method leaves many at the same last bit; bits are not promised there, so one of them will do
+        lanes = lanes[:1] if self.plan.steps else lanes
         first = int(lanes[0]) // size * size if len(lanes) else 0
         # what does not close counts as well, though it has no residual any more
         chosen = np.union1d(lanes, sorted(self._events.unclosed)).astype(np.intp)
