@@ -95,7 +95,7 @@ def test_cubic_letters_cover_what_parabolas_cover() -> None:
         made = svg_of(figure)
     cubic = with_cubic_letters(made)
     assert b"Q" in made and b" C " in cubic and b"Q" not in cubic
-    # a pixel differs by less than a tenth of black: several edges of a small index may cross it, each off by half a unit
+    # a pixel differs by less than a tenth of black: several edges of a small index cross it, each off by half a unit
     assert np.abs(rendered(cubic) - rendered(made)).max() <= 25
     assert with_cubic_letters(cubic) == cubic
     assert b" C " not in with_cubic_letters(made.replace(b"Q ", b"A "))
