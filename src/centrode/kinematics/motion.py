@@ -369,6 +369,9 @@ def _solve_range(
 ) -> Solved:
     if numbers is None:
         return solve(ready, span, progress=progress)
+    # angles at hinges take their turns from the search of the arrays
+    if ready.mechanism.space == "sphere" and moving_hinges(ready.mechanism):
+        return solve(ready, span, numbers, lanes, progress)
     solved: Solved = _many().solve_many(ready, span, numbers, lanes, progress)
     return solved
 

@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.hinge_angles import moving_hinges
 from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
 from centrode.kinematics.machine_code.events import Eventful
 from centrode.kinematics.machine_code.outputs import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
@@ -62,13 +61,11 @@ SLACK = "slack"
 def solve_many(
     ready: Ready, span: SampleGrid, numbers: Dimensions, lanes: int, progress: Progress | None = None
 ) -> Solved:
-    """Motion of a batch at the samples of a span: what `solve` gives."""
+    """Motion of a batch at the samples of a span: what `solve` gives, but for angles at hinges on the sphere."""
     # the search for events looks at the mesh, the motion at the samples: the longer of the two says what the
     # work is
     places = max(len(span.parameter), len(mesh_of(ready.kinematics.path, span.parameter)))
-    # angles at hinges on the sphere take their turns from the search of the arrays
-    turns_hinges = ready.mechanism.space == "sphere" and bool(moving_hinges(ready.mechanism))
-    if lanes * places < WORTH_COMPILING or not machine_code.PRESENT or turns_hinges:
+    if lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
         return solve(ready, span, numbers, lanes, progress)
     varied = varied_of(numbers, {})
     try:
