@@ -39,6 +39,8 @@ FIRST, GREATEST, GROWTH = 4, 0.8, 3.0
 """The first step in places, the greatest one, in rad and in the greatest length of all free coordinates together, and
 by how much one may be longer than the one before. Steps are greater than along curves, as the determinant is looked at
 in all places that they pass."""
+BEYOND = int(GREATEST / PITCH)
+"""Places that the last step may lead beyond the end: those of the longest step, as the pace is at least 1."""
 FAST = 8.0
 """How fast free coordinates may move against the path, in its units: faster ones are near a limit."""
 
@@ -98,7 +100,7 @@ class _Ahead:
         return np.stack(parts, axis=1)
 
     def _computed(self, block: int) -> Array:
-        count = min(BLOCK, self.most + 1 - block * BLOCK)
+        count = min(BLOCK, self.most + 1 + BEYOND - block * BLOCK)
         walkers = len(self.lane)
         number = np.tile(np.arange(count) + block * BLOCK, walkers)
         who = np.repeat(np.arange(walkers), count)
@@ -173,7 +175,8 @@ def walk_by_parameter(
         going = (most > 0) & np.isfinite(here.pace) & (here.size != 0.0)
         while going.any():
             who = np.nonzero(going)[0]
-            stride = np.minimum(strides[who], most[who] - number[who])
+            # the last step may lead beyond the end, so that steps, and with them last bits, do not hang on the range
+            stride = strides[who]
             foretold = _foretold(
                 loops, here.series[:, who], last[:, who], stride * steps[who], stride / passed[who]
             )
