@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -11,9 +12,6 @@ import numpy.typing as npt
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-
-if TYPE_CHECKING:
-    from centrode.kinematics.solve import Solved
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -73,25 +71,25 @@ def rotor_of_hinge(hinge: MovingHinge, _numbers: Dimensions, at: Positions) -> t
     return cosine, sine
 
 
-def hinge_rates(solved: Solved, hinges: tuple[MovingHinge, ...]) -> tuple[Array, Array]:
+def hinge_rates(
+    hinges: Sequence[MovingHinge], points: Sequence[str], places: Array, links: Sequence[str], spins: Array
+) -> tuple[Array, Array]:
     """Two derivatives (lanes, n, hinges) of the angle of each hinge by the path's parameter.
+
+    Parameters
+    ----------
+    points, places : their names, and where they stand (lanes, n, points, 3)
+    links, spins : their names, and rotation vectors and their derivatives (2, lanes, n, links, 3) [rad]
 
     Notes
     -----
     The relative angular velocity of two hinged links lies along the hinge, and so does the part of its derivative
     that counts: what is square to the hinge only turns it.
     """
-    assert solved.spins is not None
-    points = {
-        name: k for k, name in enumerate((*solved.ready.structure.dimensions.frame, *solved.layout.points))
-    }
-    links = {name: k for k, name in enumerate(solved.layout.links)}
-    at = solved.all_points[0][:, :, [points[hinge.point] for hinge in hinges]]
-    first, second = ([links[hinge.links[k]] for hinge in hinges] for k in (0, 1))
+    at = places[:, :, [points.index(hinge.point) for hinge in hinges]]
+    first, second = ([links.index(hinge.links[k]) for hinge in hinges] for k in (0, 1))
     with np.errstate(invalid="ignore"):
-        one, two = (
-            np.einsum("...i,...i", at, spin[:, :, second] - spin[:, :, first]) for spin in solved.spins
-        )
+        one, two = (np.einsum("...i,...i", at, spin[:, :, second] - spin[:, :, first]) for spin in spins)
     return one, two
 
 

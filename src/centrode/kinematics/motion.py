@@ -140,7 +140,12 @@ def kinds_of(solved: Solved) -> list[VariableKind]:
 def hinge_orders(solved: Solved) -> Orders | None:
     """Angles at the moving hinges with two derivatives by the path's parameter; None where there are none."""
     hinges = moving_hinges(solved.ready.mechanism) if solved.hinges is not None else ()
-    return (solved.hinges, *hinge_rates(solved, hinges)) if hinges else None
+    if not hinges:
+        return None
+    assert solved.spins is not None
+    points = (*solved.ready.structure.dimensions.frame, *solved.layout.points)
+    rates = hinge_rates(hinges, points, solved.all_points[0], solved.layout.links, solved.spins)
+    return solved.hinges, *rates
 
 
 def spherical_variables(

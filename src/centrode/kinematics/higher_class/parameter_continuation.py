@@ -176,9 +176,13 @@ def walk_by_parameter(
         while going.any():
             who = np.nonzero(going)[0]
             # the last step may lead beyond the end, so that steps, and with them last bits, do not hang on the range
-            stride = strides[who]
+            stride: Lanes = strides[who]
             foretold = _foretold(
-                loops, here.series[:, who], last[:, who], stride * steps[who], stride / passed[who]
+                loops,
+                here.series[:, who],
+                last[:, who],
+                np.multiply(stride, steps[who]),
+                np.divide(stride, passed[who]),
             )
             known = ahead.known(who, number[who] + stride)
             way = stride * PITCH * here.pace[who]
@@ -197,11 +201,11 @@ def walk_by_parameter(
             last[:, who] = hermite(
                 here.series[:, who][:, :, loops.coordinates],
                 there.series[:, :, loops.coordinates],
-                (stride * steps[who])[:, None],
+                np.multiply(stride, steps[who])[:, None],
             )
             passed[who] = stride
             here.put(who, there)
-            for k, walker in enumerate(who):
+            for k, walker in enumerate(who.tolist()):
                 at = float(initial + steps[walker] * number[walker])
                 courses[walker].add(at, there.series[:, k], courses[walker].sense)
             longer = np.minimum(

@@ -30,6 +30,8 @@ SIGNS = 1.7
 """How much larger signs are than on a page of a document."""
 HEADING, USUAL, SMALLEST = 5.0, 3.5, 2.5
 """Heights of capital letters [mm]."""
+LETTER = 0.92
+"""Width of a letter over the height of a capital, on an average with room to spare."""
 ABOVE = 8.4
 """Names of figures larger than this [pt] are written in the heading's height, the others in the usual one."""
 HEAD, HALF = 4.5, 0.8
@@ -145,7 +147,7 @@ class DrawingPage(Page):
         self, field: Field, text: str, height: float, layer: str, left: bool = False, **how: Any
     ) -> Text:
         """A text in the middle of a field, or from its left side on."""
-        shown = "\n".join(_wrapped(text, float(field.size[0]) - 1.6, height))
+        shown = "\n".join(wrapped(text, float(field.size[0]) - 1.6, height))
         x = field.corner[0] + (1.0 if left else field.size[0] / 2)
         y = field.corner[1] + field.size[1] / 2
         return self.overlay.text(
@@ -154,9 +156,14 @@ class DrawingPage(Page):
         )  # fmt: skip
 
 
-def _wrapped(text: str, room: float, height: float) -> list[str]:
+def letters_width(text: str, height: float) -> float:
+    """Width of a line of letters [mm], and of a space behind it."""
+    return (len(text) + 1) * LETTER * height
+
+
+def wrapped(text: str, room: float, height: float) -> list[str]:
     """Lines of a text for a width [mm]; what is one line stays one."""
-    letters = max(4, int(room / (0.92 * height)))
+    letters = max(4, int(room / (LETTER * height)))
     return [part for line in text.split("\n") for part in textwrap.wrap(line, letters) or [""]]
 
 

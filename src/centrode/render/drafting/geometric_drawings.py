@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.patches import Circle
 
-from centrode.render.drafting.drawing_page import USUAL, DrawingPage, Field
+from centrode.render.drafting.drawing_page import USUAL, DrawingPage, Field, letters_width, wrapped
 from centrode.render.drafting.plates import (
     METRE,
     SIGN,
@@ -175,9 +175,17 @@ def _draw_angle(
 
 def write_facts(page: DrawingPage, field: Field, lines: list[tuple[str, str]]) -> None:
     """What is given and found, one below the other from the top of a field, the values in a column of their own."""
-    step = min(2.2 * USUAL, float(field.size[1]) / max(1, len(lines)))
+    # a value that does not fit beside its label goes on below, in the column of values
+    rows = [
+        ("" if number else label, part)
+        for label, value in lines
+        for number, part in enumerate(
+            wrapped(value, float(field.size[0]) - letters_width(label, USUAL), USUAL)
+        )
+    ]
+    step = min(2.2 * USUAL, float(field.size[1]) / max(1, len(rows)))
     left, top = float(field.corner[0]), float(field.end[1])
-    for number, (label, value) in enumerate(lines):
+    for number, (label, value) in enumerate(rows):
         up = top - (number + 1) * step
         page.write_in(USUAL, left, up, label, ha="left", va="bottom")
         page.write_in(USUAL, float(field.end[0]), up, value, ha="right", va="bottom")
