@@ -27,6 +27,7 @@ from centrode.cli.chains import chains
 from centrode.cli.draw import draw
 from centrode.cli.examples import examples
 from centrode.cli.export import export
+from centrode.cli.help_texts import omitted_help_texts
 from centrode.cli.report import report
 from centrode.cli.schema import schema
 from centrode.cli.sheets import sheets
@@ -107,7 +108,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             reconfigure(errors="replace")
     choose_language_of_process(wished_language(arguments))
     try:
-        with _termination_as_interruption(), _rare_collection():
+        with _termination_as_interruption(), _rare_collection(), omitted_help_texts():
             result = _run(build_app(), list(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()
