@@ -10,7 +10,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
-from centrode.dynamics.kinetostatics.equations import EPSILON, ForceSystem, InPlane, inverse_of
+from centrode.dynamics.kinetostatics.equations import EPSILON, ForceSystem, InPlane, Scheme, inverse_of
 from centrode.dynamics.kinetostatics.reactions import checks_of, find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import DriveMotion, State
@@ -126,6 +126,35 @@ def test_inverses_say_what_is_singular() -> None:
     assert not helped.useless[0]
     right = np.array([[1.0], [5.0]])
     assert np.allclose(helped.matrix[0] @ helped.times(right), right)
+
+
+def test_an_inverse_by_blocks_is_that_of_the_whole() -> None:
+    random = np.random.default_rng(25)
+    blocks = (3, 6, 2)
+    block = np.repeat(np.arange(len(blocks)), blocks)
+    matrix = np.where(block[:, None] < block, 0.0, random.normal(size=(50, 11, 11)))
+    whole, parts = inverse_of(matrix), inverse_of(matrix, blocks)
+    off = np.abs(parts.inverse - whole.inverse).max(axis=(1, 2)) / np.abs(whole.inverse).max(axis=(1, 2))
+    assert (off < 64 * EPSILON * whole.condition).all()
+    assert np.allclose(parts.condition, whole.condition, rtol=1e-6)
+    # a singular block makes the whole singular, and nothing of its neighbours in the stack
+    matrix[7, 3:9, 3:9] = 1.0
+    judged = inverse_of(matrix, blocks)
+    assert judged.useless[7]
+    assert np.isnan(judged.inverse[7]).all()
+    assert np.allclose(judged.inverse[8], whole.inverse[8], rtol=1e-10)
+
+
+def test_equations_stand_group_by_group() -> None:
+    """Forces are found from the last Assur group to the drive: two dyads and the crank of the press."""
+    scheme = Scheme.of(ready(ct.example("six-bar-press")).structure)
+    assert scheme.blocks == (6, 6, 3)
+    names = [body.name for body in scheme.bodies]
+    assert set(names[:2]) == {"DH", "slider"}
+    assert names[4:] == ["OA"]
+    # a triad hangs together
+    triad = Scheme.of(ready(ct.example("third-class-triad")).structure)
+    assert sorted(triad.blocks) == [3, 12]
 
 
 def test_three_cranks_say_what_they_do_not_determine() -> None:

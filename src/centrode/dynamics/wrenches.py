@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from centrode.geometry import plane, sphere
+from centrode.geometry import sphere
 from centrode.structure.constraints import FRAME, Entity
 
 Number: TypeAlias = Any
@@ -39,20 +39,33 @@ class Wrench:
 
     def times(self, factor: Number) -> Wrench:
         """The wrench multiplied by a number."""
-        force = tuple(x * factor for x in self.force)
+        force = tuple(_product(x, factor) for x in self.force)
         moment = self.moment
-        turned = tuple(x * factor for x in moment) if isinstance(moment, tuple) else moment * factor
+        turned = tuple(x * factor for x in moment) if isinstance(moment, tuple) else _product(moment, factor)
         return Wrench(self.body, force, self.at, turned)
 
     def moment_about(self, place: Vector) -> Moment:
         """Moment of the force about a place, and the couple [N m]."""
         if len(self.force) == 2:
+            along, across = self.force
             (x, y), (u, v) = self.at, place
-            return plane.cross((x - u, y - v), (self.force[0], self.force[1])) + self.moment
+            # plain zeros, of which couples and rows of hinges are full, cost nothing
+            turned = 0.0 if _is_zero(across) else (x - u) * across
+            turned = turned if _is_zero(along) else turned - (y - v) * along
+            return turned if _is_zero(self.moment) else turned + self.moment
         x, y, z = self.at
         u, v, w = place
         turned = sphere.cross((x - u, y - v, z - w), (self.force[0], self.force[1], self.force[2]))
         return sphere.add(turned, self.moment) if isinstance(self.moment, tuple) else turned
+
+
+def _is_zero(number: Number) -> bool:
+    return isinstance(number, float) and number == 0.0
+
+
+def _product(number: Number, factor: Number) -> Number:
+    """A plain zero, of which rows are full, stays one and costs nothing."""
+    return number if _is_zero(number) else number * factor
 
 
 def on_point(point: str, force: Vector, at: Vector) -> Wrench:

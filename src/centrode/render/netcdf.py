@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray
+from xarray.backends import ScipyDataStore
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -39,7 +40,11 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     }
     if absent:
         kept = kept.assign_attrs({WITHOUT_ENTRIES: json.dumps(absent)})
-    kept.to_netcdf(path, engine="scipy")
+    # `to_netcdf` looks first for a cluster of computers, which takes as long as a whole run where its library is there
+    with path.open("wb") as stream:
+        store = ScipyDataStore(stream, mode="w", lock=False)
+        kept.dump_to_store(store)
+        store.close()
 
 
 def _drives_by_name(dataset: xarray.Dataset) -> list[str]:

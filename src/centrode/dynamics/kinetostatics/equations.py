@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -40,6 +41,7 @@ from centrode.structure.constraints import (
     Constraint,
     Contact,
     DisplacementDrive,
+    Entity,
     GearRatio,
     NoSlip,
     PointInLink,
@@ -49,6 +51,7 @@ from centrode.structure.constraints import (
 )
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure
+from centrode.structure.rank import in_order, match, strong_components
 
 Unknown: TypeAlias = tuple[Constraint, int]
 """One scalar equation: a constraint and its row there."""
@@ -62,10 +65,14 @@ class Scheme:
 
     Attributes
     ----------
-    solved : as many unknowns as there are equations
+    solved : as many unknowns as there are equations, those of a group of `links` behind those of the groups before
     hosts : (point, axis) -> unknown that follows from the pin's balance
     loose : (point, axis) of points without a link to bear them: they keep their own equations
     repeating : unknowns of the equations that repeat others; nothing tells how great they are
+    bodies : links and points without one, in the order of their equations
+    blocks : numbers of equations of the groups that are solved one after the other
+        The equations of a group speak of its own unknowns and of those of groups before it, as an Assur group hangs
+        on others that it loads.
     """
 
     structure: Structure
@@ -73,6 +80,8 @@ class Scheme:
     hosts: Mapping[Axis, Unknown]
     loose: tuple[Axis, ...]
     repeating: tuple[Unknown, ...]
+    bodies: tuple[Entity, ...]
+    blocks: tuple[int, ...]
 
     @classmethod
     def of(cls, structure: Structure) -> Scheme:
@@ -89,12 +98,17 @@ class Scheme:
         taken = set(hosts.values())
         loose = tuple((point, axis) for point in points for axis in range(2) if (point, axis) not in hosts)
         solved = tuple(unknown for unknown in kept if unknown not in taken)
-        return cls(structure, solved, hosts, loose, structure.repeating)
-
-    @property
-    def links(self) -> tuple[str, ...]:
-        """Links, each with three equations."""
-        return tuple(self.structure.mechanism.links)
+        bodies = [Entity("link", link) for link in structure.mechanism.links]
+        bodies += [Entity("point", point) for point in dict.fromkeys(point for point, _axis in loose)]
+        groups = _groups_in_order(structure.mechanism, solved, hosts, bodies)
+        if groups is None:
+            # there are not as many unknowns as equations of some bodies: all are solved at once
+            groups = [(bodies, list(solved))]
+        return cls(
+            structure, tuple(unknown for _own, unknowns in groups for unknown in unknowns), hosts, loose,
+            structure.repeating, tuple(body for own, _unknowns in groups for body in own),
+            tuple(sum(map(_equations_of, own)) for own, _unknowns in groups),
+        )  # fmt: skip
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -104,11 +118,51 @@ class Scheme:
     @property
     def size(self) -> int:
         """Number of equations."""
-        return 3 * len(self.links) + len(self.loose)
+        return sum(self.blocks)
 
-    def first_row(self, link: str) -> int:
-        """Row of a link's first force equation; the other and that of moments follow."""
-        return 3 * self.links.index(link)
+    @cached_property
+    def first_rows(self) -> dict[Entity, int]:
+        """Row of the first equation of a body: three of a link, two forces and a moment, two of a point."""
+        counts = [0, *(_equations_of(body) for body in self.bodies)]
+        return dict(zip(self.bodies, accumulate(counts), strict=False))
+
+
+def _equations_of(body: Entity) -> int:
+    return 3 if body.kind == "link" else 2
+
+
+def _groups_in_order(
+    mechanism: Mechanism, solved: Sequence[Unknown], hosts: Mapping[Axis, Unknown], bodies: Sequence[Entity]
+) -> list[tuple[list[Entity], list[Unknown]]] | None:
+    """Bodies whose equations are solved together, with their unknowns, those that they load before them.
+
+    None where equations and unknowns do not match.
+    """
+    known = set(bodies)
+    borne = {point: Entity("link", tie.link) for (point, _row), (tie, _k) in hosts.items()}  # type: ignore[attr-defined]
+    touched: dict[Unknown, list[Entity]] = {}
+    for unknown in solved:
+        link = _host_link(unknown[0], mechanism)
+        tied = [*unknown[0].bodies, *([] if link is None else [Entity("link", link)])]
+        named = [borne.get(body.name, body) if body.kind == "point" else body for body in tied]
+        touched[unknown] = [body for body in dict.fromkeys(named) if body in known]
+    slots = {
+        unknown: [(body, k) for body in own for k in range(_equations_of(body))]
+        for unknown, own in touched.items()
+    }
+    owners = match(slots)
+    if len(owners) < len(solved) or len(owners) < sum(map(_equations_of, bodies)):
+        return None
+    owner = {unknown: body for (body, _k), unknown in owners.items()}
+    depends: dict[Entity, list[Entity]] = {body: [] for body in bodies}
+    for unknown, own in touched.items():
+        for body in own:
+            if body != owner[unknown]:
+                depends[body].append(owner[unknown])
+    return [
+        (component, [unknown for unknown in solved if owner[unknown] in component])
+        for component in in_order(strong_components(depends), depends)
+    ]
 
 
 def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
@@ -470,7 +524,7 @@ class Inverse:
 
     def times(self, right: Array) -> Array:
         """Solutions (m, ...) for right sides (n, ...), with one step of refinement."""
-        asked = np.moveaxis(right, 0, -1)[..., None]
+        asked = np.ascontiguousarray(np.moveaxis(right, 0, -1))[..., None]
         with np.errstate(invalid="ignore"):
             solution = self.inverse @ asked
             # one step of refinement takes back what the inverse's own rounding left
@@ -495,15 +549,16 @@ class Inverse:
             return np.asarray(self.loss >= 1.0)
 
 
-def inverse_of(matrix: Array) -> Inverse:
+def inverse_of(matrix: Array, blocks: Sequence[int] = ()) -> Inverse:
     """Inverses of matrices (..., n, m): of their first n columns, where these are regular.
 
     Where they are not, the columns behind them may help: then it is the pseudo-inverse of the whole. Singular
-    matrices and those with NaN are no error.
+    matrices and those with NaN are no error. `blocks` are the sizes of blocks on the diagonal of the first n columns,
+    right of which these have zeros alone.
     """
     size, width = matrix.shape[-2:]
     # more columns than equations: those of repeating constraints, used only where the others are singular
-    inverse, condition = _square(matrix[..., :size])
+    inverse, condition = _square(matrix[..., :size], blocks or (size,))
     if width == size:
         return Inverse(matrix, inverse, condition)
     wide = np.zeros((*matrix.shape[:-2], width, size))
@@ -515,22 +570,42 @@ def inverse_of(matrix: Array) -> Inverse:
     return candidate
 
 
-def _square(matrix: Array) -> tuple[Array, Array]:
+def _square(matrix: Array, blocks: Sequence[int]) -> tuple[Array, Array]:
     """Inverses and condition numbers in the norm of the greatest row sum."""
-    known = np.isfinite(matrix.sum(axis=(-1, -2)))
+    norm = _norm(matrix)
+    known = np.isfinite(norm)
     regular = known
     try:
-        inverse: Array = np.asarray(np.linalg.inv(_where(regular, matrix)), dtype=np.float64)
+        inverse: Array = _inverse_by_blocks(_where(regular, matrix), blocks)
     except np.linalg.LinAlgError:
-        # a pivot is exactly zero somewhere: there the determinant has no sign, whatever the size of the others
-        regular = known & (np.linalg.slogdet(_where(known, matrix))[0] != 0.0)
-        inverse = np.asarray(np.linalg.inv(_where(regular, matrix)), dtype=np.float64)
+        # a pivot is exactly zero somewhere: there the determinant of a block has no sign, whatever the size of the
+        # others
+        judged = _where(known, matrix)
+        ends = np.cumsum(blocks)
+        for first, end in zip(ends - blocks, ends, strict=True):
+            regular = regular & (np.linalg.slogdet(judged[..., first:end, first:end])[0] != 0.0)
+        inverse = _inverse_by_blocks(_where(regular, matrix), blocks)
     if not regular.all():
         inverse = np.where(regular[..., None, None], inverse, np.nan)
     with np.errstate(invalid="ignore", over="ignore"):
         # the norm of the greatest row sum: no singular values are needed for a bound
-        condition = _norm(matrix) * _norm(inverse)
+        condition = norm * _norm(inverse)
     return inverse, np.where(regular, condition, np.where(known, np.inf, np.nan))
+
+
+def _inverse_by_blocks(matrix: Array, blocks: Sequence[int]) -> Array:
+    """Inverses of matrices (..., n, n) with zeros right of the blocks on their diagonal; LinAlgError as of one."""
+    if len(blocks) == 1:
+        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+    inverse, first = np.zeros(matrix.shape), 0
+    for size in blocks:
+        own, before = slice(first, first + size), slice(first)
+        of_block = inverse[..., own, own] = np.linalg.inv(matrix[..., own, own])
+        if first:
+            # what the unknowns before do to the equations of this block, its own unknowns take back
+            inverse[..., own, before] = -of_block @ (matrix[..., own, before] @ inverse[..., before, before])
+        first += size
+    return inverse
 
 
 # an identity in the place of what has no inverse keeps the rest of the stack going
@@ -539,7 +614,9 @@ def _where(regular: Mask, matrix: Array) -> Array:
 
 
 def _norm(matrix: npt.NDArray[Any]) -> Any:
-    return np.abs(matrix).sum(axis=-1).max(axis=-1)
+    # one product adds up short rows faster than a sum does
+    sums = np.abs(matrix).reshape(-1, matrix.shape[-1]) @ np.ones(matrix.shape[-1])
+    return sums.reshape(matrix.shape[:-1]).max(axis=-1)
 
 
 def _pseudo(matrix: Array) -> tuple[Array, Array]:
@@ -651,15 +728,19 @@ class Kinetostatics:
     @cached_property
     def inverse(self) -> Inverse:
         """The matrix of the equations, inverted at every position."""
-        size, unknowns = self.scheme.size, self.scheme.unknowns
-        matrix = np.zeros((size, len(unknowns), *self.shape))
+        scheme, unknowns = self.scheme, self.scheme.unknowns
+        matrix = np.zeros((scheme.size, len(unknowns), *self.shape))
+        filled = np.zeros(matrix.shape[:2], dtype=bool)
         for column, unknown in enumerate(unknowns):
-            self._add(matrix[:, column], self.pulls[unknown])
+            self._add(matrix[:, column], self.pulls[unknown], filled[:, column])
             # forces and moments over the greatest length are of one size, so that the condition number means
             # something
             if self.equilibrium.by_moment(unknown[0]):
                 matrix[:, column] *= self.scale
-        return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))))
+        block = np.repeat(np.arange(len(scheme.blocks)), scheme.blocks)
+        apart = not filled[:, : scheme.size][block[:, None] < block].any()
+        blocks = scheme.blocks if apart else ()
+        return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))), blocks)
 
     def right_side(self, outer: Iterable[Wrench]) -> Array:
         """Forces and moments [N] on the links, as (equations, 1, n)."""
@@ -703,31 +784,33 @@ class Kinetostatics:
         pulls = self.pulls[self.scheme.hosts[place]]
         return next(pull.force for pull in pulls if pull.body.kind == "point")
 
-    def _add(self, column: Array, pulls: Iterable[Wrench]) -> None:
-        """Add what pulls do to each equation; the frame has none."""
+    def _add(self, column: Array, pulls: Iterable[Wrench], filled: Mask | None = None) -> None:
+        """Add what pulls do to each equation, and mark which these are; the frame has none."""
         for pull in pulls:
             for row, value in self._entries(pull):
                 if not _is_zero(value):
                     column[row] += value
+                    if filled is not None:
+                        filled[row] = True
 
     def _entries(self, pull: Wrench) -> list[tuple[int, Number]]:
         name, scheme = pull.body.name, self.scheme
         if pull.body.kind == "link":
-            return self._on_link(name, pull) if name in scheme.links else []
+            return self._on_link(name, pull) if pull.body in scheme.first_rows else []
         # what acts on a pin with a host is put on the host's equations, at the pin's place
         if (name, 0) in scheme.hosts:
             return self._on_link(scheme.hosts[name, 0][0].link, pull)  # type: ignore[attr-defined]
-        if (name, 0) not in scheme.loose:
+        row = scheme.first_rows.get(pull.body)
+        if row is None:
             # pins of the frame have no equations
             return []
-        row, axes = 3 * len(scheme.links) + scheme.loose.index((name, 0)), self._pin_axes(name)
-        return [(row + k, _along(pull.force, axis)) for k, axis in enumerate(axes)]
+        return [(row + k, _along(pull.force, axis)) for k, axis in enumerate(self._pin_axes(name))]
 
     def _pin_axes(self, point: str) -> Sequence[Vector]:
         return self.equilibrium.pin_axes(self.at.points[point])
 
     def _on_link(self, link: str, pull: Wrench) -> list[tuple[int, Number]]:
-        row = self.scheme.first_row(link)
+        row = self.scheme.first_rows[Entity("link", link)]
         return [(row + k, value) for k, value in enumerate(self.on_link(link, pull))]
 
     def on_link(self, link: str, pull: Wrench) -> tuple[Number, Number, Number]:

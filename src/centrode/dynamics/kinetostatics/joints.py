@@ -109,10 +109,10 @@ def column(value: Number, samples: int) -> Array:
 
 def columns(values: Sequence[Number], samples: int) -> Array:
     """Numbers over the samples (n, numbers)."""
-    table = np.empty((samples, len(values)))
-    for k, value in enumerate(values):
-        table[:, k] = column(value, samples)
-    return table
+    table = np.empty((len(values), samples))
+    for row, value in zip(table, values, strict=True):
+        row[:] = value  # of an array (1, n) its only lane
+    return np.ascontiguousarray(table.T)
 
 
 def tables(values: Sequence[Sequence[Number]], width: int, samples: int) -> Array:

@@ -71,7 +71,7 @@ from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.structure.constraints import Entity
 
 # Reactions at the samples of a motion, as plain arrays with what they come from.
@@ -123,12 +123,12 @@ def find(
     reaction nothing determines.
     """
     prepared = solved.ready
-    scheme, teeth = Scheme.of(prepared.structure), Teeth.of(prepared.mechanism)
+    scheme, teeth, sides = _unchanging(prepared.mechanism)
     _check_size(scheme, len(pace.acceleration))
     state = State.of(solved, pace.moving)
     system = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth)
     outer = outer_of(state, burden, pace.acceleration, state.exists)
-    forces, sides = system.forces(outer.pulls), sides_of(prepared.mechanism)
+    forces = system.forces(outer.pulls)
     # without friction first: what acts decides neither on statuses nor on what is undetermined
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))
@@ -163,6 +163,12 @@ def _with_friction(
     return replace(
         found, outer=outer, forces=forces, parts=parts, status=status, friction=WithFriction(sizes, powers)
     )
+
+
+@kept_by_mechanism(most=16)
+def _unchanging(mechanism: Mechanism) -> tuple[Scheme, Teeth, tuple[JointSide, ...]]:
+    """What the equations are solved for, where teeth mesh, and the sides of hinges: the same at all positions."""
+    return Scheme.of(ready(mechanism).structure), Teeth.of(mechanism), sides_of(mechanism)
 
 
 def _check_size(scheme: Scheme, samples: int) -> None:
@@ -242,24 +248,26 @@ def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
     system = forces.system
     samples = system.shape[-1]
     sums: dict[Entity, Sequence[Number]] = {entity: (0.0,) * 3 for entity in system.scheme.structure.unknowns}
-    size: Number = 0.0
+    acting: list[Number] = []
+    turning: list[Number] = []
     for pull in forces.acting:
         if pull.body in sums:
             parts = system.on_link(pull.body.name, pull) if pull.body.kind == "link" else pull.force
             # `strict=False`: a pin has two components in the plane, a link three
             sums[pull.body] = tuple(x + y for x, y in zip(sums[pull.body], parts, strict=False))
-        size = _greater(_greater(size, pull.force, 1.0), components(pull.moment), system.scale)
-    missing: Number = 0.0
-    for left in sums.values():
-        missing = _greater(missing, left, 1.0)
-    return column(missing, samples), column(size, samples)
+        acting += pull.force
+        turning += components(pull.moment)
+    missing = _greatest_size([x for left in sums.values() for x in left], samples)
+    size = _greatest_size(acting, samples)
+    return missing, np.maximum(size, _greatest_size(turning, samples) / system.scale)
 
 
-def _greater(size: Number, parts: Sequence[Number], unit: float) -> Number:
-    """The greatest of a size and of some numbers over their unit."""
-    for part in parts:
-        size = np.maximum(size, np.abs(part) / unit)
-    return size
+def _greatest_size(parts: Sequence[Number], samples: int) -> Array:
+    """The greatest size (n) of some numbers over the samples; plain zeros are none."""
+    told = [x for x in parts if not (isinstance(x, float) and x == 0.0)]
+    if not told:
+        return np.zeros(samples)
+    return np.asarray(np.abs(columns(told, samples)).max(axis=1))
 
 
 def _frame(found: ReactionSolution) -> tuple[Array, Array]:
@@ -268,13 +276,14 @@ def _frame(found: ReactionSolution) -> tuple[Array, Array]:
     samples = forces.system.shape[-1]
     origin = forces.system.equilibrium.origin
     (borne, turned), (acting, turning) = total(forces.on_frame, origin), total(found.outer.pulls, origin)
-    missing = _greater(0.0, [x - y for x, y in zip(borne, acting, strict=True)], 1.0)
+    short = [x - y for x, y in zip(borne, acting, strict=True)]
     pairs = zip(components(turned), components(turning), strict=True)
-    missing = _greater(missing, [x - y for x, y in pairs], scale)
-    size: Number = 0.0
-    for pull in [*forces.on_frame, *found.outer.pulls]:
-        size = _greater(_greater(size, pull.force, 1.0), components(pull.moment_about(origin)), scale)
-    return column(missing, samples), column(size, samples)
+    missing = _greatest_size(short, samples)
+    missing = np.maximum(missing, _greatest_size([x - y for x, y in pairs], samples) / scale)
+    pulls = [*forces.on_frame, *found.outer.pulls]
+    size = _greatest_size([x for pull in pulls for x in pull.force], samples)
+    moments = [x for pull in pulls for x in components(pull.moment_about(origin))]
+    return missing, np.maximum(size, _greatest_size(moments, samples) / scale)
 
 
 def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:

@@ -181,8 +181,8 @@ class _ByLoops:
 
     def step(self, parameter: Array) -> Array:
         """Find a step; returns its size."""
-        series, _known = self._series(parameter, 1)
-        self.right[:, :-1] = -self.loops.residual(series[0])
+        self._series(parameter, 1)
+        self.right[:, :-1] = -self.left
         self.steps = solve_places(self.matrix, self.right[:, :, None])[:, :, 0]
         return np.asarray(np.max(np.abs(self.steps), axis=1))
 
@@ -196,7 +196,7 @@ class _ByLoops:
         ahead = Jet((parameter, np.ones(len(parameter)), *[0.0] * (order - 1)))
         known = self.loops.known(self.around.known(ahead, self.lanes), len(parameter), order + 1)
         series = self.loops.begin(self.loops.numbers(self.free, self.whole, known[0]), known)
-        self.matrix[:, :-1, :-1] = self.loops.matrix(series[0])
+        self.left, self.matrix[:, :-1, :-1] = self.loops.equations(series[0])
         # the parameter's column is of the size of the others
         self.matrix[:, :-1, -1] = self.around.unit * self.loops.coefficient(series, 1)
         return series, known
@@ -440,8 +440,8 @@ class _BendsByLoops:
         self.known = loops.known(self.around.known(ahead, self.lane), 1, 3)
         self.numbers = loops.numbers(self.free, self.whole, self.known[0])
         by_parameter = loops.coefficient(loops.begin(self.numbers, self.known), 1)
-        matrix = np.concatenate([loops.matrix(self.numbers)[0], unit * by_parameter.T], axis=1)
-        return matrix, -loops.residual(self.numbers)[0]
+        left, matrix = loops.equations(self.numbers)
+        return np.concatenate([matrix[0], unit * by_parameter.T], axis=1), -left[0]
 
     def bend(self, least: Array, direction: Array) -> float:
         """Second derivative of a combination of equations in a direction of the curve's coordinates."""

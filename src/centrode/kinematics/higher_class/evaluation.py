@@ -112,8 +112,8 @@ def _close_by_loops(
         if rough:
             right = ~(foretold.beyond | foretold.limit)
             if isinstance(m, JetFunctions):
-                numbers = loops.numbers(free, whole, beside[0])
-                free -= solve_places(loops.matrix(numbers), loops.residual(numbers)[:, :, None])[:, :, 0]
+                left, matrix = loops.equations(loops.numbers(free, whole, beside[0]))
+                free -= solve_places(matrix, left[:, :, None])[:, :, 0]
         else:
             converged = newton_by_loops(loops, beside[0], free, whole)
             numbers = loops.numbers(converged.state, whole, beside[0])

@@ -9,6 +9,7 @@ mechanisms, J. Mech. Des. 121, 1999, has the same form in complex numbers).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -178,9 +179,8 @@ class LoopClosure:
                 self.closing[:, number] = (a * (y - q) - b * (x - p)) * over
             else:
                 self.others.append(OtherRow(constraint, row, number, 1.0 if constraint.angular else over))
-        self.slopes = self._derivatives(self.closing)
         bodies = dict.fromkeys(body for other in self.others for body in other.constraint.bodies)
-        forms: list[Array] = [self._driven[name] for name in self.drives]
+        forms: list[Array] = [self._driven[name] for name in self.drives] if self.others else []
         self.where: dict[Entity, int] = {}
         for body in bodies:
             self.where[body] = len(forms)
@@ -190,8 +190,10 @@ class LoopClosure:
                 forms += [*self._origins[body.name], *self._rotors[body.name]]
                 if body.name in self._turns:
                     forms.append(self._turns[body.name])
-        self.of_bodies = np.ascontiguousarray(np.array(forms).T) if forms else np.zeros((self.width, 0))
-        self.body_slopes = self._derivatives(self.of_bodies)
+        # what bodies take stands behind the equations: one product tells both
+        of_bodies = np.array(forms).T if forms else np.zeros((self.width, 0))
+        self.forms = np.ascontiguousarray(np.concatenate([self.closing, of_bodies], axis=1))
+        self.slopes = self._derivatives(self.forms)
 
     def _derivatives(self, forms: Array) -> tuple[Array, Array, Array]:
         """What forms (n, m) gain by the free coordinates (m, free): times cosine, times sine, and always."""
@@ -256,31 +258,49 @@ class LoopClosure:
 
     def residual(self, numbers: Array) -> Array:
         """Left sides (k, free) of the equations left over, in rad and in the greatest length."""
-        values = _times(numbers, self.closing)
+        forms = _times(numbers, self.forms)
+        values = forms[:, : self.free]
         if self.others:
-            at = self._bodies(numbers[None])
-            for other in self.others:
-                left = other.constraint.residual(ARRAYS, self.dimensions, at)[other.row]
-                values[:, other.number] = left * other.unit
+            self._put_residuals(values, self._bodies([forms]))
         return values
 
     def coefficient(self, series: Array, order: int) -> Array:
         """A coefficient (k, free) of the left sides along series of numbers (orders, k, n)."""
-        values = _times(series[order], self.closing)
-        if self.others:
-            at = self._bodies(series[: order + 1])
-            for other in self.others:
-                left = other.constraint.residual(JETS, self.dimensions, at)[other.row]
-                of_order = left.coefficients[order] if isinstance(left, Jet) else 0.0
-                values[:, other.number] = of_order * other.unit
+        if not self.others:
+            return _times(series[order], self.forms)
+        forms = [_times(coefficients, self.forms) for coefficients in series[: order + 1]]
+        values, at = forms[order][:, : self.free], self._bodies(forms)
+        for other in self.others:
+            left = other.constraint.residual(JETS, self.dimensions, at)[other.row]
+            of_order = left.coefficients[order] if isinstance(left, Jet) else 0.0
+            values[:, other.number] = of_order * other.unit
         return values
 
     def matrix(self, numbers: Array) -> Array:
         """Derivatives (k, free, free) of the left sides by the free coordinates."""
-        matrix = self._tangents(numbers, self.slopes)
-        if self.others:
-            at = self._bodies(numbers[None])
-            shifts = self._tangents(numbers, self.body_slopes)
+        return self._matrix(numbers, self._bodies([_times(numbers, self.forms)]) if self.others else None)
+
+    def equations(self, numbers: Array) -> tuple[Array, Array]:
+        """Left sides and their derivatives, as `residual` and `matrix` have them."""
+        forms = _times(numbers, self.forms)
+        values = forms[:, : self.free]
+        if not self.others:
+            return values, self._matrix(numbers, None)
+        at = self._bodies([forms])
+        self._put_residuals(values, at)
+        return values, self._matrix(numbers, at)
+
+    def _put_residuals(self, values: Array, at: Positions) -> None:
+        """Put the left sides of the equations that are no hinges."""
+        for other in self.others:
+            left = other.constraint.residual(ARRAYS, self.dimensions, at)[other.row]
+            values[:, other.number] = left * other.unit
+
+    def _matrix(self, numbers: Array, at: Positions | None) -> Array:
+        tangents = self._tangents(numbers)
+        matrix = tangents[:, : self.free]
+        if at is not None:
+            shifts = tangents[:, self.free :]
             for other in self.others:
                 row = other.constraint.rows(self.dimensions, at)[other.row]
                 total: Number = 0.0
@@ -301,17 +321,19 @@ class LoopClosure:
                 total = total + np.asarray(slope)[..., None] * shifts[:, column]
         return total
 
-    def _tangents(self, numbers: Array, slopes: tuple[Array, Array, Array]) -> Array:
-        """Derivatives (k, m, free) of forms by the free coordinates."""
-        by_cosine, by_sine, always = slopes
+    def _tangents(self, numbers: Array) -> Array:
+        """Derivatives (k, m, free) of the forms by the free coordinates."""
+        by_cosine, by_sine, always = self.slopes
         size = self.free
-        cosine, sine = numbers[:, None, :size], numbers[:, None, size : 2 * size]
-        return np.asarray(cosine * by_cosine - sine * by_sine + always)
+        tangents = numbers[:, None, :size] * by_cosine
+        tangents -= numbers[:, None, size : 2 * size] * by_sine
+        tangents += always
+        return tangents
 
-    def _bodies(self, series: Array) -> Positions:
+    def _bodies(self, forms: Sequence[Array]) -> Positions:
         """Positions of what the equations that are no hinges speak of: arrays, or jets for more than one order."""
-        forms = [_times(coefficients, self.of_bodies).T for coefficients in series]
-        columns = list(forms[0]) if len(forms) == 1 else [Jet(c) for c in zip(*forms, strict=True)]
+        each = [of_order[:, self.free :].T for of_order in forms]
+        columns = list(each[0]) if len(each) == 1 else [Jet(c) for c in zip(*each, strict=True)]
         at = Positions({}, {}, dict(zip(self.drives, columns, strict=False)))
         for body, first in self.where.items():
             if body.kind == "point":
@@ -351,7 +373,7 @@ class LoopClosure:
         """Series of converged places, all orders of what is known (orders, k, known), by the matrix there."""
         series = self.begin(numbers, known)
         # the matrix is the same for every order, so it is inverted once
-        inverse = solve_places(matrix, np.broadcast_to(np.eye(self.free), matrix.shape))
+        inverse = inverse_places(matrix)
         for order in range(1, len(known)):
             self.bend(series, order)
             self.put(series, order, -_each(inverse, self.coefficient(series, order)))
@@ -366,6 +388,14 @@ def _each(matrix: Array, vector: Array) -> Array:
 def _times(numbers: Array, factors: Array) -> Array:
     """Products (k, n) (n, m), place by place: the bits of one do not depend on how many there are."""
     return np.asarray(np.matmul(numbers[:, None, :], factors)[:, 0])
+
+
+def inverse_places(matrix: Array) -> Array:
+    """Inverse (k, n, n) of the matrix at every place; NaN where it is singular."""
+    try:
+        return np.asarray(np.linalg.inv(matrix))
+    except np.linalg.LinAlgError:
+        return solve_places(matrix, np.broadcast_to(np.eye(matrix.shape[-1]), matrix.shape))
 
 
 def solve_places(matrix: Array, right: Array) -> Array:

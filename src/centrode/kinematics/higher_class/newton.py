@@ -73,8 +73,8 @@ def newton_by_loops(
     """`newton` by the loops of a group, from free coordinates (k, free) beside what is known (k, known)."""
 
     def step(places: Lanes, free: Array) -> tuple[Array, Array]:
-        numbers = closure.numbers(free, whole[places], known[places])
-        back = solve_places(closure.matrix(numbers), closure.residual(numbers)[:, :, None])[:, :, 0]
+        left, matrix = closure.equations(closure.numbers(free, whole[places], known[places]))
+        back = solve_places(matrix, left[:, :, None])[:, :, 0]
         return free - back, np.max(np.abs(back), axis=1)
 
     return _iterate(step, start, steps)

@@ -90,14 +90,16 @@ class _Ahead:
 
     def known(self, who: Lanes, number: Lanes) -> Array:
         """Coefficients (3, k, known) by the parameter at places of walkers."""
+        if self.most + BEYOND < BLOCK:
+            return self._block(0)[:, who, number]
         blocks = number // BLOCK
-        for block in np.unique(blocks):
-            if int(block) not in self.blocks:
-                self.blocks[int(block)] = self._computed(int(block))
-        if len(self.blocks) == 1:
-            return self.blocks[int(blocks[0])][:, who, number % BLOCK]
-        parts = [self.blocks[int(b)][:, w, n] for b, w, n in zip(blocks, who, number % BLOCK, strict=True)]
+        parts = [self._block(int(b))[:, w, n] for b, w, n in zip(blocks, who, number % BLOCK, strict=True)]
         return np.stack(parts, axis=1)
+
+    def _block(self, block: int) -> Array:
+        if block not in self.blocks:
+            self.blocks[block] = self._computed(block)
+        return self.blocks[block]
 
     def _computed(self, block: int) -> Array:
         count = min(BLOCK, self.most + 1 + BEYOND - block * BLOCK)
@@ -262,9 +264,9 @@ def _newton(
     arrived, active = np.zeros(len(start), dtype=bool), np.ones(len(start), dtype=bool)
     wrong = last
     for k in range(STEPS):
-        numbers = loops.numbers(free, whole, known)
-        step = solve_places(loops.matrix(numbers), loops.residual(numbers)[:, :, None])[:, :, 0]
-        size = np.max(np.abs(step), axis=1)
+        left, matrix = loops.equations(loops.numbers(free, whole, known))
+        step = solve_places(matrix, left[:, :, None])[:, :, 0]
+        size = np.maximum.reduce(np.abs(step), axis=1)
         if k == 0:
             wrong = size
         good = active & (size < 1.0)
@@ -285,6 +287,9 @@ def hermite(here: Array, there: Array, way: Array) -> Array:
     c0, c1, c2 = here[0], here[1] * way, here[2] * way**2
     a = there[0] - c0 - c1 - c2
     b, c = there[1] * way - c1 - 2.0 * c2, 2.0 * there[2] * way**2 - 2.0 * c2
-    return np.stack(
-        [c0, c1, c2, 10.0 * a - 4.0 * b + 0.5 * c, -15.0 * a + 7.0 * b - c, 6.0 * a - 3.0 * b + 0.5 * c]
-    )
+    powers = np.empty((6, *a.shape))
+    powers[0], powers[1], powers[2] = c0, c1, c2
+    powers[3] = 10.0 * a - 4.0 * b + 0.5 * c
+    powers[4] = -15.0 * a + 7.0 * b - c
+    powers[5] = 6.0 * a - 3.0 * b + 0.5 * c
+    return powers
