@@ -199,14 +199,15 @@ class State:
 
     def point(self, name: str) -> Place:
         """Coordinates of a point [m]."""
-        if name in self.mechanism.frame.points:
+        known = self.known.get(f"point {name}")
+        if known is None and name in self.mechanism.frame.points:
             fixed = self.mechanism.frame.coordinates[name]
             if self.on_sphere:
                 radius = self.mechanism.sphere_radius
                 # over plain numbers: a point of the frame has no derivatives
                 return tuple(_constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
             return tuple(_constant(x) for x in fixed)
-        place = self.known.get(f"point {name}")
+        place = known
         if place is None:
             axes = self.layout.axes
             first, unit = axes * self.layout.points.index(name), length_unit(self.mechanism)

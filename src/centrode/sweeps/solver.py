@@ -164,7 +164,11 @@ class Solver:
             self._reason = why.reason
             return
         if outputs is not None and self._plan is not None:
-            self._live = LiveOutputs(outputs, self._plan, traced, varied, self._free)
+            try:
+                self._live = LiveOutputs(outputs, self._plan, traced, varied, self._free)
+            except Untraceable as why:
+                # the motion can be traced, the outputs are left to the arrays
+                self._reason = why.reason
         elif isinstance(self._plan, DirectPlan):
             keep_plan(self._plan)
 

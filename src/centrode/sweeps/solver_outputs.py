@@ -11,6 +11,11 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
+from centrode.dynamics.kinetostatics.friction import contacts_of
+from centrode.dynamics.kinetostatics.reaction_expressions import LARGEST_GAIN, REACTIONS, reaction_gain
+from centrode.dynamics.kinetostatics.reactions import reactions_at
+from centrode.dynamics.loads import MassesAndLoads
 from centrode.errors import InputError, Status
 from centrode.kinematics.machine_code.frame_kernels import RESIDUAL, SLACK_AT_SAMPLES, Known, closes
 from centrode.kinematics.machine_code.frame_plan import FramePlan, FreeMechanism, SampleScan, screening_of
@@ -32,6 +37,7 @@ from centrode.sweeps.sweep import motion_with_names
 Array: TypeAlias = npt.NDArray[np.float64]
 Asked: TypeAlias = str | Sequence[str] | Mapping[str, str] | None
 Given: TypeAlias = Sequence[float]
+GAIN = "gain of reactions"
 
 
 @dataclass(frozen=True)
@@ -42,6 +48,14 @@ class LiveColumn:
     what: Output | OutputFormula
     of_samples: bool
     shape: tuple[int, ...]
+
+    @property
+    def names_reactions(self) -> bool:
+        """Whether it is a reaction, or a formula of some."""
+        if isinstance(self.what, Output):
+            return self.what.quantity in REACTIONS
+        outputs = (variable.output for variable in self.what.variables.values())
+        return any(output is not None and output.quantity in REACTIONS for output in outputs)
 
     def of(self, solved: Solved, values: Mapping[str, Array], ok: npt.NDArray[np.bool_]) -> Any:
         """Its numbers from a motion by the arrays."""
@@ -115,7 +129,8 @@ def asked_outputs(
         raise InputError("outputs", what)
     named = isinstance(asked, Mapping)
     texts = dict(asked) if isinstance(asked, Mapping) else [asked] if isinstance(asked, str) else list(asked)
-    motion = motion_with_names(solve(ready, span), str(texts))
+    solved = solve(ready, span)
+    motion = _with_reactions(motion_with_names(solved, str(texts)), solved, str(texts))
     known, samples = quantities_of(motion), len(span.parameter)
     design = Listed({path: np.ones(1) for path in paths})
     columns: list[LiveColumn] = []
@@ -135,6 +150,16 @@ def asked_outputs(
     if not columns:
         raise InputError("outputs", _("no output is given"), _('name one, such as "position.C" or "angle"'))
     return SolverOutputs(tuple(columns), paths)
+
+
+def _with_reactions(motion: xr.Dataset, solved: Solved, words: str) -> xr.Dataset:
+    """The motion with the reactions of the description, where words name one: masses need not be complete otherwise."""
+    if not any(name in words for name in REACTIONS):
+        return motion
+    burden = MassesAndLoads.for_reactions(solved.ready.mechanism)
+    contacts = contacts_of(solved.ready.mechanism)
+    found = reactions_at(solved, burden, input_motion_of(solved, burden), contacts)
+    return motion.assign({name: found[name].reset_coords(drop=True) for name in REACTIONS if name in found})
 
 
 class _SlopesByPaths(Slopes):
@@ -171,6 +196,8 @@ class LiveOutputs:
                 self.nodes[column.name] = [as_node(x) for x in column.what.of(traced.solved, given).ravel()]
             else:
                 self.nodes[column.name] = [as_node(column.what.trace(self.folds, traced.solved, given, {}))]
+        reacting = any(column.names_reactions for column in asked.columns)
+        self.gain = reaction_gain(traced.solved, given) if reacting else None
 
     def values(self, given: Given, memory: Any) -> dict[str, Any] | None:
         """The outputs of a mechanism; None where it is not clear."""
@@ -249,6 +276,8 @@ class LiveOutputs:
                 nodes[RESIDUAL,] = as_node(self.traced.solved.residual[0, 0])
                 if screening.slack_at_samples is not None:
                     nodes[SLACK_AT_SAMPLES,] = screening.slack_at_samples
+                if self.gain is not None:
+                    nodes[GAIN,] = self.gain
             for fold in folds:
                 nodes["fold", fold.name] = fold.value
                 if slopes:
@@ -293,6 +322,9 @@ class LiveOutputs:
             if (RESIDUAL,) in part.rows:
                 slack = part.rows.get((SLACK_AT_SAMPLES,))
                 if not closes(rows[part.rows[RESIDUAL,]].max(), None if slack is None else rows[slack].min()):
+                    return None
+                # NaN fails the comparison: what is not known is not trusted
+                if (GAIN,) in part.rows and not rows[part.rows[GAIN,]].max() < LARGEST_GAIN:
                     return None
             for fold in part.folds:
                 _fold(known, fold, rows, part.rows)
