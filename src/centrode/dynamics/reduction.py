@@ -516,7 +516,9 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
         for path, x in values.items()
     }
     burden = MassesAndLoads.of(solved.ready.mechanism, given, EXPRESSIONS if expressed else ARRAYS)
-    state = _state_of_nodes(solved, burden) if expressed else State.of(solved, motion_of_batch(solved, burden))
+    state = (
+        _state_of_nodes(solved, burden) if expressed else State.of(solved, motion_of_batch(solved, burden))
+    )
     if name == "reduced_moment":
         total: Number = 0.0
         for load in burden.loads:

@@ -270,8 +270,8 @@ class Solver:
     def gradient(self, values: Values) -> Array:
         """Derivatives of the outputs by the free numbers, (numbers, free); of one number alone (free,).
 
-        NaN where the mechanism is not clear. Raises InputError where there are no outputs, or none that can be
-        differentiated.
+        NaN where an output has no value, and at limits and change points (docs: engine). Raises InputError where there
+        are no outputs, or none that can be differentiated.
         """
         asked = self._require_outputs()
         if self._live is None:
@@ -282,7 +282,8 @@ class Solver:
         self._live.require_slopes()
         if not self._possible(given):
             return asked.blank(len(self.free))
-        return self._live.gradient(given, self._memory())
+        found = self._live.gradient(given, self._memory())
+        return self._live.gradient_with_events(given, self._solved(given)) if found is None else found
 
     def split(self, numbers: Array) -> dict[str, Array]:
         """Output -> its part of what `outputs` or `gradient` gives, in its own shape."""

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.friction import contacts_of
@@ -17,17 +18,20 @@ from centrode.dynamics.kinetostatics.reaction_expressions import LARGEST_GAIN, R
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.errors import InputError, Status
+from centrode.kinematics.machine_code.event_screening import SAFE
 from centrode.kinematics.machine_code.frame_kernels import RESIDUAL, SLACK_AT_SAMPLES, Known, closes
 from centrode.kinematics.machine_code.frame_plan import FramePlan, FreeMechanism, SampleScan, screening_of
 from centrode.kinematics.machine_code.trace import Traced, Untraceable
-from centrode.kinematics.machine_code.variables import Varied, box_array
+from centrode.kinematics.machine_code.variables import Varied, box_array, centre_of, inputs_of, winding_of
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready
+from centrode.kinematics.samples import SUSPECT
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
 from centrode.model.reading import value_text
 from centrode.numerics.expressions import Node, as_node, variable
 from centrode.numerics.graphs import Graph
+from centrode.numerics.jets import Jet
 from centrode.numerics.scans import evaluate
 from centrode.sweeps.designs import Listed
 from centrode.sweeps.machine import Fold, Folds, Slopes, States
@@ -38,6 +42,8 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Asked: TypeAlias = str | Sequence[str] | Mapping[str, str] | None
 Given: TypeAlias = Sequence[float]
 GAIN = "gain of reactions"
+SAME = 1e-6
+"""Share of the size up to which places are the same: another branch is farther off."""
 
 
 @dataclass(frozen=True)
@@ -173,6 +179,89 @@ class _SlopesByPaths(Slopes):
 
 
 @dataclass(frozen=True)
+class TracedOutputs:
+    """Outputs as expressions.
+
+    Attributes
+    ----------
+    folds : over the samples that count
+    nodes : output -> its numbers, of a sample or reduced
+    """
+
+    traced: Traced
+    varied: Varied
+    paths: tuple[str, ...]
+    folds: Folds
+    nodes: Mapping[str, Sequence[Node]]
+
+    @classmethod
+    def of(
+        cls, asked: SolverOutputs, traced: Traced, varied: Varied, paths: tuple[str, ...], samples: int
+    ) -> TracedOutputs:
+        """The outputs, of which so many samples count. Raises Untraceable."""
+        folds, given = Folds(samples), {path: box_array([variable(path)]) for path in paths}
+        nodes: dict[str, Sequence[Node]] = {}
+        for column in asked.columns:
+            if isinstance(column.what, Output):
+                nodes[column.name] = [as_node(x) for x in column.what.of(traced.solved, given).ravel()]
+            else:
+                nodes[column.name] = [as_node(column.what.trace(folds, traced.solved, given, {}))]
+        return cls(traced, varied, paths, folds, nodes)
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """Derivatives of any of them by the free numbers. Raises Untraceable."""
+        return _SlopesByPaths.of(self.paths, self.varied, self.traced, self.folds, frozenset())
+
+    def final(self, columns: Sequence[LiveColumn]) -> Graph:
+        """Numbers of the columns that are reduced, from the folds."""
+        return Graph({x.name: self.nodes[x.name][0] for x in columns if not x.of_samples})
+
+    def final_slopes(self, columns: Sequence[LiveColumn]) -> Graph:
+        """Their derivatives."""
+        return Graph(
+            {
+                f"{name} by {path}": slope
+                for name, node in self.final(columns).outputs.items()
+                for path, slope in self.slopes.of_node(node).items()
+            }
+        )
+
+    def depth(self, node: Node) -> int:
+        """How often samples have to be passed before a node is known."""
+        used = frozenset(Graph({"": node}).variables)
+        return max((fold.depth + 1 for fold in self.folds.found.values() if fold.name in used), default=0)
+
+    def passes(self, columns: Sequence[LiveColumn]) -> range:
+        """The passes over the samples: what hangs on folds of one is computed in the next."""
+        last = max((self.depth(x) for c in columns if c.of_samples for x in self.nodes[c.name]), default=0)
+        return range(max(self.folds.passes, last + 1))
+
+    def of_pass(
+        self, depth: int, columns: Sequence[LiveColumn], slopes: bool
+    ) -> tuple[tuple[Fold, ...], dict[tuple[Any, ...], Node]]:
+        """What is computed at every sample in a pass: what is folded, and numbers of samples or their derivatives."""
+        folds = tuple(self.folds.at_depth(depth))
+        nodes: dict[tuple[Any, ...], Node] = {}
+        for fold in folds:
+            nodes["fold", fold.name] = fold.value
+            if slopes:
+                nodes |= {
+                    ("part", fold.name, x): y for x, y in self.slopes.states_of(fold.name).parts.items()
+                }
+        for column in (x for x in columns if x.of_samples):
+            for k, node in enumerate(self.nodes[column.name]):
+                if self.depth(node) != depth:
+                    continue
+                if not slopes:
+                    nodes["column", column.name, k] = node
+                    continue
+                by = self.slopes.of_node(node)
+                nodes |= {("slope", column.name, k, j): by[path] for j, path in enumerate(self.paths)}
+        return folds, nodes
+
+
+@dataclass(frozen=True)
 class _Part:
     """Numbers of one pass over the samples: rows of its room."""
 
@@ -188,14 +277,8 @@ class LiveOutputs:
         self, asked: SolverOutputs, plan: FramePlan, traced: Traced, varied: Varied, free: FreeMechanism
     ) -> None:
         self.asked, self.plan, self.traced, self.varied, self.free = asked, plan, traced, varied, free
-        self.folds = Folds(len(free.span.parameter))
+        self.expressed = TracedOutputs.of(asked, traced, varied, free.paths, len(free.span.parameter))
         given = {path: box_array([variable(path)]) for path in free.paths}
-        self.nodes: dict[str, list[Node]] = {}
-        for column in asked.columns:
-            if isinstance(column.what, Output):
-                self.nodes[column.name] = [as_node(x) for x in column.what.of(traced.solved, given).ravel()]
-            else:
-                self.nodes[column.name] = [as_node(column.what.trace(self.folds, traced.solved, given, {}))]
         reacting = any(column.names_reactions for column in asked.columns)
         self.gain = reaction_gain(traced.solved, given) if reacting else None
 
@@ -213,48 +296,120 @@ class LiveOutputs:
             for column in self.asked.columns
         }
 
-    def gradient(self, given: Given, memory: Any) -> Array:
-        """Derivatives (numbers, free), of one number alone (free,); NaN where the mechanism is not clear."""
+    def gradient(self, given: Given, memory: Any) -> Array | None:
+        """Derivatives (numbers, free), of one number alone (free,); None where the mechanism is not clear."""
         found = self._run(self._parts_with_slopes, given, memory)
         if found is None:
-            return self.asked.blank(len(self.free.paths))
+            return None
         known, _columns, slopes = found
-        reduced = evaluate(self._final_slopes, known)
-        rows = []
+        return self._joined(slopes, evaluate(self._final_slopes, known))
+
+    def _joined(self, slopes: Mapping[str, Array], reduced: Mapping[str, Any]) -> Array:
+        """Derivatives of all numbers, from those at samples and the reduced ones."""
+        paths, rows = self.free.paths, []
         for column in self.asked.columns:
             if column.of_samples:
-                rows.append(slopes[column.name].reshape(-1, len(self.free.paths)))
+                rows.append(slopes[column.name].reshape(-1, len(paths)))
             else:
-                rows.append(
-                    np.array([[reduced[f"{column.name} by {path}"] for path in self.free.paths]], float)
-                )
+                rows.append(np.array([[reduced[f"{column.name} by {path}"] for path in paths]], float))
         return self.asked.alone(np.concatenate(rows))
+
+    # with events
+
+    def gradient_with_events(self, given: Given, solved: Solved) -> Array:
+        """Derivatives of a mechanism that is not clear, from its motion by the arrays.
+
+        NaN at samples without a position, at limits and change points, and where a change point lies in between that
+        other dimensions do not have; of a fold over samples where one that counts is among these.
+        """
+        if self.traced.steps:
+            return self.asked.blank(len(self.free.paths))
+        columns, paths = self.asked.columns, self.free.paths
+        ok = solved.status[0] == Status.OK
+        values = self._values_at_samples(given, solved)
+        exists = self._differentiable(values, solved)
+        expressed = self._of_count(int(ok.sum()))
+        samples = len(ok)
+        slopes = {
+            x.name: np.full((samples, len(expressed.nodes[x.name]), len(paths)), np.nan)
+            for x in columns
+            if x.of_samples
+        }
+        for depth in expressed.passes(columns):
+            folds, nodes = expressed.of_pass(depth, columns, slopes=True)
+            names = {key: str(k) for k, key in enumerate(nodes)}
+            found = evaluate(Graph({names[key]: node for key, node in nodes.items()}), values)
+            rows = {key: np.broadcast_to(found[name], (samples,)) for key, name in names.items()}
+            for key, row in rows.items():
+                if key[0] == "slope":
+                    slopes[key[1]][:, key[2], key[3]] = np.where(exists, row, np.nan)
+            counted = {
+                key: np.where(exists, row, np.nan)[ok] if key[0] == "part" else row[ok]
+                for key, row in rows.items()
+            }
+            for fold in folds:
+                _fold(values, fold, counted)
+        return self._joined(slopes, evaluate(expressed.final_slopes(columns), values))
+
+    def _of_count(self, samples: int) -> TracedOutputs:
+        """The outputs where so many samples count: a mean is divided by that."""
+        if samples == self.expressed.folds.samples:
+            return self.expressed
+        return TracedOutputs.of(self.asked, self.traced, self.varied, self.free.paths, samples)
+
+    def _values_at_samples(self, given: Given, solved: Solved) -> dict[str, Any]:
+        """Variables of the trace at all samples: turns are those of the motion that is known."""
+        values: dict[str, Any] = dict(self.varied.values(self.free.dimensions(given)))
+        values |= {path: np.array([x]) for path, x in zip(self.free.paths, given, strict=True)}
+        values |= inputs_of(self.free.ready.kinematics.path, self.free.span)
+        for k, link in enumerate(solved.layout.angles):
+            if link in self.traced.turning:
+                values[centre_of(link)] = solved.angles[0, 0, :, k]
+                values |= {winding_of(link, drive): 0.0 for drive in self.traced.winders}
+        return values
+
+    def _differentiable(self, values: Mapping[str, Any], solved: Solved) -> npt.NDArray[np.bool_]:
+        """Samples at which the trace is the motion, away from singularities."""
+        points = [as_node(x) for x in np.ravel(self.traced.solved.points[0])]
+        nodes = {f"point {k}": x for k, x in enumerate(points)}
+        radicands = {
+            f"radicand {group}": as_node(x.value if isinstance(x, Jet) else x)
+            for group, x in self.traced.radicands.items()
+        }
+        if self.gain is not None:
+            nodes[GAIN] = self.gain
+        found = evaluate(Graph(nodes | radicands), values)
+        samples = len(solved.status[0])
+        rows = {name: np.broadcast_to(row, (samples,)) for name, row in found.items()}
+        there = solved.points[0, 0].reshape(samples, -1)
+        size = np.nanmax(np.abs(there), initial=float(self.free.ready.kinematics.path.scale))
+        with np.errstate(invalid="ignore"):
+            # on the other side of a change point the motion is another branch
+            apart = np.array([np.abs(rows[f"point {k}"] - there[:, k]) for k in range(len(points))])
+            exists = apart.max(axis=0, initial=0.0) < SAME * size
+            exists &= np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
+            for name in radicands:
+                # nearer to zero the arrays look at rounding, and derivatives have lost half of their digits
+                exists &= rows[name] > SAFE * SUSPECT * np.nanmax(rows[name], initial=0.0)
+            if self.gain is not None:
+                exists &= rows[GAIN] < LARGEST_GAIN
+        return np.asarray(exists)
 
     def require_slopes(self) -> None:
         """Raise InputError where the outputs cannot be differentiated."""
         try:
-            _ = self._slopes
+            _ = self.expressed.slopes
         except Untraceable as why:
             what = _("derivatives cannot be computed here: {reason}").format(reason=_(why.reason))
             raise InputError("gradient", what, _("omit gradient")) from None
 
     @cached_property
-    def _slopes(self) -> Slopes:
-        return _SlopesByPaths.of(self.free.paths, self.varied, self.traced, self.folds, frozenset())
-
-    @cached_property
     def _final(self) -> Graph:
-        return Graph({x.name: self.nodes[x.name][0] for x in self.asked.columns if not x.of_samples})
+        return self.expressed.final(self.asked.columns)
 
     @cached_property
     def _final_slopes(self) -> Graph:
-        return Graph(
-            {
-                f"{name} by {path}": slope
-                for name, node in self._final.outputs.items()
-                for path, slope in self._slopes.of_node(node).items()
-            }
-        )
+        return self.expressed.final_slopes(self.asked.columns)
 
     @cached_property
     def _parts(self) -> list[_Part]:
@@ -265,12 +420,10 @@ class LiveOutputs:
         return list(self._passes(slopes=True))
 
     def _passes(self, slopes: bool) -> Iterator[_Part]:
-        """The passes over the samples: what hangs on folds of one is computed in the next."""
+        """The passes over the samples, each with what it computes; the first also judges."""
         screening = screening_of(self.free, self.traced, self.varied, "arrays")
-        of_samples = [column for column in self.asked.columns if column.of_samples]
-        last = max((self._depth(x) for column in of_samples for x in self.nodes[column.name]), default=0)
-        for depth in range(max(self.folds.passes, last + 1)):
-            folds = tuple(self.folds.at_depth(depth))
+        for depth in self.expressed.passes(self.asked.columns):
+            folds, found = self.expressed.of_pass(depth, self.asked.columns, slopes)
             nodes: dict[tuple[Any, ...], Node] = {}
             if depth == 0:
                 nodes[RESIDUAL,] = as_node(self.traced.solved.residual[0, 0])
@@ -278,29 +431,9 @@ class LiveOutputs:
                     nodes[SLACK_AT_SAMPLES,] = screening.slack_at_samples
                 if self.gain is not None:
                     nodes[GAIN,] = self.gain
-            for fold in folds:
-                nodes["fold", fold.name] = fold.value
-                if slopes:
-                    nodes |= {
-                        ("part", fold.name, x): y for x, y in self._slopes.states_of(fold.name).parts.items()
-                    }
-            for column in of_samples:
-                for k, node in enumerate(self.nodes[column.name]):
-                    if self._depth(node) != depth:
-                        continue
-                    if not slopes:
-                        nodes["column", column.name, k] = node
-                        continue
-                    by = self._slopes.of_node(node)
-                    nodes |= {
-                        ("slope", column.name, k, j): by[path] for j, path in enumerate(self.free.paths)
-                    }
+            nodes |= found
             scan = self.plan.samples_of({str(k): node for k, node in enumerate(nodes.values())})
             yield _Part(scan, {key: k for k, key in enumerate(nodes)}, folds)
-
-    def _depth(self, node: Node) -> int:
-        used = frozenset(Graph({"": node}).variables)
-        return max((fold.depth + 1 for fold in self.folds.found.values() if fold.name in used), default=0)
 
     def _run(
         self, parts: Sequence[_Part], given: Given, memory: Any
@@ -311,7 +444,9 @@ class LiveOutputs:
             return None
         samples, free = len(self.free.span.parameter), len(self.free.paths)
         columns = {
-            x.name: np.empty((samples, len(self.nodes[x.name]))) for x in self.asked.columns if x.of_samples
+            x.name: np.empty((samples, len(self.expressed.nodes[x.name])))
+            for x in self.asked.columns
+            if x.of_samples
         }
         slopes = {name: np.empty((*array.shape, free)) for name, array in columns.items()}
         for part in parts:
@@ -326,8 +461,9 @@ class LiveOutputs:
                 # NaN fails the comparison: what is not known is not trusted
                 if (GAIN,) in part.rows and not rows[part.rows[GAIN,]].max() < LARGEST_GAIN:
                     return None
+            of_folds = {key: rows[k] for key, k in part.rows.items() if key[0] in ("fold", "part")}
             for fold in part.folds:
-                _fold(known, fold, rows, part.rows)
+                _fold(known, fold, of_folds)
             for key, k in part.rows.items():
                 if key[0] == "column":
                     columns[key[1]][:, key[2]] = rows[k]
@@ -336,15 +472,20 @@ class LiveOutputs:
         return known, columns, slopes
 
 
-def _fold(known: Known, fold: Fold, rows: Array, places: Mapping[tuple[Any, ...], int]) -> None:
-    """Add what is left of a fold over all samples, and of its derivatives: at an extreme those of its first sample."""
-    values = rows[places["fold", fold.name]]
+def _fold(known: dict[str, Any], fold: Fold, rows: Mapping[tuple[Any, ...], Array]) -> None:
+    """Add what is left of a fold over samples, and of its derivatives: at an extreme those of its first sample."""
+    values = rows["fold", fold.name]
+    if not len(values):
+        # no sample counts
+        known |= {key[2]: math.nan for key in rows if key[:2] == ("part", fold.name)}
+        known[fold.name] = math.nan
+        return
     at = (
         slice(None)
         if fold.kind == "sum"
         else int(np.argmin(values) if fold.kind == "min" else np.argmax(values))
     )
     known[fold.name] = float(np.sum(values[at]))
-    for key, k in places.items():
+    for key, row in rows.items():
         if key[:2] == ("part", fold.name):
-            known[key[2]] = float(np.sum(rows[k][at]))
+            known[key[2]] = float(np.sum(row[at]))

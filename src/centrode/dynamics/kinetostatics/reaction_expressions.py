@@ -1,7 +1,7 @@
 """Reactions as expressions: what kinetostatics gives at one sample of a traced motion, for any dimensions.
 
-The equations are those of the arrays (`equations`), with nodes in place of numbers. Their pattern is known beforehand, so
-they are solved as by hand: forces that stand in an equation with a plain factor are eliminated first, what is left
+The equations are those of the arrays (`equations`), with nodes in place of numbers. Their pattern is known beforehand,
+so they are solved as by hand: forces that stand in an equation with a plain factor are eliminated first, what is left
 comes apart into the groups of the plan, of a dyad two moments.
 """
 
@@ -36,7 +36,7 @@ from centrode.dynamics.load_coordinates import Slide
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Values, motion_of_batch, refuse_drive_in_formulas, state_of_nodes
 from centrode.dynamics.state import DriveMotion, State
-from centrode.dynamics.wrenches import Vector, Wrench
+from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError
 from centrode.geometry.plane import is_literal_zero
 from centrode.kinematics.machine_code.newton import inverse, minus, plus, sizes, times, total
@@ -317,9 +317,7 @@ def _system(solved: Solved, scheme: Scheme, teeth: Teeth, state: State) -> Kinet
     pulls: dict[Unknown, tuple[Wrench, ...]] = {}
     for constraint in scheme.structure.constraints:
         wrenches = wrenches_of(constraint, mechanism, numbers, at, teeth, space)
-        pulls |= {
-            (constraint, row): tuple(map(NodeWrench.of, each)) for row, each in enumerate(wrenches)
-        }
+        pulls |= {(constraint, row): tuple(map(NodeWrench.of, each)) for row, each in enumerate(wrenches)}
     # moments are measured by the description's own greatest length: any number of its size will do
     scale = float(solved.ready.kinematics.path.scale)
     return Kinetostatics(scheme, numbers, teeth, space, scale, at, pulls, (1, 1))

@@ -1,7 +1,7 @@
 """A move as one call of machine code: memory, and a table that says where everything is, are made beforehand.
 
-What `frame_code` does, with kernels and numbers of one plan. A thread writes the numbers at the free paths, calls, and has
-the motion; NumPy gives the arc tangents, so that angles have the bits of `solve`.
+What `frame_code` does, with kernels and numbers of one plan. A thread writes the numbers at the free paths, calls, and
+has the motion; NumPy gives the arc tangents, so that angles have the bits of `solve`.
 """
 
 from __future__ import annotations
@@ -103,9 +103,7 @@ class CalledMemory(FrameMemory):
         self.wound = np.zeros((links, judge.drives.shape[1]))
         self.wound_at_samples = np.zeros((links, samples))
         self.angles = np.empty((len(kernels.angles), samples))
-        self.sines, self.cosines = (
-            self.rows.get(name, np.empty((0, samples))) for name in (SINES, COSINES)
-        )
+        self.sines, self.cosines = (self.rows.get(name, np.empty((0, samples))) for name in (SINES, COSINES))
         self.inputs = [np.empty((max(1, len(which)), 1)) for which in called.gathers]
         self._angle_rows = np.array(
             [address_of(self.room[row, 0]) for row in kernels.angles] or [0], dtype=np.int64
@@ -127,7 +125,9 @@ class CalledMemory(FrameMemory):
             arguments = bare_call(scan.take, inputs, room)
             assert arguments is not None
             table[slot : slot + len(arguments)] = arguments
-        for slot, which in zip((Slot.FOR_MESH, Slot.FOR_SPARSE, Slot.FOR_SAMPLES), called.gathers, strict=True):
+        for slot, which in zip(
+            (Slot.FOR_MESH, Slot.FOR_SPARSE, Slot.FOR_SAMPLES), called.gathers, strict=True
+        ):
             table[slot], table[slot + 1] = which.ctypes.data, len(which)
         layout = judge.layout
         table[Slot.VALUES] = self.values.ctypes.data
@@ -187,7 +187,10 @@ class CalledFrames:
             for name, (k, function) in numbers.turned.items()
         }
         before = [functions_before(scan.take).substitute(turned) for scan in kernels.scans]
-        nodes = {**turned, **{f"{k}: {name}": x for k, g in enumerate(before) for name, x in g.outputs.items()}}
+        nodes = {
+            **turned,
+            **{f"{k}: {name}": x for k, g in enumerate(before) for name, x in g.outputs.items()},
+        }
         graph = Graph(nodes)
         if set(graph.variables) - set(numbers.paths):
             return None

@@ -1,8 +1,8 @@
 """What surrounds the kernels of one mechanism, as a function in LLVM's language: one call judges and writes.
 
-It is the same function for all mechanisms: what it works on is told by a table of addresses and counts (`Slot`). It puts
-numbers where kernels look for them, calls these, finds the least and greatest of the nodes, the turns of links, and whether
-all samples close; what it computes is what `frame_kernels` computes by NumPy.
+It is the same function for all mechanisms: what it works on is told by a table of addresses and counts (`Slot`). It
+puts numbers where kernels look for them, calls these, finds the least and greatest of the nodes, the turns of links,
+and whether all samples close; what it computes is what `frame_kernels` computes by NumPy.
 """
 
 from __future__ import annotations
