@@ -179,6 +179,14 @@ class _SlopesByPaths(Slopes):
 
 
 @dataclass(frozen=True)
+class OutputPass:
+    """What is computed at every sample in one pass: what is folded, and numbers of samples or their derivatives."""
+
+    folds: tuple[Fold, ...]
+    nodes: Mapping[tuple[Any, ...], Node]
+
+
+@dataclass(frozen=True)
 class TracedOutputs:
     """Outputs as expressions.
 
@@ -188,6 +196,7 @@ class TracedOutputs:
     nodes : output -> its numbers, of a sample or reduced
     """
 
+    columns: tuple[LiveColumn, ...]
     traced: Traced
     varied: Varied
     paths: tuple[str, ...]
@@ -206,41 +215,51 @@ class TracedOutputs:
                 nodes[column.name] = [as_node(x) for x in column.what.of(traced.solved, given).ravel()]
             else:
                 nodes[column.name] = [as_node(column.what.trace(folds, traced.solved, given, {}))]
-        return cls(traced, varied, paths, folds, nodes)
+        return cls(asked.columns, traced, varied, paths, folds, nodes)
 
     @cached_property
     def slopes(self) -> Slopes:
         """Derivatives of any of them by the free numbers. Raises Untraceable."""
         return _SlopesByPaths.of(self.paths, self.varied, self.traced, self.folds, frozenset())
 
-    def final(self, columns: Sequence[LiveColumn]) -> Graph:
+    @cached_property
+    def final(self) -> Graph:
         """Numbers of the columns that are reduced, from the folds."""
-        return Graph({x.name: self.nodes[x.name][0] for x in columns if not x.of_samples})
+        return Graph({x.name: self.nodes[x.name][0] for x in self.columns if not x.of_samples})
 
-    def final_slopes(self, columns: Sequence[LiveColumn]) -> Graph:
+    @cached_property
+    def final_slopes(self) -> Graph:
         """Their derivatives."""
         return Graph(
             {
                 f"{name} by {path}": slope
-                for name, node in self.final(columns).outputs.items()
+                for name, node in self.final.outputs.items()
                 for path, slope in self.slopes.of_node(node).items()
             }
         )
 
-    def depth(self, node: Node) -> int:
+    @cached_property
+    def values_of_passes(self) -> list[OutputPass]:
+        """The passes over the samples for the numbers: what hangs on folds of one is computed in the next."""
+        return [self._pass(depth, slopes=False) for depth in self._depths]
+
+    @cached_property
+    def slopes_of_passes(self) -> list[OutputPass]:
+        """The passes over the samples for the derivatives."""
+        return [self._pass(depth, slopes=True) for depth in self._depths]
+
+    @property
+    def _depths(self) -> range:
+        nodes = (x for column in self.columns if column.of_samples for x in self.nodes[column.name])
+        last = max(map(self._depth, nodes), default=0)
+        return range(max(self.folds.passes, last + 1))
+
+    def _depth(self, node: Node) -> int:
         """How often samples have to be passed before a node is known."""
         used = frozenset(Graph({"": node}).variables)
         return max((fold.depth + 1 for fold in self.folds.found.values() if fold.name in used), default=0)
 
-    def passes(self, columns: Sequence[LiveColumn]) -> range:
-        """The passes over the samples: what hangs on folds of one is computed in the next."""
-        last = max((self.depth(x) for c in columns if c.of_samples for x in self.nodes[c.name]), default=0)
-        return range(max(self.folds.passes, last + 1))
-
-    def of_pass(
-        self, depth: int, columns: Sequence[LiveColumn], slopes: bool
-    ) -> tuple[tuple[Fold, ...], dict[tuple[Any, ...], Node]]:
-        """What is computed at every sample in a pass: what is folded, and numbers of samples or their derivatives."""
+    def _pass(self, depth: int, slopes: bool) -> OutputPass:
         folds = tuple(self.folds.at_depth(depth))
         nodes: dict[tuple[Any, ...], Node] = {}
         for fold in folds:
@@ -249,16 +268,16 @@ class TracedOutputs:
                 nodes |= {
                     ("part", fold.name, x): y for x, y in self.slopes.states_of(fold.name).parts.items()
                 }
-        for column in (x for x in columns if x.of_samples):
+        for column in (x for x in self.columns if x.of_samples):
             for k, node in enumerate(self.nodes[column.name]):
-                if self.depth(node) != depth:
+                if self._depth(node) != depth:
                     continue
                 if not slopes:
                     nodes["column", column.name, k] = node
                     continue
                 by = self.slopes.of_node(node)
                 nodes |= {("slope", column.name, k, j): by[path] for j, path in enumerate(self.paths)}
-        return folds, nodes
+        return OutputPass(folds, nodes)
 
 
 @dataclass(frozen=True)
@@ -277,6 +296,7 @@ class LiveOutputs:
         self, asked: SolverOutputs, plan: FramePlan, traced: Traced, varied: Varied, free: FreeMechanism
     ) -> None:
         self.asked, self.plan, self.traced, self.varied, self.free = asked, plan, traced, varied, free
+        self._of_fewer: TracedOutputs | None = None
         self.expressed = TracedOutputs.of(asked, traced, varied, free.paths, len(free.span.parameter))
         given = {path: box_array([variable(path)]) for path in free.paths}
         reacting = any(column.names_reactions for column in asked.columns)
@@ -288,7 +308,7 @@ class LiveOutputs:
         if found is None:
             return None
         known, columns, _slopes = found
-        reduced = evaluate(self._final, known)
+        reduced = evaluate(self.expressed.final, known)
         return {
             column.name: columns[column.name].reshape(column.shape)
             if column.of_samples
@@ -302,7 +322,7 @@ class LiveOutputs:
         if found is None:
             return None
         known, _columns, slopes = found
-        return self._joined(slopes, evaluate(self._final_slopes, known))
+        return self._joined(slopes, evaluate(self.expressed.final_slopes, known))
 
     def _joined(self, slopes: Mapping[str, Array], reduced: Mapping[str, Any]) -> Array:
         """Derivatives of all numbers, from those at samples and the reduced ones."""
@@ -335,10 +355,9 @@ class LiveOutputs:
             for x in columns
             if x.of_samples
         }
-        for depth in expressed.passes(columns):
-            folds, nodes = expressed.of_pass(depth, columns, slopes=True)
-            names = {key: str(k) for k, key in enumerate(nodes)}
-            found = evaluate(Graph({names[key]: node for key, node in nodes.items()}), values)
+        for each in expressed.slopes_of_passes:
+            names = {key: str(k) for k, key in enumerate(each.nodes)}
+            found = evaluate(Graph({names[key]: node for key, node in each.nodes.items()}), values)
             rows = {key: np.broadcast_to(found[name], (samples,)) for key, name in names.items()}
             for key, row in rows.items():
                 if key[0] == "slope":
@@ -347,15 +366,20 @@ class LiveOutputs:
                 key: np.where(exists, row, np.nan)[ok] if key[0] == "part" else row[ok]
                 for key, row in rows.items()
             }
-            for fold in folds:
+            for fold in each.folds:
                 _fold(values, fold, counted)
-        return self._joined(slopes, evaluate(expressed.final_slopes(columns), values))
+        return self._joined(slopes, evaluate(expressed.final_slopes, values))
 
     def _of_count(self, samples: int) -> TracedOutputs:
         """The outputs where so many samples count: a mean is divided by that."""
         if samples == self.expressed.folds.samples:
             return self.expressed
-        return TracedOutputs.of(self.asked, self.traced, self.varied, self.free.paths, samples)
+        found = self._of_fewer
+        if found is None or found.folds.samples != samples:
+            # neighbours of a mechanism have as many as a rule
+            found = TracedOutputs.of(self.asked, self.traced, self.varied, self.free.paths, samples)
+            self._of_fewer = found
+        return found
 
     def _values_at_samples(self, given: Given, solved: Solved) -> dict[str, Any]:
         """Variables of the trace at all samples: turns are those of the motion that is known."""
@@ -404,14 +428,6 @@ class LiveOutputs:
             raise InputError("gradient", what, _("omit gradient")) from None
 
     @cached_property
-    def _final(self) -> Graph:
-        return self.expressed.final(self.asked.columns)
-
-    @cached_property
-    def _final_slopes(self) -> Graph:
-        return self.expressed.final_slopes(self.asked.columns)
-
-    @cached_property
     def _parts(self) -> list[_Part]:
         return list(self._passes(slopes=False))
 
@@ -422,8 +438,8 @@ class LiveOutputs:
     def _passes(self, slopes: bool) -> Iterator[_Part]:
         """The passes over the samples, each with what it computes; the first also judges."""
         screening = screening_of(self.free, self.traced, self.varied, "arrays")
-        for depth in self.expressed.passes(self.asked.columns):
-            folds, found = self.expressed.of_pass(depth, self.asked.columns, slopes)
+        expressed = self.expressed
+        for depth, each in enumerate(expressed.slopes_of_passes if slopes else expressed.values_of_passes):
             nodes: dict[tuple[Any, ...], Node] = {}
             if depth == 0:
                 nodes[RESIDUAL,] = as_node(self.traced.solved.residual[0, 0])
@@ -431,9 +447,9 @@ class LiveOutputs:
                     nodes[SLACK_AT_SAMPLES,] = screening.slack_at_samples
                 if self.gain is not None:
                     nodes[GAIN,] = self.gain
-            nodes |= found
+            nodes |= each.nodes
             scan = self.plan.samples_of({str(k): node for k, node in enumerate(nodes.values())})
-            yield _Part(scan, {key: k for k, key in enumerate(nodes)}, folds)
+            yield _Part(scan, {key: k for k, key in enumerate(nodes)}, each.folds)
 
     def _run(
         self, parts: Sequence[_Part], given: Given, memory: Any

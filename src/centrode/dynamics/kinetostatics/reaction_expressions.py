@@ -359,8 +359,10 @@ def reaction_arrays(solved: Solved, values: Values) -> dict[str, npt.NDArray[np.
     """
     prepared = solved.ready
     changed = with_values(prepared.mechanism, {path: float(np.ravel(x)[0]) for path, x in values.items()})
-    kinematics = replace(prepared.kinematics, numbers=dimensions_of(changed, {}, ARRAYS))
-    own = replace(solved, ready=replace(prepared, mechanism=changed, kinematics=kinematics))
+    structure = replace(prepared.structure, mechanism=changed)
+    numbers = dimensions_of(changed, {}, ARRAYS)
+    kinematics = replace(prepared.kinematics, structure=structure, numbers=numbers)
+    own = replace(solved, ready=replace(prepared, kinematics=kinematics))
     burden = MassesAndLoads.for_reactions(changed)
     found = reactions_at(own, burden, input_motion_of(own, burden), contacts_of(changed))
     return {name: found[name].values for name in REACTIONS if name in found}
