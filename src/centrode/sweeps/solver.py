@@ -242,7 +242,7 @@ class Solver:
         """
         # plain floats, as optimisers and pages give them, are not looked at one by one
         if type(values) is list and len(values) == len(self.free) and _FLOATS.issuperset(map(type, values)):
-            given: tuple[float, ...] = tuple(values)  # type: ignore[arg-type]
+            given: tuple[float, ...] = tuple(values)
         else:
             given = self._given(values)
         if not self._possible(given):

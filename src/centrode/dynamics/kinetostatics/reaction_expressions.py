@@ -272,7 +272,8 @@ def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Operand | Non
     if path.by_time:
         refuse_drive_in_formulas(burden)
     boxes = DriveMotion(span.time, span.parameter, span.rate) if own else motion_of_batch(solved, burden)
-    moving = DriveMotion(*(_operand(x) for x in (boxes.time, boxes.parameter, boxes.rate)))
+    numbers: list[Any] = [_operand(x) for x in (boxes.time, boxes.parameter, boxes.rate)]
+    moving = DriveMotion(*numbers)
     state = state_of_nodes(solved, burden, moving)
     for name, place in solved.ready.kinematics.numbers.frame.items():
         state.known[f"point {name}"] = tuple(Jet((x, 0.0, 0.0)) for x in place)
@@ -345,7 +346,8 @@ def _forces(system: Kinetostatics, outer: Sequence[Wrench]) -> tuple[ForceSystem
         factor = system.scale if space.by_moment(unknown[0]) else 1.0
         multipliers[unknown] = times(solution[column], factor)
     multipliers |= system.at_hosts(multipliers, outer, 0.0)
-    gain: Operand = functools.reduce(EXPRESSIONS.max, equations.gains, 0.0)
+    least: Operand = 0.0
+    gain = functools.reduce(EXPRESSIONS.max, equations.gains, least)
     return ForceSystem(system, multipliers, tuple(outer)), as_node(gain)
 
 

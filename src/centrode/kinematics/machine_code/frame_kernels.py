@@ -529,10 +529,10 @@ def frame_scans(screening: EventScreening, places: FramePlaces, scale: Graph | N
     quantities, angles, rows = frame_outputs(traced, screening.slack_at_samples)
     layout = FrameLayout(mesh, Graph.of(traced.winders), quantities, angles)
     written = {str(k): node for k, node in enumerate(rows)}
-    outputs = (on_mesh, sparse_outputs(traced), written)
+    outputs = [on_mesh, sparse_outputs(traced), written]
     if scale is not None:
         # computed with the rest: to have it beforehand takes as long as a kernel
-        outputs = tuple(dict(Graph(x).substitute(scale.outputs).outputs) for x in outputs)
+        outputs = [dict(Graph(x).substitute(scale.outputs).outputs) for x in outputs]
     return FrameScans(layout, *(place_scan(x, at) for x, at in zip(outputs, places.all, strict=True)))
 
 
