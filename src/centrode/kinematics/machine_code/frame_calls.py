@@ -7,7 +7,7 @@ has the motion; NumPy gives the arc tangents, so that angles have the bits of `s
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -27,11 +27,20 @@ from centrode.kinematics.machine_code.frame_kernels import (
     Known,
 )
 from centrode.kinematics.machine_code.variables import centre_of, winding_of
-from centrode.numerics.executors import address_of, bare_call, functions_before, machine_function
+from centrode.numerics.executors import (
+    MACHINE_CODE,
+    Take,
+    address_of,
+    bare_call,
+    bare_function,
+    functions_before,
+    machine_function,
+    streamer,
+)
 from centrode.numerics.expressions import FOLDED, Node, apply_operation, variable
-from centrode.numerics.graphs import Graph
-from centrode.numerics.operations import VARIABLE
-from centrode.numerics.scans import FUNCTIONS
+from centrode.numerics.graphs import Graph, rebuilt
+from centrode.numerics.operations import CONSTANT, VARIABLE
+from centrode.numerics.scans import FUNCTIONS, Scan, room_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
@@ -40,51 +49,117 @@ MOVE, TURN, JUDGE = int(Task.MOVE), int(Task.TURN), int(Task.JUDGE)
 CLEAR, WINDINGS = int(Answer.CLEAR), int(Answer.WINDINGS)
 
 
-def plain_function(graph: Graph, paths: Sequence[str]) -> Callable[[Given], list[float]]:
+WORTH_A_KERNEL = 40
+"""Operations in a row from which on machine code takes less time than Python."""
+LANES = 16
+"""Lanes of a kernel for one mechanism, all alike: as many as a vector may have."""
+
+
+@dataclass(frozen=True)
+class _Stage:
+    """Part of a small graph: what libraries round differently, then operations that are rounded correctly.
+
+    `groups` are functions with the places of their arguments, all of one kind together; `plain` operations with those
+    of theirs, or `kernel` does these at once, from the numbers at places `inputs`.
+    """
+
+    groups: list[tuple[Callable[..., Any], list[tuple[int, ...]]]]
+    plain: list[tuple[Callable[..., float], list[int]]]
+    kernel: Take | None
+    inputs: list[int]
+    outputs: int
+
+    def for_thread(self) -> Callable[[list[Any]], None]:
+        """What adds its numbers to those that are known; with memory of its own."""
+        groups, plain, kernel, inputs = self.groups, self.plain, self.kernel, self.inputs
+        if kernel is not None:
+            row, room = np.zeros((len(inputs), 1)), room_of(self.outputs, 1, LANES)
+            pack, first = struct.Struct(f"{len(inputs)}d").pack_into, room[:, 0, 0]
+            call = bare_function(kernel, row, room)
+
+        def add(numbers: list[Any]) -> None:
+            for function, rows in groups:
+                numbers += function(*(np.array([numbers[k] for k in each]) for each in rows)).tolist()
+            if kernel is not None:
+                pack(row, 0, *[numbers[k] for k in inputs])
+                call()
+                numbers += first.tolist()
+            for operation, at in plain:
+                numbers.append(operation(*[numbers[k] for k in at]))
+
+        return add
+
+
+class PlainFunction:
     """All outputs of a small graph of numbers at paths, rounded as on arrays.
 
     What libraries round differently is left to NumPy, all functions of one kind that can be taken at once in one call.
     """
-    depths: dict[Node, int] = {}
-    for node in graph.order:
-        below = max((depths[x] for x in node.arguments), default=0)
-        depths[node] = below + bool(node.arguments and node.operation not in FOLDED)
-    leaves = [node for node in graph.order if not node.arguments]
-    places = {node: k for k, node in enumerate(leaves)}
-    start: list[Any] = [node.detail for node in leaves]
-    given = [(k, paths.index(str(x.detail))) for k, x in enumerate(leaves) if x.operation == VARIABLE]
-    stages: list[tuple[list[Any], list[Any]]] = []
-    for depth in range(max(depths.values(), default=0) + 1):
-        inner = [node for node in graph.order if node.arguments and depths[node] == depth]
-        taken: dict[str, list[Node]] = {}
-        for node in inner:
-            if node.operation not in FOLDED:
-                taken.setdefault(node.operation, []).append(node)
-        groups = []
-        for operation, nodes in taken.items():
-            rows = list(zip(*([places[x] for x in node.arguments] for node in nodes), strict=True))
-            places |= {node: len(places) + k for k, node in enumerate(nodes)}
-            groups.append((FUNCTIONS[operation], rows))
+
+    def __init__(self, graph: Graph, paths: Sequence[str]) -> None:
+        depths: dict[Node, int] = {}
+        for node in graph.order:
+            below = max((depths[x] for x in node.arguments), default=0)
+            depths[node] = below + bool(node.arguments and node.operation not in FOLDED)
+        leaves = [node for node in graph.order if not node.arguments]
+        places = {node: k for k, node in enumerate(leaves)}
+        self._start: list[Any] = [node.detail for node in leaves]
+        self._given = [
+            (k, paths.index(str(x.detail))) for k, x in enumerate(leaves) if x.operation == VARIABLE
+        ]
+        ends = set(graph.outputs.values())
+        self._stages = []
+        for depth in range(max(depths.values(), default=0) + 1):
+            inner = [node for node in graph.order if node.arguments and depths[node] == depth]
+            later = {x for node in graph.order if depths[node] > depth for x in node.arguments} | ends
+            self._stages.append(_stage_of(inner, places, later))
+        self._ends = [places[node] for node in graph.outputs.values()]
+
+    def for_thread(self) -> Callable[[Given], list[float]]:
+        """The function of the numbers at the paths, with memory of its own."""
+        start, given, ends = self._start, self._given, self._ends
+        stages = [stage.for_thread() for stage in self._stages]
+
+        def run(values: Given) -> list[float]:
+            numbers = start.copy()
+            for k, which in given:
+                numbers[k] = values[which]
+            for stage in stages:
+                stage(numbers)
+            return [numbers[k] for k in ends]
+
+        return run
+
+
+def _stage_of(inner: Sequence[Node], places: dict[Node, int], later: Container[Node]) -> _Stage:
+    """A stage of a graph; what it computes gets its places."""
+    taken: dict[str, list[Node]] = {}
+    for node in inner:
+        if node.operation not in FOLDED:
+            taken.setdefault(node.operation, []).append(node)
+    groups = []
+    for operation, nodes in taken.items():
+        rows = list(zip(*([places[x] for x in node.arguments] for node in nodes), strict=True))
+        places |= {node: len(places) + k for k, node in enumerate(nodes)}
+        groups.append((FUNCTIONS[operation], rows))
+    exact = [node for node in inner if node.operation in FOLDED]
+    if len(exact) < WORTH_A_KERNEL:
         plain = []
-        for node in inner:
-            if node.operation in FOLDED:
-                plain.append((FOLDED[node.operation], [places[x] for x in node.arguments]))
-                places[node] = len(places)
-        stages.append((groups, plain))
-    ends = [places[node] for node in graph.outputs.values()]
+        for node in exact:
+            plain.append((FOLDED[node.operation], [places[x] for x in node.arguments]))
+            places[node] = len(places)
+        return _Stage(groups, plain, None, [], 0)
+    known = dict(places)
+    asked = [node for node in exact if node in later]
 
-    def run(values: Given) -> list[float]:
-        numbers = start.copy()
-        for k, which in given:
-            numbers[k] = values[which]
-        for groups, plain in stages:
-            for function, rows in groups:
-                numbers += function(*(np.array([numbers[k] for k in row]) for row in rows)).tolist()
-            for function, at in plain:
-                numbers.append(function(*[numbers[k] for k in at]))
-        return [numbers[k] for k in ends]
+    def replaced(node: Node, _arguments: tuple[Node, ...]) -> Node | None:
+        return variable(str(known[node])) if node in known and node.operation != CONSTANT else None
 
-    return run
+    graph = Graph(rebuilt({str(k): node for k, node in enumerate(asked)}, replaced))
+    scan = Scan((), graph.variables, graph.outputs)
+    kernel = streamer(scan, np.empty((0, LANES)), MACHINE_CODE, hasty=True)
+    places |= {node: len(places) + k for k, node in enumerate(asked)}
+    return _Stage(groups, [], kernel, [int(name) for name in graph.variables], len(asked))
 
 
 class CalledMemory(FrameMemory):
@@ -108,6 +183,7 @@ class CalledMemory(FrameMemory):
         self._angle_rows = np.array(
             [address_of(self.room[row, 0]) for row in kernels.angles] or [0], dtype=np.int64
         )
+        self.functions = None if called.functions is None else called.functions.for_thread()
         self.table = self._table(called)
         self.address = self.table.ctypes.data
 
@@ -159,7 +235,7 @@ class CalledFrames:
     conditions : (k, 2), rows of which the least has to be positive, or the greatest negative; -1 for none
     known : variable -> its place among the values
     first_reduced, first_centre, size : places of the extremes of nodes, of the centres, and how many values there are
-    functions : of the numbers at free paths, None where there are none; they stand behind these
+    functions : of the numbers at free paths, None where there are none; their numbers stand behind these
     """
 
     kernels: FrameKernels
@@ -171,7 +247,7 @@ class CalledFrames:
     first_centre: int
     size: int
     pack: Callable[..., None]
-    functions: Callable[[Given], list[float]] | None
+    functions: PlainFunction | None
 
     @classmethod
     def of(cls, numbers: FreeNumbers, kernels: FrameKernels) -> CalledFrames | None:
@@ -223,7 +299,7 @@ class CalledFrames:
             first_centre,
             first_centre + len(angles),
             struct.Struct(f"{first_reduced}d").pack_into,
-            plain_function(graph, numbers.paths) if nodes else None,
+            PlainFunction(graph, numbers.paths) if nodes else None,
         )
 
     def memory(self) -> CalledMemory:
@@ -247,7 +323,7 @@ class CalledFrames:
         return {name: values[k] for name, k in self.known.items()}
 
     def _runs(self, given: Given, memory: CalledMemory, task: int) -> bool:
-        functions = self.functions
+        functions = memory.functions
         if functions is None:
             self.pack(memory.values, 0, *given)
         else:

@@ -336,8 +336,8 @@ class Stream:
     def bare_call(self, rows: Array, out: Array) -> tuple[int, ...] | None:
         """Address of the function and its arguments for one step; None of fewer lanes than a vector has.
 
-        `rows` are (inputs and what is computed of these alone, 1), `out` (outputs, 1, lanes). Nothing is checked when these
-        are used: both arrays and this stream have to be there then.
+        `rows` are (inputs and what is computed of these alone, 1), `out` (outputs, 1, lanes). Nothing is checked when
+        these are used: both arrays and this stream have to be there then.
         """
         if not self._alone:
             return None
