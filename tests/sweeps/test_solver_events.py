@@ -83,3 +83,19 @@ def test_links_wind_as_often_as_they_do(samples: int) -> None:
         np.testing.assert_array_equal(frame.angle, motion.angle)
         np.testing.assert_array_equal(frame.status, motion.status)
     assert abs(frame.angle[-1, -1] - frame.angle[0, -1]) > 6.0
+
+
+def test_outputs_and_moves_share_how_links_wind() -> None:
+    """A gradient of a drag link between moves of a crank-rocker: the next move counts turns anew."""
+    free = ["links.OA.length", "links.AB.length", "links.DB.length", "frame.points.D.x"]
+    mechanism = ct.with_value(ct.example("crank-rocker"), "drives.OA.start", "90 deg")
+    solver = ct.solver(mechanism, free, 73, outputs=["angle.DB", "max(angle_DB)"])
+    crank, drag = [1.0, 3.5, 3.0, 4.0], [3.0, 3.2, 3.5, 1.0]
+    for values in (crank, drag, crank, drag):
+        own = solver.gradient(values)
+        frame = solver.move(values)
+        vary = {path: [value] for path, value in zip(free, values, strict=True)}
+        motion = ct.motion(mechanism, 73, vary=vary).isel(mechanism=0)
+        np.testing.assert_array_equal(frame.angle, motion.angle)
+        np.testing.assert_allclose(frame.outputs["angle.DB"], motion.angle.sel(link="DB"), rtol=1e-15)
+        assert np.isfinite(own).all()

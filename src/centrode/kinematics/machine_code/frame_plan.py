@@ -41,6 +41,7 @@ from centrode.kinematics.preparation import Ready
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.executors import MACHINE_CODE
 from centrode.numerics.expressions import Node
+from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import room_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
 
@@ -118,9 +119,14 @@ class DirectPlan:
         return self.kernels.memory() if self.called is None else self.called.memory()
 
     def judged(self, given: Given, memory: FrameMemory) -> Known | None:
-        known = self.numbers.known(given)
+        known = dict(zip(self.free.paths, given, strict=True))
+        if isinstance(memory, CalledMemory):
+            assert self.called is not None
+            judged = self.called.judged(given, memory)
+            return None if judged is None else known | judged
+        known |= self.numbers.known(given)
         further = self.kernels.judge.judge(known, memory)
-        return None if further is None else dict(zip(self.free.paths, given, strict=True)) | known | further
+        return None if further is None else known | further
 
     def move(self, given: Given, memory: FrameMemory) -> bool:
         if isinstance(memory, CalledMemory):
@@ -129,7 +135,9 @@ class DirectPlan:
         return self.kernels.move(self.numbers.known(given), memory)
 
     def samples_of(self, outputs: Mapping[str, Node]) -> SampleScan:
-        places = sample_places(self.free.ready, self.free.span)
+        places, scale = sample_places(self.free.ready, self.free.span), self.numbers.scale
+        if scale is not None:
+            outputs = Graph(outputs).substitute(scale.outputs).outputs
         return PlaceScan.of(place_scan(outputs, places), places, self.executor)
 
 
