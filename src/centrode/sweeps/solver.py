@@ -412,8 +412,8 @@ def solver(
     samples, start, stop, at :
         As those of `motion`.
     outputs : names or formulas
-        Quantities at every sample ("position.C.x"), or formulas as those of `sweep`, of samples or reduced
-        ("range(position_C_x)"); a list of them, or name -> formula.
+        Quantities at every sample ("position.C.x", reactions such as "joint_force.B/AB"), or formulas as those of
+        `sweep`, of samples or reduced ("range(position_C_x)"); a list of them, or name -> formula.
 
     Returns
     -------
