@@ -519,6 +519,7 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
     state = (
         _state_of_nodes(solved, burden) if expressed else State.of(solved, motion_of_batch(solved, burden))
     )
+    state.know_varied_frame(solved, values)
     if name == "reduced_moment":
         total: Number = 0.0
         for load in burden.loads:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import threading
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Any, TypeAlias
@@ -229,7 +229,7 @@ def reaction_nodes(solved: Solved, values: Values) -> ReactionNodes:
     _refuse_untraceable(solved, tuple(values))
     given = {path: np.asarray(x).item() for path, x in values.items()}
     burden = MassesAndLoads.for_reactions(mechanism, given, EXPRESSIONS)
-    state, acceleration = _state(solved, burden)
+    state, acceleration = _state(solved, burden, values)
     scheme, teeth = Scheme.of(prepared.structure), Teeth.of(mechanism)
     if scheme.repeating:
         raise Untraceable(mark("reactions that the constraints do not determine"))
@@ -265,7 +265,7 @@ def _refuse_untraceable(solved: Solved, paths: Sequence[str]) -> None:
         raise Untraceable(mark("a force along a guide whose direction varies"))
 
 
-def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Operand | None]:
+def _state(solved: Solved, burden: MassesAndLoads, paths: Iterable[str]) -> tuple[State, Operand | None]:
     """The state of nodes, and the acceleration of the parameter; None where there is none."""
     prepared, path, span = solved.ready, solved.ready.kinematics.path, solved.span
     own = path.by_time or not prepared.mechanism.runs_at_mean_speed or not path.parameter.is_uniform
@@ -275,8 +275,7 @@ def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Operand | Non
     numbers: list[Any] = [_operand(x) for x in (boxes.time, boxes.parameter, boxes.rate)]
     moving = DriveMotion(*numbers)
     state = state_of_nodes(solved, burden, moving)
-    for name, place in solved.ready.kinematics.numbers.frame.items():
-        state.known[f"point {name}"] = tuple(Jet((x, 0.0, 0.0)) for x in place)
+    state.know_varied_frame(solved, paths)
     for link in solved.layout.angles:
         rotor = _rotor(state.angle(link))
         if rotor is not None:
