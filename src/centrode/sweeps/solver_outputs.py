@@ -30,7 +30,7 @@ from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
 from centrode.model.reading import value_text
 from centrode.numerics.expressions import Node, as_node, variable
-from centrode.numerics.graphs import Graph
+from centrode.numerics.graphs import Graph, directional_derivatives
 from centrode.numerics.jets import Jet
 from centrode.numerics.scans import evaluate
 from centrode.sweeps.designs import Listed
@@ -171,6 +171,21 @@ def _with_reactions(motion: xr.Dataset, solved: Solved, words: str) -> xr.Datase
 class _SlopesByPaths(Slopes):
     """Derivatives of folds by a state for each path: of one mechanism the chain at the end is what takes time."""
 
+    def of_nodes(self, nodes: Sequence[Node]) -> list[dict[str, Node]]:
+        """Path -> derivative of each node; forward mode where there are more of them than paths."""
+        used = frozenset(Graph({str(k): node for k, node in enumerate(nodes)}).variables)
+        folded = any(fold.name in used for fold in self.folds.found.values())
+        if len(nodes) <= len(self.through) or folded:
+            return [self.of_node(node) for node in nodes]
+        still = [self._without_standing(node) for node in nodes]
+        found = directional_derivatives(still, [dict(through) for through in self.through.values()])
+        names = {(k, j): f"{k} {j}" for k in range(len(nodes)) for j in range(len(found))}
+        graph = Graph.of({name: found[j][k] for (k, j), name in names.items()}).substitute(self.standing)
+        return [
+            {path: graph.outputs[names[k, j]] for j, path in enumerate(self.through)}
+            for k in range(len(nodes))
+        ]
+
     def states_of(self, name: str) -> States:
         if name not in self.known:
             fold = next(fold for fold in self.folds.found.values() if fold.name == name)
@@ -218,9 +233,11 @@ class TracedOutputs:
         return cls(asked.columns, traced, varied, paths, folds, nodes)
 
     @cached_property
-    def slopes(self) -> Slopes:
+    def slopes(self) -> _SlopesByPaths:
         """Derivatives of any of them by the free numbers. Raises Untraceable."""
-        return _SlopesByPaths.of(self.paths, self.varied, self.traced, self.folds, frozenset())
+        made = _SlopesByPaths.of(self.paths, self.varied, self.traced, self.folds, frozenset())
+        assert isinstance(made, _SlopesByPaths)
+        return made
 
     @cached_property
     def final(self) -> Graph:
@@ -268,15 +285,22 @@ class TracedOutputs:
                 nodes |= {
                     ("part", fold.name, x): y for x, y in self.slopes.states_of(fold.name).parts.items()
                 }
-        for column in (x for x in self.columns if x.of_samples):
-            for k, node in enumerate(self.nodes[column.name]):
-                if self._depth(node) != depth:
-                    continue
-                if not slopes:
-                    nodes["column", column.name, k] = node
-                    continue
-                by = self.slopes.of_node(node)
-                nodes |= {("slope", column.name, k, j): by[path] for j, path in enumerate(self.paths)}
+        numbers = {
+            (column.name, k): node
+            for column in self.columns
+            if column.of_samples
+            for k, node in enumerate(self.nodes[column.name])
+            if self._depth(node) == depth
+        }
+        if not slopes:
+            nodes |= {("column", *where): node for where, node in numbers.items()}
+        else:
+            found = self.slopes.of_nodes(list(numbers.values()))
+            nodes |= {
+                ("slope", *where, j): by[path]
+                for where, by in zip(numbers, found, strict=True)
+                for j, path in enumerate(self.paths)
+            }
         return OutputPass(folds, nodes)
 
 
@@ -287,6 +311,23 @@ class _Part:
     scan: SampleScan
     rows: Mapping[tuple[Any, ...], int]
     folds: tuple[Fold, ...]
+
+    @cached_property
+    def blocks(self) -> list[tuple[str, str, list[int], slice]]:
+        """Kind, column, which of its numbers, and the rows that they have one after the other."""
+        found: dict[tuple[str, str], list[tuple[int, int]]] = {}
+        for key, row in self.rows.items():
+            if key[0] in ("column", "slope"):
+                found.setdefault((key[0], key[1]), []).append((key[2], row))
+        return [
+            (*where, list(dict.fromkeys(k for k, _row in pairs)), slice(pairs[0][1], pairs[-1][1] + 1))
+            for where, pairs in found.items()
+        ]
+
+    @cached_property
+    def folded(self) -> dict[tuple[Any, ...], int]:
+        """Rows of what is folded."""
+        return {key: row for key, row in self.rows.items() if key[0] in ("fold", "part")}
 
 
 class LiveOutputs:
@@ -477,14 +518,14 @@ class LiveOutputs:
                 # NaN fails the comparison: what is not known is not trusted
                 if (GAIN,) in part.rows and not rows[part.rows[GAIN,]].max() < LARGEST_GAIN:
                     return None
-            of_folds = {key: rows[k] for key, k in part.rows.items() if key[0] in ("fold", "part")}
+            of_folds = {key: rows[k] for key, k in part.folded.items()}
             for fold in part.folds:
                 _fold(known, fold, of_folds)
-            for key, k in part.rows.items():
-                if key[0] == "column":
-                    columns[key[1]][:, key[2]] = rows[k]
-                elif key[0] == "slope":
-                    slopes[key[1]][:, key[2], key[3]] = rows[k]
+            for kind, name, numbers, block in part.blocks:
+                target = columns[name] if kind == "column" else slopes[name]
+                turned = rows[block].T.reshape(samples, len(numbers), *target.shape[2:])
+                # all of a column at once, as a rule
+                target[:, slice(None) if len(numbers) == target.shape[1] else numbers] = turned
         return known, columns, slopes
 
 
