@@ -74,7 +74,8 @@ class _Stage:
         groups, plain, kernel, inputs = self.groups, self.plain, self.kernel, self.inputs
         if kernel is not None:
             row, room = np.zeros((len(inputs), 1)), room_of(self.outputs, 1, LANES)
-            pack, first = struct.Struct(f"{len(inputs)}d").pack_into, room[:, 0, 0]
+            pack: Callable[..., None] = struct.Struct(f"{len(inputs)}d").pack_into
+            first = room[:, 0, 0]
             call = bare_function(kernel, row, room)
 
         def add(numbers: list[Any]) -> None:
