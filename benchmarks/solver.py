@@ -16,6 +16,7 @@ import centrode as ct
 from benchmarks.plans import SIX
 from benchmarks.table import Promise, Row
 from benchmarks.timing import Task, paired_times, ratio
+from centrode.kinematics.machine_code.frame_calls import MOVE, TURN
 from centrode.kinematics.machine_code.frame_kernels import PlaceScan
 from centrode.kinematics.machine_code.frame_plan import DirectPlan
 from centrode.numerics.machine_code.kernels import Stream, address
@@ -24,7 +25,7 @@ from centrode.sweeps.solver import Solver
 SAMPLES = 361
 MOST = {"crank-rocker": 0.5, "six-bar-press": 0.75, "spherical-four-bar": None}
 """Milliseconds that a move may take on the machine of docs/benchmarks.md."""
-OVER_DIRECT = 1.5
+OVER_DIRECT, OVER_VALUE = 1.5, 4.0
 FIRST, FROM_DISK = 70.0, 20.0
 """Milliseconds from a six-bar's description to its first frame, LLVM loaded: nothing kept, and all on disk."""
 FIRST_FRAME = """
@@ -44,6 +45,7 @@ def moves() -> Iterator[Row]:
     for name, most in MOST.items():
         yield _move(name, most)
     yield _with_outputs()
+    yield _with_reactions()
     yield _first_frame()
 
 
@@ -57,32 +59,58 @@ def _move(name: str, most: float | None) -> Row:
     def changed() -> object:
         return ct.motion(ct.with_value(mechanism, lever.free[0], values()[0]), SAMPLES)
 
-    tasks = {"move": lambda: lever.move(values()), "direct": _direct(lever), "motion": changed}
+    tasks = {
+        "move": lambda: lever.move(values()),
+        "direct": _direct(lever),
+        "called": _called(lever),
+        "motion": changed,
+    }
     times = paired_times(tasks)
     took = 1e3 * median(times["move"])
-    against = ratio(times, "move", "direct")
-    promises = [
-        Promise(f"{name}: move over judging and writing called directly", against, at_most=OVER_DIRECT)
-    ]
+    against, over = ratio(times, "move", "direct"), ratio(times, "move", "called")
+    promises = [Promise(f"{name}: move over judging and writing called directly", over, at_most=OVER_DIRECT)]
     if most is not None:
         promises.append(Promise(f"{name}: move [ms]", took, at_most=most))
-    numbers = {"move [ms]": took, "over direct": against, "motion over move": ratio(times, "motion", "move")}
+    numbers = {
+        "move [ms]": took,
+        "over judging and writing": over,
+        "over bare kernels": against,
+        "motion over move": ratio(times, "motion", "move"),
+    }
     return Row(name, numbers, promises=promises)
 
 
-def _direct(lever: Solver) -> Task:
-    """The solver's own two kernels, called with addresses and nothing around them."""
+def _called(lever: Solver) -> Task:
+    """The machine code that judges and writes, called with addresses, and NumPy's arc tangents: no Python besides."""
     plan = lever._plan
     assert isinstance(plan, DirectPlan)
-    memory, known = plan.memory(), plan.numbers.known(lever.own)
-    further = plan.kernels.judge.judge(known, memory)
+    called = plan.called
+    assert called is not None
+    memory = called.memory()
+    assert called.move(lever.own, memory)
+    run, at, sines, cosines, angles = called.run, memory.address, memory.sines, memory.cosines, memory.angles
+
+    def task() -> None:
+        run(at, MOVE)
+        np.arctan2(sines, cosines, angles)
+        run(at, TURN)
+
+    return task
+
+
+def _direct(lever: Solver) -> Task:
+    """The solver's own kernels at nodes and samples, called with addresses and nothing around them."""
+    plan = lever._plan
+    assert isinstance(plan, DirectPlan)
+    kernels, memory, known = plan.kernels, plan.kernels.memory(), plan.numbers.known(lever.own)
+    further = kernels.judge.judge(known, memory)
     assert further is not None
-    judge = _bare_call(plan.kernels.judge.scan, known, memory.mesh)
-    write = _bare_call(plan.kernels.write, known | further, memory.room)
+    rooms = (memory.mesh, memory.sparse, memory.room)
+    calls = [_bare_call(x, known | further, room) for x, room in zip(kernels.scans, rooms, strict=True)]
 
     def run() -> None:
-        judge()
-        write()
+        for call in calls:
+            call()
 
     return run
 
@@ -117,6 +145,36 @@ def _with_outputs() -> Row:
         "gradient over value": ratio(times, "gradient", "value"),
     }
     return Row("crank-rocker, path error", numbers)
+
+
+def _with_reactions() -> Row:
+    """The greatest force in a hinge of a press with its gradient by six dimensions, against `reactions`."""
+    force = "max(sqrt(joint_force_B_AB_x**2 + joint_force_B_AB_y**2))"
+    mechanism, free = ct.example("six-bar-press"), SIX["six-bar-press"]
+    lever = ct.solver(mechanism, free, SAMPLES, outputs=force)
+    every = ct.solver(mechanism, free, SAMPLES, outputs=["joint_force", "balancing"])
+    times = paired_times(
+        {
+            "value": lambda: lever.outputs(lever.own),
+            "gradient": lambda: lever.gradient(lever.own),
+            "every value": lambda: every.outputs(every.own),
+            "every gradient": lambda: every.gradient(every.own),
+            "reactions": lambda: ct.reactions(mechanism, SAMPLES),
+        }
+    )
+    reduced, whole = ratio(times, "gradient", "value"), ratio(times, "every gradient", "every value")
+    promises = [
+        Promise("six-bar-press: gradient of a reaction over its value", reduced, at_most=OVER_VALUE),
+        Promise("six-bar-press: gradients of all reactions over the values", whole, at_most=OVER_VALUE),
+    ]
+    numbers = {
+        "value [ms]": 1e3 * median(times["value"]),
+        "gradient over value": reduced,
+        "all values [ms]": 1e3 * median(times["every value"]),
+        "all gradients over values": whole,
+        "reactions over all values": ratio(times, "reactions", "every value"),
+    }
+    return Row("six-bar-press, reactions", numbers, promises=promises)
 
 
 def _first_frame() -> Row:

@@ -131,7 +131,7 @@ def with_head(entry: Path, change: Callable[[dict], None]) -> None:  # type: ign
     [
         lambda head: head.pop("winders"),
         lambda head: head["quantities"].append(["more", 1000, [3]]),
-        lambda head: head["scans"][1].update(outputs=2),
+        lambda head: head["scans"][2].update(outputs=2),
         lambda head: head["scans"][0].update(parameters=["no such variable"]),
         lambda head: head["scans"].pop(),
         lambda head: head.update(winders=[["no operation", 0]]),

@@ -194,3 +194,31 @@ def test_derivatives_by_masses(executor: str) -> None:
 def test_what_cannot_be_reduced_is_refused(name: str, vary: dict[str, Any], reason: str) -> None:
     with pytest.raises(ct.InputError, match=reason):
         ct.sweep(ct.example(name), vary, "reduced_inertia", samples=5)
+
+
+TIED = """
+[[loads]]
+kind = "spring"
+points = ["B", "D"]
+stiffness = 80.0
+free_length = 1.0
+[[loads]]
+kind = "damper"
+points = ["O", "B"]
+damping = 12.0
+[[loads]]
+kind = "spring"
+points = ["A", "D"]
+stiffness = 50.0
+"""
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_loads_act_on_points_of_the_frame_where_these_are(executor: str) -> None:
+    tied = ct.parse_mechanism(example_text("in-line-four-bar") + TIED)
+    vary = {"frame.points.D.x": [0.39, 0.4, 0.42], "frame.points.O.y": [0.0, 0.01, -0.01]}
+    swept = ct.sweep(tied, vary, OUTPUTS, samples=25, executor=executor)
+    for k, one in enumerate(one_by_one(tied, vary, 25)):
+        for name in OUTPUTS:
+            size = float(abs(one[name]).max())
+            assert float(abs(swept[name][k] - one[name]).max()) <= 64 * EPS * size

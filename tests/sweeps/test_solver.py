@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.kinematics.machine_code.frame_calls import PlainFunction
+from centrode.kinematics.machine_code.frame_plan import DirectPlan
+from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
 from centrode.numerics.expressions import EXPRESSIONS, variable
 from centrode.numerics.graphs import Graph, graph_of_rows, graph_rows
 from centrode.numerics.scans import evaluate
@@ -222,3 +225,22 @@ def test_free_paths_that_are_no_texts(free: object) -> None:
 def test_outputs_of_a_solver_that_are_none(outputs: object, what: str) -> None:
     with pytest.raises(ct.InputError, match=what):
         ct.solver("crank-rocker", ["links.AB.length"], 37, outputs=outputs)  # type: ignore[arg-type]
+
+
+def test_small_functions_of_the_free_numbers_are_those_of_arrays() -> None:
+    """The greatest arc of a sphere: sines, cosines and arc tangents by NumPy, what lies in between as machine code."""
+    free = [f"links.{link}.length" for link in ("AB", "BC", "DC")]
+    free += ["frame.points.D.longitude", "frame.points.D.latitude"]
+    solver = ct.solver("spherical-four-bar", free, 37)
+    plan = solver._plan
+    assert isinstance(plan, DirectPlan)
+    graph = plan.numbers.scale
+    assert graph is not None
+    function = PlainFunction(graph, free)
+    if choose_executor(AUTO) == MACHINE_CODE:
+        assert any(stage.kernel is not None for stage in function._stages)
+    run, draw = function.for_thread(), np.random.default_rng(5)
+    for _k in range(20):
+        values = (np.array(solver.own) + 0.1 * draw.uniform(-1.0, 1.0, len(free))).tolist()
+        (there,) = evaluate(graph, dict(zip(free, values, strict=True))).values()
+        assert run(values) == [float(there)]

@@ -427,7 +427,7 @@ class LoadTerm:
             return amount
         if state.m is JETS:
             return np.where(grows(self.gate, state), amount, 0.0)
-        speed = self.gate.slope(state).value * state.rate
+        speed = _speed_of_nodes(self.gate, state)
         return state.m.base.where(state.m.base.less(speed, 0.0), 0.0, amount)
 
     @property
@@ -451,7 +451,7 @@ class LoadTerm:
 
     def _sense(self, state: State, speed: Number) -> Number:
         if state.m is not JETS:
-            return state.m.base.sign(speed)
+            return state.m.base.sign(_speed_of_nodes(self.coordinate, state))
         return np.sign(_sign_of_speed(self.coordinate, state))
 
 
@@ -468,6 +468,16 @@ def _sign_of_speed(coordinate: Coordinate, state: State) -> Number:
     with np.errstate(invalid="ignore"):
         rest = np.abs(slope.value) <= REST * (np.abs(slope.derivative(1)) * reach + state.scale)
     return np.where(rest, bend * state.side, speed)
+
+
+def _speed_of_nodes(coordinate: Coordinate, state: State) -> Number:
+    """The same over expressions, at a place itself: zero where a coordinate turns."""
+    m, slope = state.m.base, coordinate.slope(state)
+    reach = m.max(1.0, abs(state.parameter))
+    rest = abs(slope.value) <= REST * (abs(slope.derivative(1)) * reach + state.scale)
+    # of plain numbers the comparison is a plain truth
+    speed = slope.value * state.rate
+    return (0.0 if rest else speed) if isinstance(rest, bool | np.bool_) else m.where(rest, 0.0, speed)
 
 
 @dataclass(frozen=True)
@@ -739,10 +749,12 @@ class MassesAndLoads:
         return cls._of(mechanism, given, m, mechanism.loads)
 
     @classmethod
-    def for_reactions(cls, mechanism: Mechanism) -> MassesAndLoads:
+    def for_reactions(
+        cls, mechanism: Mechanism, given: Given | None = None, m: Namespace = ARRAYS
+    ) -> MassesAndLoads:
         """The same without friction by coefficients, as forces on points and links; InputError for what is no force."""
         loads = [load for load in mechanism.loads if not isinstance(load, CoefficientFriction)]
-        return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
+        return cls._of(mechanism, given, m, loads)._as_forces()
 
     @classmethod
     def _of(

@@ -516,7 +516,10 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
         for path, x in values.items()
     }
     burden = MassesAndLoads.of(solved.ready.mechanism, given, EXPRESSIONS if expressed else ARRAYS)
-    state = _state_of_nodes(solved, burden) if expressed else State.of(solved, _batch_moving(solved, burden))
+    state = (
+        _state_of_nodes(solved, burden) if expressed else State.of(solved, motion_of_batch(solved, burden))
+    )
+    state.know_varied_frame(solved, values)
     if name == "reduced_moment":
         total: Number = 0.0
         for load in burden.loads:
@@ -534,7 +537,7 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
     return np.asarray(np.broadcast_to(total, solved.status.shape) + known)
 
 
-def _batch_moving(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
+def motion_of_batch(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
     """The speed that loads see, as `reduction_of` has it."""
     span, ready = solved.span, solved.ready
     if not ready.mechanism.runs_at_mean_speed or not ready.parameter.is_uniform:
@@ -551,7 +554,7 @@ def _batch_moving(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
 
 def _state_of_nodes(solved: Solved, burden: MassesAndLoads) -> State:
     """The state at the one sample of a traced motion."""
-    boxes = _batch_moving(solved, burden)
+    boxes = motion_of_batch(solved, burden)
     moving = DriveMotion(*(np.asarray(x).ravel()[0] for x in (boxes.time, boxes.parameter, boxes.rate)))
     return state_of_nodes(solved, burden, moving)
 

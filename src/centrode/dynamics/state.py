@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -129,6 +129,10 @@ Place: TypeAlias = tuple[Jet, ...]
 Getter: TypeAlias = Callable[[int], Array]
 
 
+FRAME_POINTS = "frame.points."
+"""Before the path of a coordinate of a point of the frame."""
+
+
 @dataclass(frozen=True)
 class State:
     """A mechanism at samples of one path.
@@ -185,6 +189,20 @@ class State:
         scale = solved.ready.kinematics.path.scale * length_unit(mechanism)
         return cls(mechanism, solved.layout, moving.time, moving.parameter, moving.rate, side, scale, getters)
 
+    def know_varied_frame(self, solved: Solved, paths: Iterable[str]) -> None:
+        """Take the points of the frame whose coordinates vary, by their paths, from a motion or from its trace."""
+        unit, names = length_unit(self.mechanism), list(self.mechanism.frame.points)
+        for path in paths:
+            name = path.removeprefix(FRAME_POINTS).rpartition(".")[0]
+            if path.startswith(FRAME_POINTS) and name in names:
+                place = solved.all_points[0][:, :, names.index(name)]
+                numbers = [place[..., axis] for axis in range(place.shape[-1])]
+                if solved.points.dtype == object:
+                    numbers = [x.item() for x in numbers]
+                self.known[f"point {name}"] = tuple(
+                    Jet((x if unit == 1.0 else x * unit, 0.0, 0.0)) for x in numbers
+                )
+
     @property
     def on_sphere(self) -> bool:
         """Whether places have three coordinates, and links axes in place of one angle."""
@@ -199,14 +217,14 @@ class State:
 
     def point(self, name: str) -> Place:
         """Coordinates of a point [m]."""
-        if name in self.mechanism.frame.points:
+        place = self.known.get(f"point {name}")
+        if place is None and name in self.mechanism.frame.points:
             fixed = self.mechanism.frame.coordinates[name]
             if self.on_sphere:
                 radius = self.mechanism.sphere_radius
                 # over plain numbers: a point of the frame has no derivatives
                 return tuple(_constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
             return tuple(_constant(x) for x in fixed)
-        place = self.known.get(f"point {name}")
         if place is None:
             axes = self.layout.axes
             first, unit = axes * self.layout.points.index(name), length_unit(self.mechanism)

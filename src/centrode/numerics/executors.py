@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.numerics.graphs import Graph
 from centrode.numerics.machine_code import PRESENT
 from centrode.numerics.scans import Array, Scan, Scanned, run_on_arrays
 
@@ -77,6 +78,43 @@ def streamer(
     kernel = _kernels().kernel_of(scan, lanes_inside=True, hasty=hasty)
     stream: Take = _streaming().Stream(kernel, lanes, threads)
     return stream
+
+
+def machine_function(text: Callable[[int], str]) -> Callable[[int, int], int]:
+    """A function (address, number) -> number of machine code from its text for vectors of so many doubles."""
+    made: Callable[[int, int], int] = _kernels().function_of(text)
+    return made
+
+
+def bare_call(take: Take, rows: Array, out: Array) -> tuple[int, ...] | None:
+    """Address and arguments of a streamer of machine code, see `kernels.Stream.bare_call`; None of another."""
+    made: tuple[int, ...] | None = take.bare_call(rows, out) if hasattr(take, "bare_call") else None
+    return made
+
+
+def bare_function(take: Take, rows: Array, out: Array) -> Callable[[], object]:
+    """One call of a streamer with one step from `rows` to `out`: of machine code, nothing is looked at any more."""
+    arguments = bare_call(take, rows, out)
+    if arguments is None:
+        return functools.partial(take, rows, out)
+    kept = (rows, out)
+    call = take.kernel.function.call  # type: ignore[attr-defined]
+
+    def run(_kept: object = kept) -> None:
+        call(*arguments[1:])
+
+    return run
+
+
+def functions_before(take: Take) -> Graph:
+    """What a streamer computes of its inputs alone, behind which its numbers stand; nothing on NumPy."""
+    found: Graph = take.functions if hasattr(take, "functions") else Graph({})
+    return found
+
+
+def address_of(array: Array) -> int:
+    """Where an array with a contiguous last axis begins, as machine code is told."""
+    return int(_kernels().address(array))
 
 
 # A streamer of machine code as data, from which another process has it again without its scan.

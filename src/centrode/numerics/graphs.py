@@ -200,6 +200,30 @@ def gradient(output: Node, variables: Sequence[Node]) -> list[Operand]:
     return [by.get(x, 0.0) for x in variables]
 
 
+def directional_derivatives(
+    outputs: Sequence[Node], directions: Sequence[Mapping[Node, Operand]]
+) -> list[list[Operand]]:
+    """Derivatives of nodes along directions, a list for each direction: forward mode, for outputs more than directions.
+
+    A direction tells how fast variables change. What is said of selections in `gradient` holds here.
+    """
+    order = topological_order(outputs)
+    changes: list[dict[Node, Operand]] = [dict(direction) for direction in directions]
+    for node in order:
+        if (
+            not node.arguments
+            or node.is_condition
+            or not any(x in c for c in changes for x in node.arguments)
+        ):
+            continue
+        factors = _RULES[node.operation](node, *node.arguments)
+        for change in changes:
+            for argument, factor in zip(node.arguments, factors, strict=True):
+                if factor is not None and argument in change:
+                    _collect(change, node, _chain_rule_product(node, change[argument], factor, False))
+    return [[change.get(x, 0.0) for x in outputs] for change in changes]
+
+
 def _dependent_nodes(order: Sequence[Node], variables: Sequence[Node]) -> set[Node]:
     """Nodes that depend on one of the variables."""
     needed = set(variables)

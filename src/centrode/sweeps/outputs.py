@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.kinetostatics.reaction_expressions import REACTIONS, reaction_number
 from centrode.dynamics.reduction import REDUCED, Values, reduced_number
 from centrode.errors import InputError
 from centrode.kinematics.hinge_angles import HINGE_ANGLES
@@ -66,6 +67,8 @@ class Output:
             return solved.residual
         if self.quantity in REDUCED:
             return reduced_number(self.quantity, solved, values)
+        if self.quantity in REACTIONS:
+            return reaction_number(self.quantity, solved, values)[:, :, *self.where]
         if self.quantity == CONTACT:
             return solved.contacts[:, :, *self.where]
         if self.quantity in HINGE_ANGLES:

@@ -109,6 +109,24 @@ class Frame:
         return self.solver.dataset(self.values)
 
 
+@dataclass(frozen=True)
+class _Kept:
+    """Memory of a thread, and the frame of what is in it."""
+
+    memory: Any
+    frame: Frame
+
+
+_FLOATS = frozenset({float})
+
+
+def _frame_like(frame: Frame, values: tuple[float, ...], outputs: Mapping[str, Any]) -> Frame:
+    """A frame of the same arrays: to make one field by field takes as long as a short kernel."""
+    made = object.__new__(Frame)
+    made.__dict__.update(frame.__dict__, values=values, outputs=outputs)
+    return made
+
+
 class Solver:
     """One mechanism whose numbers at some paths are free; made by `solver`.
 
@@ -164,7 +182,11 @@ class Solver:
             self._reason = why.reason
             return
         if outputs is not None and self._plan is not None:
-            self._live = LiveOutputs(outputs, self._plan, traced, varied, self._free)
+            try:
+                self._live = LiveOutputs(outputs, self._plan, traced, varied, self._free)
+            except Untraceable as why:
+                # the motion can be traced, the outputs are left to the arrays
+                self._reason = why.reason
         elif isinstance(self._plan, DirectPlan):
             keep_plan(self._plan)
 
@@ -218,15 +240,18 @@ class Solver:
         >>> int(lever.move(["3.6 m"]).status.max()), int(lever.move([9.0]).status.min())
         (0, 1)
         """
-        given = self._given(values)
+        # plain floats, as optimisers and pages give them, are not looked at one by one
+        if type(values) is list and len(values) == len(self.free) and _FLOATS.issuperset(map(type, values)):
+            given: tuple[float, ...] = tuple(values)
+        else:
+            given = self._given(values)
         if not self._possible(given):
             return self._without_values(given)
         if self._plan is not None:
-            memory = self._memory()
-            if self._plan.move(given, memory):
-                outputs = self._outputs_of(given)
-                arrays = memory.quantities
-                return Frame(self, given, self._ok, arrays[RESIDUAL], (), arrays, outputs, True)
+            kept = self._kept()
+            if self._plan.move(given, kept.memory):
+                outputs = {} if self._outputs is None else self._outputs_of(given)
+                return _frame_like(kept.frame, given, outputs)
         return self._frame_of(given, self._solved(given))
 
     def outputs(self, values: Values) -> Any:
@@ -245,8 +270,8 @@ class Solver:
     def gradient(self, values: Values) -> Array:
         """Derivatives of the outputs by the free numbers, (numbers, free); of one number alone (free,).
 
-        NaN where the mechanism is not clear. Raises InputError where there are no outputs, or none that can be
-        differentiated.
+        NaN where an output has no value, and at limits and change points (docs: engine). Raises InputError where there
+        are no outputs, or none that can be differentiated.
         """
         asked = self._require_outputs()
         if self._live is None:
@@ -257,7 +282,8 @@ class Solver:
         self._live.require_slopes()
         if not self._possible(given):
             return asked.blank(len(self.free))
-        return self._live.gradient(given, self._memory())
+        found = self._live.gradient(given, self._memory())
+        return self._live.gradient_with_events(given, self._solved(given)) if found is None else found
 
     def split(self, numbers: Array) -> dict[str, Array]:
         """Output -> its part of what `outputs` or `gradient` gives, in its own shape."""
@@ -300,8 +326,11 @@ class Solver:
 
     def _possible(self, given: tuple[float, ...]) -> bool:
         """Whether a description can have these numbers."""
-        if not all(map(math.isfinite, given)) or any(given[k] <= 0.0 for k in self._positive):
+        if not all(map(math.isfinite, given)):
             return False
+        for k in self._positive:
+            if given[k] <= 0.0:
+                return False
         return not self._checked or not self._is_impossible(given)
 
     def _is_refused(self, k: int) -> bool:
@@ -317,12 +346,18 @@ class Solver:
 
     # frames
 
-    def _memory(self) -> Any:
-        memory = getattr(self._local, "memory", None)
-        if memory is None:
+    def _kept(self) -> _Kept:
+        kept: _Kept | None = getattr(self._local, "kept", None)
+        if kept is None:
             assert self._plan is not None
-            memory = self._local.memory = self._plan.memory()
-        return memory
+            memory = self._plan.memory()
+            arrays = memory.quantities
+            frame = Frame(self, self.own, self._ok, arrays[RESIDUAL], (), arrays, {}, True)
+            kept = self._local.kept = _Kept(memory, frame)
+        return kept
+
+    def _memory(self) -> Any:
+        return self._kept().memory
 
     def _solved(self, given: tuple[float, ...]) -> Solved:
         return solve(self._free.ready, self._span, self._free.dimensions(given), 1)
@@ -377,8 +412,8 @@ def solver(
     samples, start, stop, at :
         As those of `motion`.
     outputs : names or formulas
-        Quantities at every sample ("position.C.x"), or formulas as those of `sweep`, of samples or reduced
-        ("range(position_C_x)"); a list of them, or name -> formula.
+        Quantities at every sample ("position.C.x", reactions such as "joint_force.B/AB"), or formulas as those of
+        `sweep`, of samples or reduced ("range(position_C_x)"); a list of them, or name -> formula.
 
     Returns
     -------

@@ -84,7 +84,9 @@ def outer_of(state: State, burden: MassesAndLoads, acceleration: Array, known: A
     inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, by_load.shape[1:]))
     # by virtual work: loads less J q'' + J' q'^2 / 2
     moment = by_load.sum(axis=0) - inertia * acceleration - 0.5 * slope * state.rate**2
-    return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment, by_load)
+    # without acceleration the products with it are left out
+    inertia_forces = inertia_forces_of(state, burden.masses, acceleration if acceleration.any() else None)
+    return Outer(tuple(pulls), inertia_forces, moment, by_load)
 
 
 def _loads(state: State, loads: Sequence[AppliedLoad], known: Any) -> tuple[list[Wrench], Array]:
@@ -99,9 +101,11 @@ def _loads(state: State, loads: Sequence[AppliedLoad], known: Any) -> tuple[list
     return pulls, done
 
 
-def _inertia_forces(state: State, masses: Sequence[Mass], acceleration: Array) -> tuple[InertiaForce, ...]:
-    # without acceleration the products with it are left out
-    inertial = _Inertial(state, acceleration if acceleration.any() else None)
+def inertia_forces_of(
+    state: State, masses: Sequence[Mass], acceleration: Number | None
+) -> tuple[InertiaForce, ...]:
+    """Inertia forces of links; `acceleration` is that of the path's parameter, None where there is none."""
+    inertial = _Inertial(state, acceleration)
     return tuple(inertial.of(mass) for mass in masses)
 
 
@@ -110,7 +114,7 @@ class _Inertial:
     """Inertia forces in a state; `acceleration` is that of the parameter, None where there is none."""
 
     state: State
-    acceleration: Array | None
+    acceleration: Number | None
 
     def of(self, mass: Mass) -> InertiaForce:
         centre = self.state.centre(mass.centre)

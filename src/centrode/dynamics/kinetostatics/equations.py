@@ -759,14 +759,14 @@ class Kinetostatics:
         for row, unknown in enumerate(self.scheme.unknowns):
             turns = self.equilibrium.by_moment(unknown[0])
             multipliers[unknown] = solved[row] * self.scale if turns else solved[row]
-        multipliers |= self._at_hosts(multipliers, outer)
+        multipliers |= self.at_hosts(multipliers, outer, np.zeros(self.shape))
         return ForceSystem(self, multipliers, tuple(outer))
 
-    def _at_hosts(
-        self, multipliers: Mapping[Unknown, Number], outer: Sequence[Wrench]
+    def at_hosts(
+        self, multipliers: Mapping[Unknown, Number], outer: Sequence[Wrench], nothing: Number
     ) -> dict[Unknown, Number]:
-        """Force of each pin on its host: the rest of what acts on the pin."""
-        sums: dict[Axis, Number] = dict.fromkeys(self.scheme.hosts, np.zeros(self.shape))
+        """Force of each pin on its host: the rest of what acts on the pin, sums beginning with `nothing`."""
+        sums: dict[Axis, Number] = dict.fromkeys(self.scheme.hosts, nothing)
         acting = [(pull, value) for unknown, value in multipliers.items() for pull in self.pulls[unknown]]
         # only pins are summed: what acts on links is in their own equations
         for pull, value in [*acting, *((pull, 1.0) for pull in outer)]:
@@ -787,13 +787,14 @@ class Kinetostatics:
     def _add(self, column: Array, pulls: Iterable[Wrench], filled: Mask | None = None) -> None:
         """Add what pulls do to each equation, and mark which these are; the frame has none."""
         for pull in pulls:
-            for row, value in self._entries(pull):
+            for row, value in self.entries(pull):
                 if not _is_zero(value):
                     column[row] += value
                     if filled is not None:
                         filled[row] = True
 
-    def _entries(self, pull: Wrench) -> list[tuple[int, Number]]:
+    def entries(self, pull: Wrench) -> list[tuple[int, Number]]:
+        """Equations that a wrench is in, each with what it adds there."""
         name, scheme = pull.body.name, self.scheme
         if pull.body.kind == "link":
             return self._on_link(name, pull) if pull.body in scheme.first_rows else []

@@ -13,6 +13,7 @@ from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics
 from centrode.dynamics.wrenches import Vector, Wrench
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.numerics.expressions import Node
 from centrode.numerics.rounding import SAFETY
 from centrode.structure.constraints import (
     AngleDrive,
@@ -103,16 +104,20 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 
 def column(value: Number, samples: int) -> Array:
-    """Number over the samples (n), from arrays (1, n) or a plain number."""
-    return np.array(np.broadcast_to(value, (1, samples))[0], dtype=np.float64)
+    """Number over the samples (n), from arrays (1, n) or a plain number; of one sample a node."""
+    return np.array(np.broadcast_to(value, (1, samples))[0], dtype=_kind_of([value]))
 
 
 def columns(values: Sequence[Number], samples: int) -> Array:
     """Numbers over the samples (n, numbers)."""
-    table = np.empty((len(values), samples))
+    table = np.empty((len(values), samples), dtype=_kind_of(values))
     for row, value in zip(table, values, strict=True):
         row[:] = value  # of an array (1, n) its only lane
     return np.ascontiguousarray(table.T)
+
+
+def _kind_of(values: Sequence[Number]) -> npt.DTypeLike:
+    return object if any(isinstance(value, Node) for value in values) else np.float64
 
 
 def tables(values: Sequence[Sequence[Number]], width: int, samples: int) -> Array:

@@ -12,6 +12,7 @@ import xarray as xr
 
 from centrode.dynamics.kinetostatics.applied_forces import (
     DriveGroup,
+    InertiaForce,
     InputMotion,
     MotionOfDrive,
     Outer,
@@ -185,12 +186,20 @@ def totals_of(found: ReactionSolution) -> dict[str, Array]:
     """Inertia forces of the links, forces and moments on the frame, (samples, ...)."""
     inertia, samples = found.outer.inertia, found.forces.system.shape[-1]
     origin = found.forces.system.equilibrium.origin
-    shaking = [pull for action in inertia for pull in action.pulls]
     moments = [components(action.moment) for action in inertia]
     return {
         "inertia_force": tables([action.force for action in inertia], len(origin), samples),
         "inertia_moment": _moments(moments, len(origin), samples),
-        **_sums("frame", found.forces.on_frame, origin, samples),
+        **frame_totals(found.forces, found.outer.inertia),
+    }
+
+
+def frame_totals(forces: ForceSystem, inertia: Sequence[InertiaForce]) -> dict[str, Array]:
+    """Forces and moments on the frame: all, and those of inertia alone."""
+    samples, origin = forces.system.shape[-1], forces.system.equilibrium.origin
+    shaking = [pull for action in inertia for pull in action.pulls]
+    return {
+        **_sums("frame", forces.on_frame, origin, samples),
         **_sums("shaking", shaking, origin, samples),
     }
 

@@ -10,13 +10,13 @@ import hashlib
 import json
 import sys
 from collections.abc import Mapping, Sequence
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import mesh_places
 from centrode.kinematics.machine_code.frame_kernels import (
     FrameLayout,
     FreeNumbers,
@@ -24,11 +24,10 @@ from centrode.kinematics.machine_code.frame_kernels import (
     PlaceScan,
     Quantity,
     frame_kernels,
+    frame_places,
     rows_along,
-    sample_places,
 )
 from centrode.kinematics.machine_code.frame_plan import DirectPlan, FreeMechanism
-from centrode.kinematics.mesh import mesh_of
 from centrode.model.files import document
 from centrode.numerics.executors import (
     MACHINE_CODE,
@@ -109,7 +108,7 @@ def sources_digest() -> str | None:
 
 def _content(plan: DirectPlan) -> bytes:
     numbers, layout = plan.numbers, plan.layout
-    records = [streamer_record(scan.take) for scan in (plan.kernels.judge.scan, plan.kernels.write)]
+    records = [streamer_record(scan.take) for scan in plan.kernels.scans]
     head: Record = {
         "copied": dict(numbers.copied),
         "turned": {name: list(rule) for name, rule in numbers.turned.items()},
@@ -129,11 +128,11 @@ def _content(plan: DirectPlan) -> bytes:
 def _split(content: bytes) -> tuple[Record, list[StreamerRecord]]:
     line, _end, code = content.partition(b"\n")
     head = json.loads(line)
-    mesh, samples = map(int, head["bytes"])
-    if len(code) != mesh + samples:
+    ends = [0, *accumulate(map(int, head["bytes"]))]
+    if len(code) != ends[-1]:
         raise ValueError("object code of another length")
-    of_mesh, of_samples = head["scans"]
-    return head, [(of_mesh, code[:mesh]), (of_samples, code[mesh:])]
+    parts = [code[first:last] for first, last in pairwise(ends)]
+    return head, list(zip(head["scans"], parts, strict=True))
 
 
 def _plan(free: FreeMechanism, head: Record, records: Sequence[StreamerRecord]) -> DirectPlan:
@@ -143,15 +142,15 @@ def _plan(free: FreeMechanism, head: Record, records: Sequence[StreamerRecord]) 
     mesh = MeshLayout(tuple(head["least"]), tuple(head["greatest"]), tuple(head["links"]))
     quantities = tuple(Quantity(name, int(first), tuple(shape)) for name, first, shape in head["quantities"])
     layout = FrameLayout(mesh, graph_of_rows(head["winders"]), quantities, tuple(head["angles"]))
-    path = free.ready.kinematics.path
-    on_mesh = mesh_places(path, mesh_of(path, free.span.parameter))
-    judge = _place_scan(records[0], on_mesh)
-    write = _place_scan(records[1], sample_places(free.ready, free.span))
+    places = frame_places(free.ready, free.span).all
+    scans = [_place_scan(record, at) for record, at in zip(records, places, strict=True)]
+    judge, turning, write = scans
     # machine code writes to addresses: rooms have to have the rows that the layout speaks of
-    rows = len(mesh.least) + len(mesh.greatest) + 2 * len(mesh.links)
-    if judge.count != rows or write.count < max((x.rows.stop for x in quantities), default=0):
+    rows = max((x.rows.stop for x in quantities), default=0)
+    judged = len(mesh.least) + len(mesh.greatest)
+    if judge.count != judged or turning.count != len(mesh.links) or write.count < rows:
         raise ValueError("rows of another plan")
-    kernels = frame_kernels(free.ready, free.span, layout, judge, write)
+    kernels = frame_kernels(free.ready, free.span, layout, scans)
     return DirectPlan(free, numbers, layout, kernels, MACHINE_CODE)
 
 

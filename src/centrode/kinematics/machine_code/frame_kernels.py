@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import SLACK, EventScreening, sparse_nodes
+from centrode.kinematics.machine_code.event_screening import SLACK, EventScreening, mesh_places, sparse_nodes
 from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import (
     AWAY,
@@ -39,7 +39,7 @@ from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import CLOSED, ORDERS
 from centrode.kinematics.solve import Solved
 from centrode.numerics.executors import streamer
-from centrode.numerics.expressions import FOLDED, Node, as_node
+from centrode.numerics.expressions import EXPRESSIONS, FOLDED, Node, as_node
 from centrode.numerics.graphs import Graph
 from centrode.numerics.operations import VARIABLE
 from centrode.numerics.scans import FUNCTIONS, Reduction, Scan, evaluate, room_of
@@ -203,7 +203,7 @@ def rows_along(names: Sequence[str], places: Mapping[str, Array]) -> Array:
 
 @dataclass(frozen=True)
 class MeshLayout:
-    """Rows of what is judged at the nodes: numbers of which the least counts, the greatest, cosines, sines."""
+    """Rows of what is judged at the nodes: numbers of which the least counts, the greatest; and links that turn."""
 
     least: tuple[str, ...]
     greatest: tuple[str, ...]
@@ -220,18 +220,23 @@ class MeshLayout:
 
 
 def mesh_outputs(reduction: Reduction, traced: Traced) -> tuple[MeshLayout, dict[str, Node]]:
-    """What is judged at a node: what a reduction over the mesh compares, and the rotors of links that turn."""
+    """What is judged at a node: what a reduction over the mesh compares."""
     folds: dict[str, dict[str, Node]] = {LEAST: {}, GREATEST: {}}
     for name, node in reduction.state.items():
         # greatest and least of all nodes: what is compared with the value so far
         value, _so_far = node.arguments
         folds[node.operation][name] = value
-    rotors = traced.turning
     outputs = {f"least, {name}": node for name, node in folds[LEAST].items()}
     outputs |= {f"greatest, {name}": node for name, node in folds[GREATEST].items()}
-    outputs |= {f"cosine {link}": as_node(cosine) for link, (cosine, _sine) in rotors.items()}
-    outputs |= {f"sine {link}": as_node(sine) for link, (_cosine, sine) in rotors.items()}
-    return MeshLayout(tuple(folds[LEAST]), tuple(folds[GREATEST]), tuple(rotors)), outputs
+    return MeshLayout(tuple(folds[LEAST]), tuple(folds[GREATEST]), tuple(traced.turning)), outputs
+
+
+def sparse_outputs(traced: Traced) -> dict[str, Node]:
+    """Angles of links that turn, without their turns."""
+    return {
+        f"angle {link}": as_node(EXPRESSIONS.atan2(sine, cosine))
+        for link, (cosine, sine) in traced.turning.items()
+    }
 
 
 @dataclass(frozen=True)
@@ -240,14 +245,15 @@ class MeshJudge:
 
     Attributes
     ----------
-    scan : at the nodes; None where nothing is judged there
+    scan : at the nodes
+    turning : angles of links at the sparse nodes
     drives : values of the drives with which links may turn at the sparse nodes, (drives, k)
     at_start : angles of the links in the initial position of the description, (links,)
     """
 
     layout: MeshLayout
     scan: PlaceScan
-    sparse: npt.NDArray[np.intp]
+    turning: PlaceScan
     start: int
     winders: tuple[str, ...]
     drives: Array
@@ -267,15 +273,19 @@ class MeshJudge:
             if not (least[low] > 0.0 or greatest[high] < 0.0):
                 return None
         further: Known = dict(zip(layout.greatest, greatest, strict=True))
-        if layout.links and not self._centre(room[then:, 0], memory, further):
-            return None
+        if layout.links:
+            self.turning.fill(known, memory.sparse)
+            if not self.centre(memory):
+                return None
+            for k, link in enumerate(layout.links):
+                further[centre_of(link)] = memory.centres[k]
+                for j, drive in enumerate(self.winders):
+                    further[winding_of(link, drive)] = memory.windings[k, j]
         return further
 
-    def _centre(self, rotors: Array, memory: FrameMemory, further: Known) -> bool:
-        """Add where the angles of links stand; False where one does not stay near enough to a centre."""
-        count = len(self.layout.links)
-        cosines, sines = rotors[:count].take(self.sparse, axis=1), rotors[count:].take(self.sparse, axis=1)
-        raw = np.arctan2(sines, cosines)
+    def centre(self, memory: FrameMemory) -> bool:
+        """Find where the angles of links stand; False where one does not stay near enough to a centre."""
+        count, raw = len(self.layout.links), memory.sparse[:, 0].copy()
         jumps = raw[:, 1:] - raw[:, :-1]
         steps = np.rint(jumps * (-1.0 / TURN))
         if steps.any():
@@ -290,15 +300,11 @@ class MeshJudge:
         # the windings that did the last time do as a rule
         half, middle = self._about(raw, memory.windings)
         if not (half + jump).max() < math.pi - AWAY:
-            memory.windings = self._windings(raw)
+            memory.windings[:] = self._windings(raw)
             half, middle = self._about(raw, memory.windings)
             if not (half + jump).max() < math.pi - AWAY:
                 return False
-        memory.centres = middle + TURN * whole
-        for k, link in enumerate(self.layout.links):
-            further[centre_of(link)] = memory.centres[k]
-            for j, drive in enumerate(self.winders):
-                further[winding_of(link, drive)] = memory.windings[k, j]
+        memory.centres[:] = middle + TURN * whole
         return True
 
     def _about(self, angles: Array, windings: Array) -> tuple[Array, Array]:
@@ -396,7 +402,7 @@ class FrameMemory:
 
     def __init__(self, kernels: FrameKernels) -> None:
         judge, write = kernels.judge, kernels.write
-        self.mesh = judge.scan.room()
+        self.mesh, self.sparse = judge.scan.room(), judge.turning.room()
         self.windings = np.zeros((len(judge.layout.links), len(judge.winders)))
         self.centres = np.zeros(len(judge.layout.links))
         self.room = write.room()
@@ -432,6 +438,11 @@ class FrameKernels:
     quantities: tuple[Quantity, ...]
     angles: tuple[int, ...]
     drives: Array
+
+    @property
+    def scans(self) -> tuple[PlaceScan, PlaceScan, PlaceScan]:
+        """What is computed at the nodes, at the sparse ones, and at the samples."""
+        return self.judge.scan, self.judge.turning, self.write
 
     def memory(self) -> FrameMemory:
         """Memory for one thread."""
@@ -478,25 +489,51 @@ class FrameScans:
 
     layout: FrameLayout
     mesh: Scan
+    sparse: Scan
     samples: Scan
+
+    @property
+    def all(self) -> tuple[Scan, Scan, Scan]:
+        """The scans in the order of `FramePlaces.all`."""
+        return self.mesh, self.sparse, self.samples
 
 
 @dataclass(frozen=True)
 class FramePlaces:
-    """Nodes of the mesh and samples: name of a variable of a place -> (places,)."""
+    """Nodes of the mesh, the sparse ones, and samples: name of a variable of a place -> (places,)."""
 
     mesh: Mapping[str, Array]
+    sparse: Mapping[str, Array]
     samples: Mapping[str, Array]
 
+    @property
+    def all(self) -> tuple[Mapping[str, Array], Mapping[str, Array], Mapping[str, Array]]:
+        """All places in their order."""
+        return self.mesh, self.sparse, self.samples
 
-def frame_scans(screening: EventScreening, places: FramePlaces) -> FrameScans:
-    """The scans of a traced plan without groups of higher class."""
+
+def frame_places(ready: Ready, span: SampleGrid) -> FramePlaces:
+    """The places of a mechanism."""
+    path = ready.kinematics.path
+    nodes = mesh_of(path, span.parameter)
+    sparse, _start = sparse_nodes(nodes, path.initial)
+    return FramePlaces(
+        mesh_places(path, nodes), places_of(path, nodes[sparse], ORDERS - 1), sample_places(ready, span)
+    )
+
+
+def frame_scans(screening: EventScreening, places: FramePlaces, scale: Graph | None) -> FrameScans:
+    """The scans of a traced plan without groups of higher class; `scale` is the greatest length, if it varies."""
     traced = screening.traced
     mesh, on_mesh = mesh_outputs(screening.over_mesh[0], traced)
     quantities, angles, rows = frame_outputs(traced, screening.slack_at_samples)
     layout = FrameLayout(mesh, Graph.of(traced.winders), quantities, angles)
     written = {str(k): node for k, node in enumerate(rows)}
-    return FrameScans(layout, place_scan(on_mesh, places.mesh), place_scan(written, places.samples))
+    outputs = [on_mesh, sparse_outputs(traced), written]
+    if scale is not None:
+        # computed with the rest: to have it beforehand takes as long as a kernel
+        outputs = [dict(Graph(x).substitute(scale.outputs).outputs) for x in outputs]
+    return FrameScans(layout, *(place_scan(x, at) for x, at in zip(outputs, places.all, strict=True)))
 
 
 def sample_places(ready: Ready, span: SampleGrid) -> dict[str, Array]:
@@ -505,7 +542,7 @@ def sample_places(ready: Ready, span: SampleGrid) -> dict[str, Array]:
 
 
 def frame_kernels(
-    ready: Ready, span: SampleGrid, layout: FrameLayout, mesh: PlaceScan, samples: PlaceScan
+    ready: Ready, span: SampleGrid, layout: FrameLayout, scans: Sequence[PlaceScan]
 ) -> FrameKernels:
     """The kernels of a plan, with what they need of the mechanism."""
     path = ready.kinematics.path
@@ -519,10 +556,11 @@ def frame_kernels(
             len(winders), count
         )
 
+    mesh, turning, samples = scans
     judge = MeshJudge(
         layout.mesh,
         mesh,
-        sparse,
+        turning,
         int(np.searchsorted(sparse, start)),
         winders,
         drives(places_of(path, nodes[sparse], ORDERS - 1), len(sparse)),

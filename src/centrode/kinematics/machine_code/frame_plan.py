@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.frame_calls import CalledFrames, CalledMemory
 from centrode.kinematics.machine_code.frame_kernels import (
     COSINES,
     RESIDUAL,
@@ -19,7 +20,6 @@ from centrode.kinematics.machine_code.frame_kernels import (
     FrameKernels,
     FrameLayout,
     FrameMemory,
-    FramePlaces,
     FreeNumbers,
     Known,
     PlaceScan,
@@ -27,6 +27,7 @@ from centrode.kinematics.machine_code.frame_kernels import (
     closes,
     frame_kernels,
     frame_outputs,
+    frame_places,
     frame_scans,
     place_scan,
     room_view,
@@ -38,7 +39,9 @@ from centrode.kinematics.machine_code.variables import SCALE, Varied, varied_of
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready
 from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.executors import MACHINE_CODE
 from centrode.numerics.expressions import Node
+from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import room_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
 
@@ -107,19 +110,34 @@ class DirectPlan:
     kernels: FrameKernels
     executor: str
 
+    @cached_property
+    def called(self) -> CalledFrames | None:
+        """The calls of machine code; None where kernels are called one by one."""
+        return CalledFrames.of(self.numbers, self.kernels) if self.executor == MACHINE_CODE else None
+
     def memory(self) -> FrameMemory:
-        return self.kernels.memory()
+        return self.kernels.memory() if self.called is None else self.called.memory()
 
     def judged(self, given: Given, memory: FrameMemory) -> Known | None:
-        known = self.numbers.known(given)
+        known = dict(zip(self.free.paths, given, strict=True))
+        if isinstance(memory, CalledMemory):
+            assert self.called is not None
+            judged = self.called.judged(given, memory)
+            return None if judged is None else known | judged
+        known |= self.numbers.known(given)
         further = self.kernels.judge.judge(known, memory)
-        return None if further is None else dict(zip(self.free.paths, given, strict=True)) | known | further
+        return None if further is None else known | further
 
     def move(self, given: Given, memory: FrameMemory) -> bool:
+        if isinstance(memory, CalledMemory):
+            assert self.called is not None
+            return self.called.move(given, memory)
         return self.kernels.move(self.numbers.known(given), memory)
 
     def samples_of(self, outputs: Mapping[str, Node]) -> SampleScan:
-        places = sample_places(self.free.ready, self.free.span)
+        places, scale = sample_places(self.free.ready, self.free.span), self.numbers.scale
+        if scale is not None:
+            outputs = Graph(outputs).substitute(scale.outputs).outputs
         return PlaceScan.of(place_scan(outputs, places), places, self.executor)
 
 
@@ -216,9 +234,8 @@ def traced_plan(free: FreeMechanism, varied: Varied, traced: Traced, executor: s
     numbers = FreeNumbers.of(free.paths, varied)
     if numbers is None:
         return None
-    places = FramePlaces(screening.over_mesh[1], sample_places(free.ready, free.span))
-    scans = frame_scans(screening, places)
-    mesh = PlaceScan.of(scans.mesh, places.mesh, executor)
-    samples = PlaceScan.of(scans.samples, places.samples, executor)
-    kernels = frame_kernels(free.ready, free.span, scans.layout, mesh, samples)
+    places = frame_places(free.ready, free.span)
+    scans = frame_scans(screening, places, numbers.scale)
+    found = [PlaceScan.of(scan, at, executor) for scan, at in zip(scans.all, places.all, strict=True)]
+    kernels = frame_kernels(free.ready, free.span, scans.layout, found)
     return DirectPlan(free, numbers, scans.layout, kernels, executor)

@@ -6,7 +6,7 @@ import ctypes
 import os
 import threading
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.numerics.expressions import constant
-from centrode.numerics.graphs import graph_of_rows, graph_rows
+from centrode.numerics.graphs import Graph, graph_of_rows, graph_rows
 from centrode.numerics.machine_code import cache
 from centrode.numerics.machine_code.compile import (
     VERSIONS,
@@ -233,6 +233,18 @@ def _function(text: str, machine: Target) -> Loaded:
     return load_object_code(code, machine)
 
 
+@lru_cache(maxsize=8)
+def function_of(text: Callable[[int], str]) -> Callable[[int, int], int]:
+    """A function (address, number) -> number from its text for vectors of so many doubles."""
+    machine = host()
+    loaded = _function(text(machine.width(64)), machine)
+    place = ctypes.cast(loaded.call, ctypes.c_void_p).value
+    found = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(place or 0)
+    # what is loaded has to stay as long as the function
+    found.loaded = loaded  # type: ignore[attr-defined]
+    return found
+
+
 def address(array: Array) -> int:
     """Where an array with a contiguous last axis begins; 0 of an empty one."""
     if not array.size:
@@ -320,6 +332,26 @@ class Stream:
                 address(out), out.strides[0] // size, out.strides[1] // size,
             )  # fmt: skip
         return out
+
+    def bare_call(self, rows: Array, out: Array) -> tuple[int, ...] | None:
+        """Address of the function and its arguments for one step; None of fewer lanes than a vector has.
+
+        `rows` are (inputs and what is computed of these alone, 1), `out` (outputs, 1, lanes). Nothing is checked when
+        these are used: both arrays and this stream have to be there then.
+        """
+        if not self._alone:
+            return None
+        size = self.kernel.number.itemsize
+        return (
+            ctypes.cast(self.kernel.function.call, ctypes.c_void_p).value or 0,
+            self.lanes, 1, *self._of_lanes, address(rows), rows.strides[0] // size, 0, 0, 0, 0,
+            address(out), out.strides[0] // size, out.strides[1] // size,
+        )  # fmt: skip
+
+    @property
+    def functions(self) -> Graph:
+        """What is computed of the inputs alone before each call: its numbers stand behind the inputs."""
+        return self.kernel.tables.of_steps.graph
 
     def _check(self, rows: npt.NDArray[Any], out: Array) -> None:
         """Check shapes, as machine code writes to addresses and knows no sizes."""
