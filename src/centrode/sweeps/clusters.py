@@ -48,6 +48,9 @@ WAITING, LEAST_WAITING = 3, 16
 PATIENCE = 10.0
 """Seconds without a worker after which that is told."""
 TICK = 0.5
+"""Seconds between looks at the scheduler while nothing is finished."""
+OF_CONNECTION = ("ClosedClientError", "CancelledError", "FutureCancelledError", "FuturesCancelledError")
+"""Failures of a client whose scheduler is gone."""
 
 # heavy, an extra
 _distributed = functools.partial(importlib.import_module, "distributed")
@@ -288,12 +291,7 @@ def _is_of_connection(failure: BaseException) -> bool:
     if isinstance(failure, OSError):
         # CommClosedError is one; a store's failures come from workers
         return type(failure).__module__.startswith("distributed")
-    return type(failure).__name__ in {
-        "ClosedClientError",
-        "CancelledError",
-        "FutureCancelledError",
-        "FuturesCancelledError",
-    }
+    return type(failure).__name__ in OF_CONNECTION
 
 
 def check_cluster(cluster: ClusterSource) -> ClusterSource:
@@ -321,9 +319,7 @@ def check_cluster(cluster: ClusterSource) -> ClusterSource:
 
 def _unknown(cluster: object) -> InputError:
     what = _("{value} is no cluster").format(value=value_text(cluster))
-    repair = _(
-        "give a number of workers, the address of a scheduler such as tcp://host:8786, or a client of distributed"
-    )
+    repair = _("give a number of workers, an address such as tcp://host:8786, or a client of distributed")
     return InputError("cluster", what, repair)
 
 
@@ -350,8 +346,10 @@ def open_cluster(cluster: ClusterSource) -> Iterator[Cluster]:
 
 
 def _local(count: int) -> Any:
+    # imported first: its own settings come with it, and would go with the block
+    distributed = _distributed()
     with _dask().config.set({"distributed.scheduler.allowed-failures": DEATHS}):
-        return _distributed().LocalCluster(
+        return distributed.LocalCluster(
             n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1",
             silence_logs=logging.CRITICAL,
         )  # fmt: skip

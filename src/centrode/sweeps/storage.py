@@ -272,6 +272,9 @@ OWNERS = "progress/owners"
 TOGETHER = 500
 """Marks that are read at once."""
 
+BELOW = ("aiobotocore", "aiohttp", "asyncio", "botocore", "fsspec", "s3fs")
+"""Libraries that an object store is reached by."""
+
 _fsspec = functools.partial(lazy_loader.load, "fsspec")
 _storage = functools.partial(importlib.import_module, "zarr.storage")
 
@@ -284,14 +287,7 @@ def _as_refusals() -> Iterator[None]:
     except (OSError, InputError):
         raise
     except Exception as failure:
-        if type(failure).__module__.partition(".")[0] in {
-            "botocore",
-            "aiobotocore",
-            "aiohttp",
-            "fsspec",
-            "s3fs",
-            "asyncio",
-        }:
+        if type(failure).__module__.partition(".")[0] in BELOW:
             raise OSError(str(failure) or type(failure).__name__) from failure
         raise
 

@@ -241,7 +241,7 @@ class SweepFrame:
 
     @property
     def labels(self) -> Mapping[Any, Any]:
-        """Coordinates of a result: those of `empty`, and of a drawn design the values, which are made when they are read."""
+        """Coordinates of a result: those of `empty`, and values of a drawn design, which are made when they are read."""
         drawn = {
             path: ((MECHANISM,), lazy_values(self.design, path), {"units": self.units[path]})
             for path in self.units
