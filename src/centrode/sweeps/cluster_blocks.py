@@ -161,7 +161,7 @@ def _made(storage: Storage, digest: str) -> _Workplace:
         told["reduce"],
         told["gradient"],
         tables and {name: [np.nan if x is None else x for x in values] for name, values in tables.items()},
-        tuple(told["samples"]),  # type: ignore[arg-type]
+        tuple(told["samples"]),
         target=target,
     )
     axis, step = told["blocks"]

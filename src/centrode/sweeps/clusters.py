@@ -22,7 +22,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from centrode.errors import CentrodeError, InputError
+from centrode.errors import CentrodeError, ClusterWarning, InputError
 from centrode.locale import _
 from centrode.model.reading import value_text
 from centrode.optional_packages import how_to_install
@@ -234,7 +234,7 @@ class _Running:
             what = _("{scheduler} has no workers; the work waits for them").format(
                 scheduler=self.cluster.name
             )
-            warnings.warn(what, RuntimeWarning, stacklevel=6)
+            warnings.warn(what, ClusterWarning, stacklevel=6)
 
     def _again(self, future: Any) -> None:
         """Hand out once more what a worker died over; whatever else was wrong is raised."""

@@ -186,7 +186,7 @@ def _network(numbers: Places, half: int, key: Places) -> Places:
 # Values as an array that is made when it is read.
 
 
-class _Values(BackendArray):  # type: ignore[misc]
+class _Values(BackendArray):
     """The values of one path; what is read of them is made then."""
 
     def __init__(self, design: Drawn, path: str) -> None:

@@ -241,7 +241,7 @@ class SweepFrame:
 
     @property
     def labels(self) -> Mapping[Any, Any]:
-        """Coordinates of a result: those of `empty`, and values of a drawn design, which are made when they are read."""
+        """Coordinates of a result: those of `empty`, and values of a drawn design, made when they are read."""
         drawn = {
             path: ((MECHANISM,), lazy_values(self.design, path), {"units": self.units[path]})
             for path in self.units
@@ -729,7 +729,8 @@ def _make(storage: Storage, frame: SweepFrame, blocks: Blocks, study: Mapping[st
     names = {column.name for column in frame.asked.columns}
     # a making cut short left no study, so nothing there counts
     storage.make(files, {METADATA, *map(str, frame.empty.coords), *names})
-    checksums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+    # in one order: zarr writes them as they come
+    checksums = {name: hashlib.sha256(files[name]).hexdigest() for name in sorted(files)}
     told = {"study": study, "blocks": [blocks.axis, blocks.step], "files": checksums}
     storage.write_durably(f"{PROGRESS}/{STUDY}", told)
 

@@ -159,11 +159,11 @@ def sweep(
         return _in_memory(plan, progress, out).assign_attrs(topic="sweep")
     _check_size(plan.frame, designs.IN_STORE, _("reduce it, or choose fewer"))
     storage = storage_of(store)
-    study = study_of(plan.frame, plan.task, plan.target)
+    facts = study_of(plan.frame, plan.task, plan.target)
     # a cluster's store may be greater than what can be read at every beginning
     blocks = functools.partial(blocks_of if cluster is None else measured_blocks_of, plan)
     with open_store(
-        storage, plan.frame, blocks, study, thorough=cluster is None and storage.reads_back
+        storage, plan.frame, blocks, facts, thorough=cluster is None and storage.reads_back
     ) as kept:
         finished = kept.tally.mechanisms
         wanted = wanted_libraries(machine_code=plan.executor.name == MACHINE_CODE)
