@@ -350,7 +350,7 @@ def _local(count: int) -> Any:
     distributed = _distributed()
     with _dask().config.set({"distributed.scheduler.allowed-failures": DEATHS}):
         return distributed.LocalCluster(
-            n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1",
+            n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", host="127.0.0.1",
             silence_logs=logging.CRITICAL,
         )  # fmt: skip
 
