@@ -161,7 +161,7 @@ def test_a_place_without_rights_or_reach(
     assert "s3://sweeps/refused.zarr: cannot be written: " in told
     assert "Traceback" not in told
     with pytest.raises(
-        ct.InputError, match=r"s3://no-such-bucket/x\.zarr: cannot be written: .*; give another path"
+        ct.InputError, match=r"s3://no-such-bucket/x\.zarr: cannot be written: .*; look at the address"
     ):
         swept("s3://no-such-bucket/x.zarr")
     with pytest.raises(

@@ -11,13 +11,11 @@ import threading
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from centrode.errors import InputError
-from centrode.files.drafts import refusals
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.numerics.executors import lacking_features
@@ -25,7 +23,7 @@ from centrode.sweeps.clusters import ClusterSource, libraries, open_cluster
 from centrode.sweeps.designs import Crossed, Design, Listed
 from centrode.sweeps.drawn_designs import Drawn
 from centrode.sweeps.executors import bare
-from centrode.sweeps.storage import PROGRESS, Storage, storage_of, zarr_array
+from centrode.sweeps.storage import PROGRESS, Storage, place_refusals, storage_of, zarr_array
 from centrode.sweeps.store import Blocks, BlockWriter, Store, Tally
 from centrode.sweeps.sweep_plans import Progress, Span, SweepPlan, plan_of
 
@@ -180,7 +178,7 @@ def compute_on_cluster(
 ) -> None:
     """Compute the blocks that a store does not have on a cluster; its text is kept in the store."""
     storage, blocks = store.storage, store.blocks
-    with refusals(Path(str(storage))):
+    with place_refusals(str(storage)):
         if storage.read(WORK, MOST_TEXT) != text.encode():
             storage.write(WORK, text.encode())
         digest = hashlib.sha256(text.encode()).hexdigest()

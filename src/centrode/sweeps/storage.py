@@ -123,6 +123,23 @@ def table_of(content: bytes | None) -> dict[str, Any] | None:
     return told if isinstance(told, dict) else None
 
 
+@contextmanager
+def place_refusals(place: str) -> Iterator[None]:
+    """Say what the place of a store refuses as an InputError about it."""
+    if "://" not in place:
+        with refusals(Path(place)):
+            yield
+        return
+    try:
+        yield
+    except OSError as refusal:
+        reason = refusal.strerror or str(refusal)
+        what = _("cannot be written: {reason}").format(reason=reason)
+        raise InputError(
+            place, what, _("look at the address, and at the rights that the environment gives")
+        ) from refusal
+
+
 # A folder.
 
 
@@ -335,7 +352,7 @@ class ObjectStorage:
 
     @contextmanager
     def lock(self) -> Iterator[None]:
-        with refusals(Path(self.url)):
+        with place_refusals(self.url):
             number = self._take()
         beating = threading.Event()
         beat = threading.Thread(target=self._renew, args=(number, beating), daemon=True)

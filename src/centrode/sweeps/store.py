@@ -19,7 +19,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import Any, Protocol, TypeAlias
 
 import lazy_loader
@@ -28,7 +28,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import DamageWarning, InputError
-from centrode.files.drafts import refusals
 from centrode.locale import _, ngettext
 from centrode.optional_packages import how_to_install
 from centrode.sweeps import designs
@@ -38,7 +37,7 @@ from centrode.sweeps.drawn_designs import Drawn, lazy_values
 from centrode.sweeps.executors import bare
 from centrode.sweeps.machine import StreamedColumns, columns_for
 from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
-from centrode.sweeps.storage import DONE, GREATEST, METADATA, PROGRESS, Storage, table_of
+from centrode.sweeps.storage import DONE, GREATEST, METADATA, PROGRESS, Storage, place_refusals, table_of
 
 # The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.
 
@@ -582,7 +581,7 @@ class Store:
         return self._room.part(slice(0, stop - first))
 
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
-        with refusals(Path(str(self.storage))):
+        with place_refusals(str(self.storage)):
             self.writer.write(block, results, tally)
         self.take(block, tally)
 
@@ -608,14 +607,13 @@ def open_store(
     Raises InputError: zarr is not installed, the place holds something else, another sweep or a file that was read,
     another run writes into it, the place refuses.
     """
-    where = Path(str(storage))
     if importlib.util.find_spec("zarr") is None:
         what = _("a store needs zarr, which is not installed")
         raise InputError(str(storage), what, how_to_install("sweeps"))
-    with refusals(where):
+    with place_refusals(str(storage)):
         storage.prepare()
     with storage.lock():
-        with refusals(where):
+        with place_refusals(str(storage)):
             stored = _stored_study(storage)
             if stored is None:
                 made = blocks()
