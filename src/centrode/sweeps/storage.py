@@ -135,9 +135,8 @@ def place_refusals(place: str) -> Iterator[None]:
     except OSError as refusal:
         reason = refusal.strerror or str(refusal)
         what = _("cannot be written: {reason}").format(reason=reason)
-        raise InputError(
-            place, what, _("look at the address, and at the rights that the environment gives")
-        ) from refusal
+        repair = _("look at the address, and at the rights that the environment gives")
+        raise InputError(place, what, repair) from refusal
 
 
 # A folder.
@@ -367,7 +366,7 @@ class ObjectStorage:
                 self._put_owner(number, alive=False)
 
     def _take(self) -> int:
-        numbers = sorted(int(name) for name in self._names(OWNERS) if name.isascii() and name.isdigit())
+        numbers = self._owners()
         if numbers and self._is_held(numbers[-1]):
             raise _busy_error(self.url)
         number = numbers[-1] + 1 if numbers else 0
@@ -376,9 +375,16 @@ class ObjectStorage:
         except FileExistsError:
             # another run took it in between
             raise _busy_error(self.url) from None
+        if self._owners()[-1:] != [number]:
+            # a list that was read long ago: others have come and gone
+            self.remove(f"{OWNERS}/{number}")
+            raise _busy_error(self.url)
         for old in numbers[:-1]:
             self.remove(f"{OWNERS}/{old}")
         return number
+
+    def _owners(self) -> list[int]:
+        return sorted(int(name) for name in self._names(OWNERS) if name.isascii() and name.isdigit())
 
     def _put_owner(self, number: int, *, alive: bool, mode: str = "overwrite") -> None:
         told = {"host": socket.gethostname(), "process": os.getpid(), "alive": alive, "time": time.time()}
