@@ -326,7 +326,7 @@ def test_the_command_computes_with_workers_of_its_own(
 
 def test_studies_of_simulations_have_the_same_numbers(cluster: Any) -> None:
     asked: dict[str, Any] = {
-        "vary": {"links.AB.length": [3.4, 1.0, 3.6]},
+        "vary": {"links.OA.length": [0.347, 20.0, 0.35]},
         "compute": "reactions",
         "samples": 7,
     }
