@@ -137,7 +137,7 @@ def test_workers_write_to_a_store_that_fails_now_and_then(tmp_path: Path, server
     swept(tmp_path / "0.zarr")
     server.each = 9
     try:
-        with open_cluster(2) as cluster:
+        with open_cluster(1) as cluster:
             found = swept(url, cluster=cluster.client)
     finally:
         server.each = 0
