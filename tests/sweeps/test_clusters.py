@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from tools.campaigns.clusters.cases import contents
+from tools.campaigns.clusters.processes import SCHEDULER
 
 import centrode as ct
 from centrode.assignments.tables import Variant
@@ -56,15 +58,6 @@ def cluster() -> Iterator[Any]:
 def swept(store: Path | str | None, **more: Any) -> xr.Dataset:
     asked: dict[str, Any] = {"outputs": OUTPUTS, "samples": 19, "vary": ct.grid(VARY), **more}
     return ct.sweep(ct.example("crank-rocker"), **asked, store=store)
-
-
-def contents(store: Path) -> dict[str, bytes]:
-    """What a store holds, but for its lock and the text for workers."""
-    return {
-        file.relative_to(store).as_posix(): file.read_bytes()
-        for file in sorted(store.rglob("*"))
-        if file.is_file() and file.name not in {"lock", "work.json"}
-    }
 
 
 needs_x86 = pytest.mark.skipif(clusters.libraries()["llvmlite"] is None, reason="needs the extra fast")
@@ -157,17 +150,6 @@ ct.sweep(ct.example("crank-rocker"), ct.grid({VARY!r}), {OUTPUTS!r}, 19, store=s
     assert found.attrs["mechanisms_found"] > 5
     swept(tmp_path / "0.zarr")
     assert contents(tmp_path / "1.zarr") == contents(tmp_path / "0.zarr")
-
-
-SCHEDULER = """
-import asyncio
-from distributed import Scheduler
-async def run():
-    async with Scheduler(host="127.0.0.1", port=0, dashboard=False) as scheduler:
-        print(scheduler.address, flush=True)
-        await scheduler.finished()
-asyncio.run(run())
-"""
 
 
 def test_a_scheduler_that_goes_away_or_was_never_there(

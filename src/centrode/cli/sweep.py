@@ -58,8 +58,8 @@ How: TypeAlias = Mapping[str, Any]
     "--target",
     metavar=mark("NAME"),
     help=mark(
-        "The processor that machine code is compiled for: x86-64-v2, x86-64-v3, x86-64-v4 or aarch64. A cluster takes "
-        "x86-64-v3 or aarch64 if it is left out."
+        "The processor that machine code is compiled for: x86-64-v2, x86-64-v3, x86-64-v4 or aarch64. By default this "
+        "machine's; with a cluster x86-64-v3 or aarch64."
     ),
 )
 def sweep(

@@ -103,7 +103,7 @@ def sweep(
     cluster : a number of workers on this machine, "tcp://..." or "tls://...", a client of `distributed`
         Workers compute the blocks and write them to the store, which all of them reach (docs: clusters).
     target : "x86-64-v2", "x86-64-v3", "x86-64-v4" or "aarch64"
-        The processor that machine code is compiled for; this machine's if left out, with a cluster a baseline.
+        The processor that machine code is compiled for; this machine's by default, with a cluster a baseline.
 
     Returns
     -------
