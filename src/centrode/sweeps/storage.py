@@ -32,7 +32,6 @@ from centrode.files.drafts import (
     refusals,
     remove_file,
     replace_file,
-    write_whole,
 )
 from centrode.files.inputs import keep_inputs_below
 from centrode.files.locks import hold_lock
@@ -200,7 +199,13 @@ class FolderStorage:
     def write_durably(self, name: str, told: Mapping[str, Any]) -> None:
         file = self.path / name
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(file, told)
+        # a name of its own: two workers may write the same mark at once
+        draft = file.with_name(f"{file.name}.{uuid.uuid4().hex}.partial")
+        with draft.open("w", encoding="utf-8") as stream:
+            json.dump(told, stream)
+            stream.flush()
+            os.fsync(stream.fileno())
+        replace_file(draft, file)
 
     def remove(self, name: str) -> None:
         remove_file(self.path / name)

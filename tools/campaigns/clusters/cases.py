@@ -77,7 +77,11 @@ def killed_sweep(plan: list[tuple[str, int, int]], executor: str) -> Outcome:
                     ended = _watch(client, machines, left, found)
                 finally:
                     client.end()
-                now = {name: content for name, content in contents(store).items() if "/done/" in name}
+                now = {
+                    name: content
+                    for name, content in contents(store).items()
+                    if "/done/" in name and name.endswith(".json")
+                }
                 if any(now.get(name) != content for name, content in marks.items()):
                     found.fault("a mark that was there is lost or another one")
                 marks = now
