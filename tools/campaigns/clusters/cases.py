@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from pathlib import Path
 
@@ -19,6 +20,7 @@ KINDS = ("worker", "scheduler", "client")
 GRID = {"links.AB.length": [1.6 + 0.2 * k for k in range(12)], "frame.points.D.x": [3.9, 4.0, 4.1]}
 OUTPUTS = ["position.B", "angle"]
 MECHANISMS = 36
+MARK = re.compile(r"progress/done/\d+/\d+\.json")
 
 
 def contents(store: Path) -> dict[str, bytes]:
@@ -26,7 +28,7 @@ def contents(store: Path) -> dict[str, bytes]:
     return {
         file.relative_to(store).as_posix(): file.read_bytes()
         for file in sorted(store.rglob("*"))
-        if file.is_file() and file.name not in {"lock", "work.json"}
+        if file.is_file() and file.name not in {"lock", "work.json"} and file.suffix != ".partial"
     }
 
 
@@ -77,11 +79,8 @@ def killed_sweep(plan: list[tuple[str, int, int]], executor: str) -> Outcome:
                     ended = _watch(client, machines, left, found)
                 finally:
                     client.end()
-                now = {
-                    name: content
-                    for name, content in contents(store).items()
-                    if "/done/" in name and name.endswith(".json")
-                }
+                # what a worker that was killed was writing is no mark
+                now = {name: text for name, text in contents(store).items() if MARK.fullmatch(name)}
                 if any(now.get(name) != content for name, content in marks.items()):
                     found.fault("a mark that was there is lost or another one")
                 marks = now
