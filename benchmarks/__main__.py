@@ -14,6 +14,7 @@ warnings.filterwarnings(
 from benchmarks import (  # noqa: E402
     animations,
     chains,
+    cluster,
     cold,
     drawings,
     forces,
@@ -55,10 +56,11 @@ SECTIONS: Mapping[str, Section] = {
         f"Machine code, {LANES} mechanisms of {SAMPLES} samples, a position", kernels.kernels,
     ),
     "solver": (f"One mechanism whose numbers change, {solver.SAMPLES} samples", solver.moves),
+    "cluster": ("A sweep on two workers of this machine, by the clock", cluster.clusters),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
-NEED_COMPILER = {"kernels", "sweeps", "simulation"}
+NEED_COMPILER = {"kernels", "sweeps", "simulation", "cluster"}
 
 
 def main(wanted: list[str]) -> int:

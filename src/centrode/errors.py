@@ -93,6 +93,10 @@ class DamageWarning(RuntimeWarning):
     """Results kept by an earlier run are damaged; what was lost is made again."""
 
 
+class ClusterWarning(RuntimeWarning):
+    """Nothing is wrong with the work, but the cluster does not do it now."""
+
+
 class Status(IntEnum):
     """What a sample of a motion is worth; every motion carries one per sample.
 

@@ -8,6 +8,7 @@ from tools.campaigns.campaign import Campaign
 from tools.campaigns.cams import cases as cams
 from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
+from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.reactions import cases as reactions
@@ -25,5 +26,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         cams.CAMPAIGN,
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
+        clusters.CAMPAIGN,
     )
 }

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from centrode.locale import mark
+from centrode.errors import InputError
+from centrode.locale import _, mark
 
 mechanism_argument = click.argument(
     "mechanism",
@@ -59,3 +60,25 @@ no_figures_option = click.option("--no-figures", is_flag=True, help=mark("Write 
 dark_option = click.option(
     "--dark", is_flag=True, help=mark("Pictures with light lines on a dark background.")
 )
+
+workers_option = click.option(
+    "--workers",
+    type=int,
+    metavar=mark("N"),
+    help=mark("Number of processes of this machine that compute, as a cluster."),
+)
+
+scheduler_option = click.option(
+    "--scheduler",
+    metavar=mark("URL"),
+    help=mark("The scheduler of a cluster whose workers compute: tcp://HOST:PORT, or tls://HOST:PORT."),
+)
+
+
+def asked_cluster(workers: int | None, scheduler: str | None) -> int | str | None:
+    """What computes, by the two options; InputError where both are given."""
+    if workers is not None and scheduler is not None:
+        raise InputError(
+            "--workers", _("--scheduler names another cluster"), _("give one of the two options")
+        )
+    return scheduler if workers is None else workers

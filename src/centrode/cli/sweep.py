@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, TypeAlias
 
 import click
 
@@ -15,10 +15,10 @@ import centrode as ct
 from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.arguments import no_figures_option
+from centrode.cli.arguments import asked_cluster, no_figures_option, scheduler_option, workers_option
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
-from centrode.errors import DamageWarning, InputError, MotionError
+from centrode.errors import ClusterWarning, DamageWarning, InputError, MotionError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
@@ -27,17 +27,19 @@ if TYPE_CHECKING:
     from centrode.sweeps.sweep import SweepStudy
 
 TABLE, STORE = ".csv", ".zarr"
+NOTES = (DamageWarning, ClusterWarning)
+How: TypeAlias = Mapping[str, Any]
+"""Arguments of `sweep` that say what computes."""
 
 
 @click.command(help=mark("Compute many mechanisms of one structure, from a study."))
 @click.argument("study", metavar=mark("STUDY"), help=mark("A TOML file: mechanism, what varies, outputs."))
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
     metavar=mark("OUT"),
     help=mark(
-        "A folder .zarr (an interrupted run is resumed), or a table .csv of a reduced sweep; of a parameter study "
-        "a table .csv or a folder with table and figure."
+        "A folder .zarr or an address such as s3://BUCKET/NAME.zarr (an interrupted run is resumed), or a table .csv "
+        "of a reduced sweep; of a parameter study a table .csv or a folder with table and figure."
     ),
 )
 @click.option(
@@ -50,7 +52,26 @@ TABLE, STORE = ".csv", ".zarr"
 @no_figures_option
 @tables_options
 @click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
-def sweep(study: str, out: Path | None, values: Path | None, no_figures: bool, force: bool) -> None:
+@workers_option
+@scheduler_option
+@click.option(
+    "--target",
+    metavar=mark("NAME"),
+    help=mark(
+        "The processor that machine code is compiled for: x86-64-v2, x86-64-v3, x86-64-v4 or aarch64. By default this "
+        "machine's; with a cluster x86-64-v3 or aarch64."
+    ),
+)
+def sweep(
+    study: str,
+    out: str | None,
+    values: Path | None,
+    no_figures: bool,
+    force: bool,
+    workers: int | None,
+    scheduler: str | None,
+    target: str | None,
+) -> None:
     """Compute and write; exit code 3 if no mechanism moves anywhere (the results are written)."""
     asked = library.read_sweep(study)
     if values is not None:
@@ -59,20 +80,28 @@ def sweep(study: str, out: Path | None, values: Path | None, no_figures: bool, f
                 "--table", _("the study has tables of its own"), _("give them in one of the two places")
             )
         asked = replace(asked, tables=values)
+    how = {"cluster": asked_cluster(workers, scheduler), "target": target}
     if asked.compute is not None:
-        _parameter_study(asked, study, out, figures=not no_figures, force=force)
+        _parameter_study(
+            asked, study, None if out is None else Path(out), how, figures=not no_figures, force=force
+        )
         return
-    target = out if out is not None else Path(Path(study).stem + STORE)
-    need_table(target)
-    if target.suffix == TABLE:
-        data = _as_table(asked, study, target, force)
-    elif target.suffix == STORE:
-        data = _as_store(asked, study, target)
+    place = out if out is not None else Path(study).stem + STORE
+    need_table(Path(place))
+    suffix = Path(place).suffix
+    if suffix == TABLE and "://" not in place:
+        data = _as_table(asked, study, Path(place), how, force)
+        written = table_files(Path(place))
+    elif suffix == STORE:
+        data = _as_store(asked, study, place, how)
+        written = [Path(place)]
     else:
         raise InputError(
-            str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
+            place, _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
-    _show(asked, study, data, output.wrote([target] if target.suffix == STORE else table_files(target)))
+    _show(
+        asked, study, data, _("wrote {file}").format(file=place) if "://" in place else output.wrote(written)
+    )
 
 
 def _show(asked: SweepStudy, study: str, data: xr.Dataset, written: str) -> None:
@@ -87,18 +116,20 @@ def _show(asked: SweepStudy, study: str, data: xr.Dataset, written: str) -> None
         raise MotionError(study, what, repair)
 
 
-def _parameter_study(asked: SweepStudy, study: str, out: Path | None, *, figures: bool, force: bool) -> None:
+def _parameter_study(
+    asked: SweepStudy, study: str, out: Path | None, how: How, *, figures: bool, force: bool
+) -> None:
     """Analyse every mechanism; a table, or a folder with the table, the dataset and the figure."""
     if out is not None and out.suffix == TABLE:
         with output.output_table(out, force=force) as (draft, workbook):
-            data = _compute(asked, study, None)
+            data = _compute(asked, study, None, how)
             (table,) = ct.tables(data).values()
             render.write_table(table, draft, asked.mechanism.display, asked_spelling(), workbook)
         _show(asked, study, data, output.wrote(table_files(out)))
         return
     folder = output.folder_of(out, study, "study")
     with output.output_folder(folder) as draft:
-        data = _compute(asked, study, None)
+        data = _compute(asked, study, None, how)
         sheet = library.sheet_of(data)
         render.write_tables(sheet, draft, asked.mechanism.display, asked_spelling())
         if figures:
@@ -107,7 +138,7 @@ def _parameter_study(asked: SweepStudy, study: str, out: Path | None, *, figures
     _show(asked, study, data, output.files_in(folder, names))
 
 
-def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
+def _as_table(asked: SweepStudy, study: str, target: Path, how: How, force: bool) -> xr.Dataset:
     if asked.reduce is None and not isinstance(asked.outputs, Mapping):
         raise InputError(
             str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
@@ -117,7 +148,7 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
             warnings.simplefilter(
                 "ignore", RuntimeWarning
             )  # an interruption is told in the command's own words
-            data = _compute(asked, study, None)
+            data = _compute(asked, study, None, how)
         if data.attrs["mechanisms"] < data["samples_ok"].size:
             raise KeyboardInterrupt  # a part of a table looks like a whole one
         (table,) = ct.tables(data).values()
@@ -125,10 +156,10 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
     return data
 
 
-def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
+def _as_store(asked: SweepStudy, study: str, target: str, how: How) -> xr.Dataset:
     try:
-        with _damage_told():
-            data = _compute(asked, study, target)
+        with _notes_told():
+            data = _compute(asked, study, target, how)
     except KeyboardInterrupt:
         note = _("finished results stay in {folder}; the same command resumes from there")
         output.tell(note.format(folder=target))
@@ -140,10 +171,11 @@ def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
 
 
 @contextmanager
-def _damage_told() -> Iterator[None]:
-    """Say what of a store is damaged in the command's own words."""
+def _notes_told() -> Iterator[None]:
+    """Say what of a store is damaged, and that a cluster has no workers, in the command's own words."""
     with warnings.catch_warnings():
-        warnings.simplefilter("always", DamageWarning)
+        for kind in NOTES:
+            warnings.simplefilter("always", kind)
         show = warnings.showwarning
 
         def tell(
@@ -154,7 +186,7 @@ def _damage_told() -> Iterator[None]:
             file: TextIO | None = None,
             line: str | None = None,
         ) -> None:
-            if issubclass(category, DamageWarning):
+            if issubclass(category, NOTES):
                 output.tell(_("note: {note}").format(note=message))
             else:
                 show(message, category, filename, lineno, file, line)
@@ -163,7 +195,7 @@ def _damage_told() -> Iterator[None]:
         yield
 
 
-def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
+def _compute(asked: SweepStudy, study: str, store: str | None, how: How) -> xr.Dataset:
     with about(study), Progress() as progress:
         start, stop = (
             None if end is None else asked.mechanism.motion_parameter.instant.read(end, key)
@@ -188,4 +220,5 @@ def _compute(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
             compute=asked.compute,
             dependent=asked.dependent or None,
             tables=asked.tables,
+            **how,
         )

@@ -9,6 +9,7 @@ import click
 import centrode as ct
 from centrode import render
 from centrode.cli import library, output
+from centrode.cli.arguments import asked_cluster, scheduler_option, workers_option
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
@@ -51,6 +52,8 @@ from centrode.locale import _, mark
     metavar=mark("KINDS"),
     help=mark("With --report: kinds of documents, separated by commas; html,pdf by default."),
 )
+@workers_option
+@scheduler_option
 @tables_options
 def variants(
     table: str,
@@ -61,11 +64,14 @@ def variants(
     figures: bool,
     reports: bool,
     formats: str | None,
+    workers: int | None,
+    scheduler: str | None,
 ) -> None:
     """Compute and write; exit code 3 if a variant was refused (the others are written)."""
     if formats is not None and not reports:
         raise InputError("--format", _("this option is used with --report only"), _("give that option too"))
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
+    cluster = asked_cluster(workers, scheduler)
     spelling = asked_spelling()
     description = library.load(topology)
     folder = output.folder_of(out, table, "variants")
@@ -86,6 +92,7 @@ def variants(
                     progress=tell,
                     spelling=spelling,
                     compute=compute,
+                    cluster=cluster,
                 )
             else:
                 found = ct.write_variants(
@@ -97,6 +104,7 @@ def variants(
                     progress=tell,
                     spelling=spelling,
                     compute=compute,
+                    cluster=cluster,
                 )
     except KeyboardInterrupt:
         note = _("finished results stay in {folder}; the same command resumes from there")

@@ -21,6 +21,7 @@ AUTO, ARRAYS, MACHINE_CODE = "auto", "arrays", "machine code"
 # llvmlite is heavy and may be missing: it is imported when the first kernel is requested
 _kernels = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
 _streaming = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
+_compile = functools.partial(importlib.import_module, "centrode.numerics.machine_code.compile")
 
 
 def choose_executor(executor: str) -> str:
@@ -143,4 +144,13 @@ def code_circumstances() -> tuple[str, ...]:
     """What object code depends on besides what it computes: libraries and the machine."""
     kernels = _kernels()
     found: tuple[str, ...] = kernels.circumstances(kernels.host())
+    return found
+
+
+def lacking_features(target: str) -> tuple[str, ...]:
+    """What this machine has not of a target of `machine_code.targets`.
+
+    Raises ImportError where llvmlite is not installed.
+    """
+    found: tuple[str, ...] = _compile().lacking_features(target)
     return found

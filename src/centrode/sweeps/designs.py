@@ -25,6 +25,7 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS, read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
+from centrode.sweeps.drawn_designs import Drawn
 from centrode.sweeps.kept_plans import KeptValues
 
 # What a sweep may take of memory and ask for at most; named here, explained in docs/sweeps.md.
@@ -56,14 +57,20 @@ BLOCK_BYTES = 32_000_000
 IN_MEMORY = 2_000_000_000
 """Bytes of a result that is kept in memory; a greater one needs a store."""
 
-IN_STORE = 1_000_000_000_000
-"""Bytes of a result in a store."""
+IN_STORE = 100_000_000_000_000
+"""Bytes of a result in a store: what as many mechanisms as there may be have, reduced to some numbers each."""
 
-MECHANISMS = 10_000_000_000
+MECHANISMS = 1_000_000_000_000
 """Mechanisms of one sweep."""
 
 DRAWN = 20_000_000
-"""Numbers of a sample (mechanisms times paths): they are drawn at once."""
+"""Numbers of a sample (mechanisms times paths) that are drawn at once; those of a longer one block by block."""
+
+BLOCK_SECONDS = 2.0
+"""Seconds of work of a block that a cluster computes, where its bytes allow it."""
+
+BLOCKS = 1_000_000
+"""Blocks of one store that a cluster computes, so that their marks can be listed; longer sweeps have longer blocks."""
 
 LISTED = 20_000_000
 """Values given one by one."""
@@ -189,80 +196,6 @@ def count_of(path: str, given: Any, most: int) -> int:
     return given
 
 
-# Samples of ranges: latin hypercubes and Sobol sequences.
-
-METHODS = ("latin hypercube", "sobol")
-
-# scipy costs more to import than a small sweep takes
-_qmc = functools.partial(importlib.import_module, "scipy.stats.qmc")
-
-
-@dataclass(frozen=True)
-class Sample:
-    """Mechanisms to be drawn from ranges; made by `sample`."""
-
-    ranges: Mapping[str, Any]
-    count: int
-    method: str
-    seed: int
-
-
-def sample(ranges: Mapping[str, Any], count: int, method: str = "latin hypercube", seed: int = 0) -> Sample:
-    """Mechanisms spread evenly over ranges of several dimensions, for `sweep`.
-
-    Parameters
-    ----------
-    ranges : path -> (first, last)
-        Numbers [SI] or texts with a unit.
-    count : int
-        How many mechanisms.
-    method : "latin hypercube" or "sobol"
-        Each of `count` slices of every range once; or the first points of a scrambled Sobol sequence (best with
-        a power of two).
-    seed : int
-        The same seed draws the same mechanisms.
-
-    Examples
-    --------
-    >>> import centrode as ct
-    >>> drawn = ct.sample({"links.AB.length": ("3.4 m", "3.6 m")}, 4)
-    >>> found = ct.sweep(ct.example("crank-rocker"), drawn, ["angle.DB"], 37, reduce="max")
-    >>> found.sizes["mechanism"]
-    4
-    """
-    return Sample(dict(ranges), count, method, seed)
-
-
-def draw_sample(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
-    """Values [SI] of every path, one for each mechanism; InputError for a range, count, method or seed that is none."""
-    count = count_of("sample", asked.count, DRAWN // len(asked.ranges))
-    if asked.method not in METHODS:
-        what = _("unknown method {method}").format(method=value_text(asked.method))
-        raise InputError("sample", what, nearest(str(asked.method), METHODS))
-    seed: object = asked.seed
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError("sample", _("the seed must be a whole number from 0"))
-    bounds = {path: _bounds(mechanism, path, given) for path, given in asked.ranges.items()}
-    unit = _in_unit_cube(asked.method, len(bounds), count, np.random.default_rng(seed))
-    columns = zip(bounds.items(), unit.T, strict=True)
-    # the last value may pass the end by rounding
-    return {path: np.clip(low + (high - low) * column, low, high) for (path, (low, high)), column in columns}
-
-
-def _bounds(mechanism: Mechanism, path: str, given: Any) -> tuple[float, float]:
-    if isinstance(given, str) or not isinstance(given, tuple | list) or len(given) != 2:
-        raise InputError(path, _("a range of a sample is (first, last)"))
-    return ends(mechanism, path, *given)
-
-
-def _in_unit_cube(method: str, paths: int, count: int, random: np.random.Generator) -> Array:
-    """Points of the unit cube (count, paths)."""
-    if method == "latin hypercube":
-        return np.asarray(_qmc().LatinHypercube(paths, seed=random).random(count))
-    # powers of two are what the sequence is balanced for; the rest is cut off
-    return np.asarray(_qmc().Sobol(paths, seed=random).random_base2((count - 1).bit_length())[:count])
-
-
 Rows: TypeAlias = Mapping[str, Array]
 Coordinates: TypeAlias = Mapping[str, tuple[str, Array]]
 
@@ -282,11 +215,24 @@ class Design(Protocol):
         """Number of values along each dimension."""
 
     @property
+    def paths(self) -> tuple[str, ...]:
+        """What varies."""
+
+    @property
     def coordinates(self) -> Coordinates:
-        """Path -> its dimension and its values [SI] along it."""
+        """Path -> its dimension and its values [SI] along it; nothing of values that are made block by block."""
+
+    @property
+    def ends(self) -> Mapping[str, Array]:
+        """Path -> its least and greatest value [SI]."""
 
     def rows(self, first: int, stop: int) -> Rows:
         """Path -> values [SI] of the mechanisms from `first` up to `stop`."""
+
+
+def ends_of(values: Rows) -> dict[str, Array]:
+    """Path -> least and greatest of its values."""
+    return {path: np.array([column.min(), column.max()]) for path, column in values.items()}
 
 
 @dataclass(frozen=True)
@@ -304,8 +250,16 @@ class Listed:
         return (next(iter(self.values.values())).size,)
 
     @property
+    def paths(self) -> tuple[str, ...]:
+        return tuple(self.values)
+
+    @property
     def coordinates(self) -> Coordinates:
         return {path: (MECHANISM, values) for path, values in self.values.items()}
+
+    @property
+    def ends(self) -> Mapping[str, Array]:
+        return ends_of(self.values)
 
     def rows(self, first: int, stop: int) -> Rows:
         return {path: values[first:stop] for path, values in self.values.items()}
@@ -326,8 +280,16 @@ class Crossed:
         return tuple(values.size for values in self.axes.values())
 
     @property
+    def paths(self) -> tuple[str, ...]:
+        return tuple(self.axes)
+
+    @property
     def coordinates(self) -> Coordinates:
         return {path: (path, values) for path, values in self.axes.items()}
+
+    @property
+    def ends(self) -> Mapping[str, Array]:
+        return ends_of(self.axes)
 
     def rows(self, first: int, stop: int) -> Rows:
         # the last path runs fastest, as in the arrays of the result
@@ -362,6 +324,84 @@ def grid(ranges: Mapping[str, Any]) -> Grid:
     return Grid(dict(ranges))
 
 
+# Samples of ranges: latin hypercubes and Sobol sequences.
+
+METHODS = ("latin hypercube", "sobol")
+
+# scipy costs more to import than a small sweep takes
+_qmc = functools.partial(importlib.import_module, "scipy.stats.qmc")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Mechanisms to be drawn from ranges; made by `sample`."""
+
+    ranges: Mapping[str, Any]
+    count: int
+    method: str
+    seed: int
+
+
+def sample(ranges: Mapping[str, Any], count: int, method: str = "latin hypercube", seed: int = 0) -> Sample:
+    """Mechanisms spread evenly over ranges of several dimensions, for `sweep`.
+
+    Parameters
+    ----------
+    ranges : path -> (first, last)
+        Numbers [SI] or texts with a unit.
+    count : int
+        How many mechanisms. More than 20 million numbers are not drawn at once, but as they are needed.
+    method : "latin hypercube" or "sobol"
+        Each of `count` slices of every range once; or the first points of a scrambled Sobol sequence (best with
+        a power of two).
+    seed : int
+        The same seed draws the same mechanisms.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> drawn = ct.sample({"links.AB.length": ("3.4 m", "3.6 m")}, 4)
+    >>> found = ct.sweep(ct.example("crank-rocker"), drawn, ["angle.DB"], 37, reduce="max")
+    >>> found.sizes["mechanism"]
+    4
+    """
+    return Sample(dict(ranges), count, method, seed)
+
+
+def draw_sample(mechanism: Mechanism, asked: Sample) -> Design:
+    """The mechanisms of a sample; InputError for a range, count, method or seed that is none."""
+    count = count_of("sample", asked.count, MECHANISMS)
+    if asked.method not in METHODS:
+        what = _("unknown method {method}").format(method=value_text(asked.method))
+        raise InputError("sample", what, nearest(str(asked.method), METHODS))
+    seed: object = asked.seed
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError("sample", _("the seed must be a whole number from 0"))
+    bounds = {path: _bounds(mechanism, path, given) for path, given in asked.ranges.items()}
+    if count * len(bounds) > DRAWN:
+        return Drawn(bounds, count, asked.method, seed)
+    unit = _in_unit_cube(asked.method, len(bounds), count, np.random.default_rng(seed))
+    columns = zip(bounds.items(), unit.T, strict=True)
+    # the last value may pass the end by rounding
+    return Listed(
+        {path: np.clip(low + (high - low) * column, low, high) for (path, (low, high)), column in columns}
+    )
+
+
+def _bounds(mechanism: Mechanism, path: str, given: Any) -> tuple[float, float]:
+    if isinstance(given, str) or not isinstance(given, tuple | list) or len(given) != 2:
+        raise InputError(path, _("a range of a sample is (first, last)"))
+    return ends(mechanism, path, *given)
+
+
+def _in_unit_cube(method: str, paths: int, count: int, random: np.random.Generator) -> Array:
+    """Points of the unit cube (count, paths)."""
+    if method == "latin hypercube":
+        return np.asarray(_qmc().LatinHypercube(paths, seed=random).random(count))
+    # powers of two are what the sequence is balanced for; the rest is cut off
+    return np.asarray(_qmc().Sobol(paths, seed=random).random_base2((count - 1).bit_length())[:count])
+
+
 def design_of(
     mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample, *, dimensions_only: bool = True
 ) -> Design:
@@ -383,12 +423,10 @@ def design_of(
         raise InputError("vary", what, _("give at most {most}").format(most=MECHANISMS))
     if not dimensions_only:
         return design
-    extremes = {
-        # only the ends: what lies between them is possible where both are
-        path: np.array([values.min(), values.max()])
-        for path, (_along, values) in design.coordinates.items()
-    }
-    dimensions_of(mechanism, extremes, ARRAYS)  # refuses what no mechanism can have, before any is computed
+    # only the ends: what lies between them is possible where both are
+    dimensions_of(
+        mechanism, design.ends, ARRAYS
+    )  # refuses what no mechanism can have, before any is computed
     return design
 
 
@@ -396,7 +434,7 @@ def _resolve_design(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sampl
     if isinstance(vary, Grid):
         return Crossed({path: _axis(mechanism, path, given) for path, given in vary.ranges.items()})
     if isinstance(vary, Sample):
-        return Listed(draw_sample(mechanism, vary))
+        return draw_sample(mechanism, vary)
     values = {path: numbers(mechanism, path, given) for path, given in vary.items()}
     sizes = {path: array.size for path, array in values.items()}
     if len(set(sizes.values())) > 1:
@@ -421,6 +459,8 @@ def _axis(mechanism: Mechanism, path: str, given: Any) -> Array:
 
 def path_digests(design: Design) -> dict[str, str]:
     """The values by which two designs are distinguished: path -> a digest of its values along the design."""
+    if isinstance(design, Drawn):
+        return {path: design.text for path in design.paths}
     # a digest of the bytes: two designs are the same if every bit is
     told = {}
     for path, (dimension, values) in design.coordinates.items():

@@ -388,7 +388,7 @@ def names_of_motion(motion: xr.Dataset, design: Design) -> Iterator[tuple[str, t
     yield "time", ("time",)
     for drive in motion["drive"].values.tolist():
         yield identifier("drive", drive), ("drive", drive)
-    for path in design.coordinates:
+    for path in design.paths:
         yield identifier(path), ("varied", path)
     for words in every_number(motion):
         yield identifier(*words), words

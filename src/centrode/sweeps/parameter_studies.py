@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import functools
 import importlib
+import json
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan, prod
@@ -18,13 +20,14 @@ import xarray as xr
 
 from centrode.errors import CentrodeError, InputError
 from centrode.locale import _, speaking
-from centrode.model.files import kind_at, mechanism_text, with_values
+from centrode.model.files import kind_at, mechanism_text, parse_mechanism, with_values
 from centrode.model.mechanism import Mechanism
 from centrode.model.placement import replace_placed
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.text_formula import TextFormula, compile_formula
+from centrode.sweeps.clusters import ClusterSource, open_cluster, wanted_libraries
 from centrode.sweeps.designs import Design, Grid, Sample, design_of
 from centrode.sweeps.outputs import identifier
 from centrode.version import __version__
@@ -230,6 +233,7 @@ def parameter_study(
     samples: int | None = None,
     dependent: Mapping[str, str] | None = None,
     progress: Progress | None = None,
+    cluster: ClusterSource = None,
 ) -> xr.Dataset:
     """The single numbers of an analysis for many mechanisms of one structure; see `sweep` for its arguments.
 
@@ -252,20 +256,19 @@ def parameter_study(
         what = _("{count} mechanisms are given").format(count=count)
         raise InputError("vary", what, _("give at most {most}").format(most=MOST_MECHANISMS))
     formulas = dependent_formulas(mechanism, tuple(design.coordinates), dependent or {})
+    rows = list(_rows(design, formulas))
+    followed = [following for _varied, following in rows]
+    given = [varied | following for varied, following in rows]
+    answers = (
+        (_answer(mechanism, compute, samples, row) for row in given)
+        if cluster is None
+        else _on_cluster(mechanism, compute, samples, given, cluster)
+    )
     found: list[Numbers] = []
     refusals: list[str] = []
-    followed: list[dict[str, float]] = []
     # what a dataset holds in words is English
     with speaking("en"):
-        for varied, following in _rows(design, formulas):
-            followed.append(following)
-            try:
-                numbers, refusal = (
-                    study_numbers(with_study_values(mechanism, varied | following), compute, samples),
-                    "",
-                )
-            except CentrodeError as refused:
-                numbers, refusal = {}, str(refused)
+        for numbers, refusal in answers:
             found.append(numbers)
             refusals.append(refusal)
             if progress is not None:
@@ -300,6 +303,52 @@ def parameter_study(
         "dependent": "; ".join(f"{path} = {text}" for path, text in (dependent or {}).items()),
     }
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def _answer(
+    mechanism: Mechanism, compute: str, samples: int | None, values: Mapping[str, float]
+) -> tuple[Numbers, str]:
+    """The numbers of one mechanism, or why its analysis is refused."""
+    try:
+        return study_numbers(with_study_values(mechanism, values), compute, samples), ""
+    except CentrodeError as refused:
+        return {}, str(refused)
+
+
+# On a cluster: a worker is told the description, the analysis and the values as text.
+
+_one_at_a_time = threading.Lock()
+_parsed = functools.lru_cache(maxsize=4)(parse_mechanism)
+
+
+def numbers_of_text(text: str) -> tuple[Numbers, str]:
+    """The numbers of the mechanism that a text describes, or why its analysis is refused, in English."""
+    told = json.loads(text)
+    # the language is that of the process
+    with _one_at_a_time, speaking("en"):
+        return _answer(_parsed(told["mechanism"]), told["compute"], told["samples"], told["values"])
+
+
+def _on_cluster(
+    mechanism: Mechanism,
+    compute: str,
+    samples: int | None,
+    rows: Sequence[Mapping[str, float]],
+    cluster: ClusterSource,
+) -> Iterator[tuple[Numbers, str]]:
+    """Numbers and refusals in the order of the rows, as they are there."""
+    told = {"mechanism": mechanism_text(mechanism), "compute": compute, "samples": samples}
+    texts = ((k, json.dumps({**told, "values": dict(row)})) for k, row in enumerate(rows))
+    early: dict[int, tuple[Numbers, str]] = {}
+    following = 0
+    with open_cluster(cluster) as workers:
+        for k, (numbers, refusal) in workers.answers(
+            numbers_of_text, texts, wanted_libraries(machine_code=True)
+        ):
+            early[k] = {name: (value, unit) for name, (value, unit) in numbers.items()}, refusal
+            while following in early:
+                yield early.pop(following)
+                following += 1
 
 
 def with_study_values(mechanism: Mechanism, values: Mapping[str, float]) -> Mechanism:

@@ -36,7 +36,7 @@ from centrode.numerics.scans import evaluate
 from centrode.sweeps.designs import Listed
 from centrode.sweeps.machine import Fold, Folds, Slopes, States
 from centrode.sweeps.outputs import Output, OutputFormula, formulas_of, outputs_of, quantities_of
-from centrode.sweeps.sweep import motion_with_names
+from centrode.sweeps.sweep_plans import motion_with_names
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Asked: TypeAlias = str | Sequence[str] | Mapping[str, str] | None

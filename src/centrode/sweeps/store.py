@@ -1,4 +1,4 @@
-"""Results of a sweep in a folder (zarr), block by block: a run that was killed goes on where it was.
+"""Results of a sweep in a store (zarr), block by block: a run that was killed goes on where it was.
 
 A block's numbers are written first, then its mark, by a rename that happens or does not. What has no mark, or differs
 from what its mark says, is computed again. Beside the zarr arrays stands the group `progress` with the lock, the study
@@ -15,14 +15,11 @@ import hashlib
 import importlib.util
 import json
 import math
-import os
-import re
-import stat
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import PurePosixPath
 from typing import Any, Protocol, TypeAlias
 
 import lazy_loader
@@ -31,17 +28,16 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import DamageWarning, InputError
-from centrode.files.drafts import clear_drafts, clear_folder, draft_folder, refusals, remove_file, write_whole
-from centrode.files.inputs import keep_inputs_below
-from centrode.files.locks import hold_lock
 from centrode.locale import _, ngettext
 from centrode.optional_packages import how_to_install
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask
-from centrode.sweeps.designs import Design, path_digests
+from centrode.sweeps.designs import MECHANISM, Design, path_digests
+from centrode.sweeps.drawn_designs import Drawn, lazy_values
 from centrode.sweeps.executors import bare
 from centrode.sweeps.machine import StreamedColumns, columns_for
 from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
+from centrode.sweeps.storage import DONE, GREATEST, METADATA, PROGRESS, Storage, place_refusals, table_of
 
 # The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.
 
@@ -230,16 +226,27 @@ class Kept(Protocol):
 
 @dataclass(frozen=True)
 class SweepFrame:
-    """Dimensions, coordinates and attributes of a result; `empty` holds no variables."""
+    """Dimensions, coordinates and attributes of a result; `empty` holds no variables, `units` those of what varies."""
 
     design: Design
     asked: SweepOutputs
     empty: xr.Dataset
+    units: Mapping[str, str]
 
     @property
     def mechanisms(self) -> int:
         """Number of mechanisms."""
         return math.prod(self.design.shape)
+
+    @property
+    def labels(self) -> Mapping[Any, Any]:
+        """Coordinates of a result: those of `empty`, and values of a drawn design, made when they are read."""
+        drawn = {
+            path: ((MECHANISM,), lazy_values(self.design, path), {"units": self.units[path]})
+            for path in self.units
+            if path not in self.design.coordinates
+        }
+        return xr.Dataset(coords={**self.empty.coords, **drawn}).coords
 
     @property
     def bytes(self) -> int:
@@ -273,17 +280,15 @@ def frame_of(
         }
     if PATH in used:
         # texts of any length, as all other labels: a store has no standard for those of one length
-        coordinates[PATH] = (PATH, np.array(list(design.coordinates), dtype=object))
+        coordinates[PATH] = (PATH, np.array(list(design.paths), dtype=object))
     for path, (dimension, values) in design.coordinates.items():
         coordinates[path] = ((dimension,), values, {"units": units[path]})
     told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
-    return SweepFrame(
-        design,
-        asked,
-        xr.Dataset(
-            coords=coordinates, attrs={**told, "samples": motion.sizes["sample"], "executor": executor}
-        ),
-    )
+    attributes = {**told, "samples": motion.sizes["sample"], "executor": executor}
+    if isinstance(design, Drawn):
+        # values of a drawn design are in no store: this says what they are
+        attributes["drawn"] = design.text
+    return SweepFrame(design, asked, xr.Dataset(coords=coordinates, attrs=attributes), dict(units))
 
 
 class InMemory:
@@ -321,7 +326,8 @@ class InMemory:
             )
             for column in self.frame.asked.columns
         }
-        return with_tally(self.frame.empty.assign(variables), self.frame, self.tally)
+        found = xr.Dataset(variables, self.frame.labels, self.frame.empty.attrs)
+        return with_tally(found, self.frame, self.tally)
 
 
 def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
@@ -350,10 +356,6 @@ def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
 # A mark holds for exactly what was written: a chunk that was cut off, changed or taken away, a mark of
 # another block or one that was edited give another checksum, and the block counts as damaged.
 
-GREATEST = 8_000_000
-"""Bytes of a small file of a store; a mark has some hundreds, the study holds the mechanism as text."""
-PIECE = 1 << 20
-"""Bytes of a chunk that are read at once."""
 CHECK = 4
 """Bytes that the codec `crc32c` puts behind the numbers of a chunk."""
 TOGETHER = 1000
@@ -363,14 +365,13 @@ TOGETHER = 1000
 class Marks:
     """The marks of a store whose columns are kept in chunks, a chunk of each column for every block."""
 
-    def __init__(self, folder: Path, store: Path, columns: Sequence[SweepColumn], blocks: Blocks) -> None:
-        self.folder = folder
-        self.store = store
+    def __init__(self, storage: Storage, columns: Sequence[SweepColumn], blocks: Blocks) -> None:
+        self.storage = storage
         self.columns = columns
         self.blocks = blocks
 
-    def chunks(self, block: int) -> Iterator[tuple[Path, int]]:
-        """File of a block's chunk in each column, and the bytes that it has if it is there."""
+    def chunks(self, block: int) -> Iterator[tuple[str, int]]:
+        """Name of a block's chunk in each column, and the bytes that it has if it is there."""
         extents = self.blocks.chunk
         place = [
             str(along.start // extent)
@@ -379,50 +380,43 @@ class Marks:
         for column in self.columns:
             inner = ["0"] * len(column.shape)
             size = math.prod(extents) * column.bytes + CHECK
-            yield self.store.joinpath(column.name, "c", *place, *inner), size
+            yield "/".join((column.name, "c", *place, *inner)), size
 
-    def remove_chunks(self, block: int) -> None:
-        """Remove a block's chunks: what is there must not be read where zarr writes a part of a chunk.
-
-        Raises InputError where one of them is a file that was read.
-        """
-        for file, _size in self.chunks(block):
-            remove_file(file)
-
-    def write(self, block: int, tally: Tally) -> None:
-        """Mark a block whose chunks are written."""
+    def write(self, block: int, tally: Tally, contents: Mapping[str, bytes | None]) -> None:
+        """Mark a block whose chunks are written; `contents` are what was written by the names of the chunks."""
         told = tally.as_dict()
-        # the checksum is of what is read back, not of what was meant to be written
-        checksum = self._checksum(block, told)
+        if self.storage.reads_back:
+            # the checksum is of what is read back, not of what was meant to be written
+            checksum = self._checksum(block, told)
+        else:
+            checksum = _checksum_of(block, told, (contents[name] for name, _size in self.chunks(block)))
         if checksum is None:
             what = _("block {block} cannot be read back").format(block=block)
-            raise InputError(str(self.store), what, _("give another path"))
-        folder = self.folder / str(block // TOGETHER)
-        folder.mkdir(parents=True, exist_ok=True)
-        write_whole(folder / f"{block}.json", {"tally": told, "sha256": checksum})
+            raise InputError(str(self.storage), what, _("give another path"))
+        name = f"{PROGRESS}/{DONE}/{block // TOGETHER}/{block}.json"
+        self.storage.write_durably(name, {"tally": told, "sha256": checksum})
 
-    def read(self) -> tuple[dict[int, Tally], list[int]]:
-        """Tallies of the blocks that are done, and the blocks that are damaged.
+    def read(self, thorough: bool) -> Iterator[tuple[int, Tally | None]]:
+        """(block, tally) of the blocks that have a mark; None of those that are damaged.
 
-        A mark that cannot be read, or is no mark of a block, counts for nothing.
+        A mark that cannot be read, or is no mark of a block, counts for nothing. Without `thorough` chunks are not
+        read: only their sizes are compared, in an object store nothing of them.
         """
-        done: dict[int, Tally] = {}
-        damaged: list[int] = []
         # any file may lie there: names that are no block's are left alone
-        for file in self.folder.glob("*/*.json"):
-            block = self._block(file)
-            told = read_small(file)
+        for name, told in self.storage.marks(f"{PROGRESS}/{DONE}"):
+            block = self._block(PurePosixPath(name))
             # no mark at all: the block is simply not done
             if block is None or told is None or not isinstance(told.get("sha256"), str):
                 continue
             tally = self._tally(block, told.get("tally"))
-            if tally is not None and told["sha256"] == self._checksum(block, tally.as_dict()):
-                done[block] = tally
-            else:
-                damaged.append(block)
-        return done, sorted(damaged)
+            whole = tally is not None and (
+                told["sha256"] == self._checksum(block, tally.as_dict())
+                if thorough
+                else self._sizes_fit(block)
+            )
+            yield block, tally if whole else None
 
-    def _block(self, file: Path) -> int | None:
+    def _block(self, file: PurePosixPath) -> int | None:
         """The block whose mark has this name, if any has."""
         # digits of other scripts, and numbers longer than any block's, are refused before they are read
         if not (file.stem.isascii() and file.stem.isdigit()) or len(file.stem) > len(str(len(self.blocks))):
@@ -434,68 +428,65 @@ class Marks:
     def _tally(self, block: int, told: object) -> Tally | None:
         """The tally in a mark; None where it is none of this block."""
         first, stop = self.blocks.mechanisms(block)
-        components = {column.name: math.prod(column.shape) for column in self.columns}
         try:
-            tally = Tally.from_dict(told, components)  # type: ignore[arg-type]
+            tally = Tally.from_dict(told, self._components)  # type: ignore[arg-type]
         except (ValueError, KeyError, TypeError, OverflowError, AttributeError):
             return None
         return tally if tally.mechanisms == stop - first else None
 
-    def _checksum(self, block: int, told: Mapping[str, Any]) -> str | None:
-        """Checksum of a block's tally and chunks; None where a file is no chunk.
+    @functools.cached_property
+    def _components(self) -> Mapping[str, int]:
+        return {column.name: math.prod(column.shape) for column in self.columns}
 
-        A chunk that holds nothing but empty numbers has no file.
-        """
-        checksum = hashlib.sha256(json.dumps([block, told], sort_keys=True).encode())
-        for file, size in self.chunks(block):
+    def _sizes_fit(self, block: int) -> bool:
+        """Whether the chunks that are there have their size; an object store is not asked for what it keeps itself."""
+        if not self.storage.reads_back:
+            return True
+        for name, size in self.chunks(block):
             try:
-                status = file.stat()
-                # a size that is wrong says so without reading
-                if not stat.S_ISREG(status.st_mode) or status.st_size != size:
+                if self.storage.pieces(name, size) is None:
+                    return False
+            except FileNotFoundError:
+                # a chunk of empty numbers has no file
+                continue
+            except OSError:
+                return False
+        return True
+
+    def _checksum(self, block: int, told: Mapping[str, Any]) -> str | None:
+        """Checksum of a block's tally and of its chunks as they are read; None where a file is no chunk."""
+        checksum = hashlib.sha256(_head(block, told))
+        for name, size in self.chunks(block):
+            try:
+                pieces = self.storage.pieces(name, size)
+                if pieces is None:
                     return None
-                with file.open("rb") as stream:
-                    checksum.update(b"chunk")
-                    for piece in iter(lambda: stream.read(PIECE), b""):
-                        checksum.update(piece)
-            except (FileNotFoundError, NotADirectoryError):
-                # a chunk of empty numbers is not written by zarr: its absence is part of the checksum
+                checksum.update(b"chunk")
+                for piece in pieces:
+                    checksum.update(piece)
+            except FileNotFoundError:
+                # a chunk of empty numbers is not written: its absence is part of the checksum
                 checksum.update(b"none")
             except OSError:
                 return None
         return checksum.hexdigest()
 
 
-def read_small(file: Path) -> dict[str, Any] | None:
-    """A small file of JSON that holds a table; None where it is anything else, or cannot be read."""
-    content = read_bounded(file, GREATEST)
-    if content is None:
-        return None
-    try:
-        told = json.loads(content)
-    except (ValueError, RecursionError):
-        return None
-    return told if isinstance(told, dict) else None
+def _head(block: int, told: Mapping[str, Any]) -> bytes:
+    return json.dumps([block, told], sort_keys=True).encode()
 
 
-def read_bounded(file: Path, most: int) -> bytes | None:
-    """Bytes of a regular file; None where it is none, cannot be read or has more than `most`."""
-    try:
-        status = os.stat(file)
-        if not stat.S_ISREG(status.st_mode) or status.st_size > most:
-            return None
-        with file.open("rb") as stream:
-            content = stream.read(most + 1)
-    except OSError:
-        # one byte more than allowed, as the file may have grown
-        return None
-    return content if len(content) <= most else None
+def _checksum_of(block: int, told: Mapping[str, Any], contents: Iterable[bytes | None]) -> str:
+    """The checksum of chunks that are at hand."""
+    checksum = hashlib.sha256(_head(block, told))
+    for content in contents:
+        checksum.update(b"none" if content is None else b"chunk")
+        checksum.update(content or b"")
+    return checksum.hexdigest()
 
 
-PROGRESS, LOCK, STUDY, DONE = "progress", "lock", "study.json", "done"
-METADATA = "zarr.json"
+STUDY = "study.json"
 FORMAT = 3
-DRAFT = re.compile(r"(?:.*\.)?[0-9a-f]{32}\.partial|zarr\.[\w.]*partial")
-"""Name under which zarr writes a file before it renames it."""
 NAMED = 5
 """Damaged blocks that a warning names at most."""
 
@@ -504,24 +495,64 @@ _codecs = functools.partial(lazy_loader.load, "zarr.codecs")
 _storage = functools.partial(lazy_loader.load, "zarr.storage")
 
 
+class BlockWriter:
+    """Writes blocks of a store that is made: their chunks, then their mark. A worker has one without the lock.
+
+    Two that write the same block write the same bytes, each object whole: what stands there in the end is one of both.
+    """
+
+    def __init__(self, storage: Storage, frame: SweepFrame, blocks: Blocks) -> None:
+        self.storage = storage
+        self.frame = frame
+        self.blocks = blocks
+        self.marks = Marks(storage, frame.asked.columns, blocks)
+        # zarr writes into memory, from where chunks go to their place as they are
+        self._written: dict[str, Any] = {}
+        root = _empty_arrays(_storage().MemoryStore(self._written), frame, blocks)
+        self._arrays = {column.name: root[column.name] for column in frame.asked.columns}
+        self._metadata = set(self._written)
+
+    def write(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
+        """Write a block's chunks and its mark; the mark last: without it the block counts as not done."""
+        region = self.blocks.region(block)
+        extent = tuple(along.stop - along.start for along in region)
+        contents: dict[str, bytes | None] = {}
+        for column, (name, _size) in zip(self.frame.asked.columns, self.marks.chunks(block), strict=True):
+            values = results[column.name].reshape(extent + column.shape)
+            self._arrays[column.name][(*region, *[slice(None)] * len(column.shape))] = values
+            chunk = self._written.pop(name, None)
+            contents[name] = None if chunk is None else chunk.to_bytes()
+        for name, content in contents.items():
+            # a chunk of empty numbers has no file
+            if content is None:
+                self.storage.remove(name)
+            else:
+                self.storage.write(name, content)
+        self.marks.write(block, tally, contents)
+
+
 class Store:
     """An open store; only the process that holds its lock has one."""
 
-    def __init__(self, path: Path, frame: SweepFrame, blocks: Blocks) -> None:
+    def __init__(self, storage: Storage, frame: SweepFrame, blocks: Blocks, thorough: bool) -> None:
+        self.storage = storage
         self.frame = frame
         self.blocks = blocks
-        self.marks = Marks(path / PROGRESS / DONE, path, frame.asked.columns, blocks)
-        root = _zarr().open_group(str(path), mode="r+", zarr_format=FORMAT)
-        self.arrays = {column.name: root[column.name] for column in frame.asked.columns}
+        self.writer = BlockWriter(storage, frame, blocks)
         self._room = StreamedColumns()
         self._roomy = 0
-        done, damaged = self.marks.read()
         self.tally = Tally()
-        for block in sorted(done):
-            self.tally.add(done[block])
-        self.done = set(done)
+        # a byte a block: a set of a million numbers takes sixty times as much
+        self._done = bytearray(len(blocks))
+        damaged = []
+        for block, tally in self.writer.marks.read(thorough):
+            if tally is None:
+                damaged.append(block)
+            else:
+                self._done[block] = True
+                self.tally.add(tally)
         if damaged:
-            warnings.warn(f"{path}: {self._damage_sentence(damaged)}", DamageWarning, stacklevel=5)
+            warnings.warn(f"{storage}: {self._damage_sentence(sorted(damaged))}", DamageWarning, stacklevel=5)
 
     def _damage_sentence(self, damaged: list[int]) -> str:
         """A sentence that names damaged blocks."""
@@ -541,7 +572,7 @@ class Store:
         return what.format(n=len(damaged), blocks=", ".join(named))
 
     def has(self, block: int) -> bool:
-        return block in self.done
+        return bool(self._done[block])
 
     def room(self, block: int) -> StreamedColumns:
         first, stop = self.blocks.mechanisms(block)
@@ -550,103 +581,95 @@ class Store:
         return self._room.part(slice(0, stop - first))
 
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
-        region = self.blocks.region(block)
-        extent = tuple(along.stop - along.start for along in region)
-        # what stood there before is removed: zarr writes whole chunks, but a part of one would be read first
-        self.marks.remove_chunks(block)
-        for column in self.frame.asked.columns:
-            values = results[column.name].reshape(extent + column.shape)
-            self.arrays[column.name][(*region, *[slice(None)] * len(column.shape))] = values
-        # the mark last: without it the block counts as not done
-        self.marks.write(block, tally)
-        self.done.add(block)
-        self.tally.add(tally)
+        with place_refusals(str(self.storage)):
+            self.writer.write(block, results, tally)
+        self.take(block, tally)
+
+    def take(self, block: int, tally: Tally) -> None:
+        """Count a block in that another process has written."""
+        if not self._done[block]:
+            self._done[block] = True
+            self.tally.add(tally)
 
 
 @contextmanager
-def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -> Iterator[Store]:
-    """The store of a sweep, made or found; nobody else writes into it while the block runs.
+def open_store(
+    storage: Storage,
+    frame: SweepFrame,
+    blocks: Callable[[], Blocks],
+    study: Mapping[str, Any],
+    *,
+    thorough: bool = True,
+) -> Iterator[Store]:
+    """The store of a sweep, made (with the blocks that `blocks` gives) or found; nobody else holds it meanwhile.
 
-    Blocks that are damaged are named in a DamageWarning, and are not done. Raises InputError: zarr is not installed,
-    the folder holds something else, another sweep or a file that was read, another run writes into it, the operating
-    system refuses.
+    Blocks that are damaged are named in a DamageWarning, and are not done; without `thorough` chunks are not read.
+    Raises InputError: zarr is not installed, the place holds something else, another sweep or a file that was read,
+    another run writes into it, the place refuses.
     """
     if importlib.util.find_spec("zarr") is None:
         what = _("a store needs zarr, which is not installed")
-        raise InputError(str(path), what, how_to_install("sweeps"))
-    with refusals(path):
-        _refuse_other_folders(path)
-        keep_inputs_below(path)
-        (path / PROGRESS).mkdir(parents=True, exist_ok=True)
-    with hold_lock(path / PROGRESS / LOCK, str(path)):
-        with refusals(path):
-            study = _study(frame, task)
-            stored = _stored_study(path)
+        raise InputError(str(storage), what, how_to_install("sweeps"))
+    with place_refusals(str(storage)):
+        storage.prepare()
+    with storage.lock():
+        with place_refusals(str(storage)):
+            stored = _stored_study(storage)
             if stored is None:
-                _make(path, frame, blocks, study)
+                made = blocks()
+                _make(storage, frame, made, study)
             else:
-                _refuse_other_studies(path, stored, study)
+                _refuse_other_studies(storage, stored, study)
                 # the store's own division counts: another version may have chosen otherwise
-                blocks = _blocks_of(stored, path, frame)
+                made = _blocks_of(stored, storage, frame)
                 # metadata are compared with what this sweep would write, before zarr reads any of it
-                _refuse_damaged_files(path, _empty_store(frame, blocks), stored["files"])
-                _remove_drafts(path)
-        yield Store(path, frame, blocks)
+                _refuse_damaged_files(storage, _empty_store(frame, made), stored["files"])
+                storage.tidy()
+            store = Store(storage, frame, made, thorough)
+        yield store
 
 
-def read_store(path: Path, frame: SweepFrame) -> xr.Dataset:
+def read_store(storage: Storage, frame: SweepFrame) -> xr.Dataset:
     """The result in a store; numbers are read when they are used, coordinates are those of the sweep."""
     # coordinates come from the sweep itself
-    coordinates = frame.empty.coords
-    data = xr.open_zarr(str(path), chunks=None, drop_variables=list(map(str, coordinates)))
+    coordinates = frame.labels
+    stored = list(map(str, frame.empty.coords))
+    data = xr.open_zarr(storage.for_zarr(), chunks=None, drop_variables=stored)
     # a folder has no order of its own
     return xr.Dataset(
         {column.name: data[column.name] for column in frame.asked.columns}, coordinates, data.attrs
     )
 
 
-def _refuse_other_folders(path: Path) -> None:
-    if path.exists() and not path.is_dir():
-        raise InputError(str(path), _("is not a folder"), _("give another path"))
-    if not path.exists() or not any(path.iterdir()):
-        return
-    progress = path / PROGRESS
-    # an empty `progress` alone is what an interrupted beginning leaves
-    begun = [entry.name for entry in path.iterdir()] == [PROGRESS] and not any(progress.iterdir())
-    if not begun and not (progress / LOCK).is_file():
-        raise InputError(str(path), _("the folder holds something else"), _("give another path"))
-
-
-def _stored_study(path: Path) -> dict[str, Any] | None:
+def _stored_study(storage: Storage) -> dict[str, Any] | None:
     """Description of its sweep in a store; None where its making was cut short, or has not begun."""
-    file = path / PROGRESS / STUDY
-    if not file.exists():
+    if not storage.exists(f"{PROGRESS}/{STUDY}"):
         return None
-    told = read_small(file) or {}
+    told = table_of(storage.read(f"{PROGRESS}/{STUDY}")) or {}
     try:
         return {"study": dict(told["study"]), "blocks": told["blocks"], "files": dict(told.get("files", {}))}
     except (ValueError, KeyError, TypeError):
-        raise _damage_error(path) from None
+        raise _damage_error(storage) from None
 
 
-def _blocks_of(found: Mapping[str, Any], path: Path, frame: SweepFrame) -> Blocks:
+def _blocks_of(found: Mapping[str, Any], storage: Storage, frame: SweepFrame) -> Blocks:
     """The blocks that a store says it has; InputError where there cannot be such."""
     try:
         axis, step = map(int, found["blocks"])
     except (ValueError, TypeError, OverflowError):
-        raise _damage_error(path) from None
+        raise _damage_error(storage) from None
     shape = frame.design.shape
     if not (0 <= axis < len(shape) and 1 <= step <= shape[axis]):
-        raise _damage_error(path)
+        raise _damage_error(storage)
     blocks = Blocks(shape, axis, step)
     if _too_great(blocks, frame):
-        raise _damage_error(path)
+        raise _damage_error(storage)
     return blocks
 
 
-def _damage_error(path: Path, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
+def _damage_error(storage: Storage, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
     what = _("{file} in it is damaged").format(file=name)
-    return InputError(str(path), what, _("delete the folder, or give another path"))
+    return InputError(str(storage), what, _("delete the folder, or give another path"))
 
 
 def _too_great(blocks: Blocks, frame: SweepFrame) -> bool:
@@ -656,7 +679,7 @@ def _too_great(blocks: Blocks, frame: SweepFrame) -> bool:
     return stop > max(1, designs.BLOCK_BYTES // each)
 
 
-def _study(frame: SweepFrame, task: SweepTask) -> dict[str, Any]:
+def study_of(frame: SweepFrame, task: SweepTask, target: str | None) -> dict[str, Any]:
     """Facts that must be the same for a run to go on: all that the numbers depend on."""
     asked, parameter = task.asked, task.span.parameter
     told = frame.empty.attrs
@@ -674,67 +697,55 @@ def _study(frame: SweepFrame, task: SweepTask) -> dict[str, Any]:
         "tables": {name: table.digest for name, table in asked.tables.items()} or None,
         "gradient": bool(asked.slopes),
         "executor": bare(told["executor"]),
+        "target": target,
     }
 
 
-def _refuse_other_studies(path: Path, found: Mapping[str, Any], study: Mapping[str, Any]) -> None:
+SHORT = 40
+"""Letters of a value that is told where two studies differ."""
+
+
+def _refuse_other_studies(storage: Storage, found: Mapping[str, Any], study: Mapping[str, Any]) -> None:
     other = [key for key in study if found["study"].get(key) != study[key]]
     if not other:
         return
-    what = _("it holds another sweep; what differs: {keys}").format(keys=", ".join(other))
-    raise InputError(str(path), what, _("give another path, or delete it"))
+    what = _("it holds another sweep; what differs: {keys}")
+    keys = ", ".join(_difference(key, found["study"].get(key), study[key]) for key in other)
+    raise InputError(str(storage), what.format(keys=keys), _("give another path, or delete it"))
 
 
-def _make(path: Path, frame: SweepFrame, blocks: Blocks, study: Mapping[str, Any]) -> None:
+def _difference(key: str, there: object, here: object) -> str:
+    """A key of two studies, with both values where they are names."""
+    if all(value is None or (isinstance(value, str) and 0 < len(value) <= SHORT) for value in (there, here)):
+        return f"{key} ({there or '-'} / {here or '-'})"
+    return key
+
+
+def _make(storage: Storage, frame: SweepFrame, blocks: Blocks, study: Mapping[str, Any]) -> None:
     """Make the arrays, without numbers, and keep what they are of; what is left of a making cut short is removed."""
-    # a making cut short left no study, so nothing there counts
-    _clear(path, frame)
     files = _empty_store(frame, blocks)
-    # in a draft that is renamed as a whole
-    with draft_folder(path) as draft:
-        for name, content in files.items():
-            (draft / name).parent.mkdir(parents=True, exist_ok=True)
-            (draft / name).write_bytes(content)
-    checksums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
-    told = {"study": study, "blocks": [blocks.axis, blocks.step], "files": checksums}
-    write_whole(path / PROGRESS / STUDY, told)
-
-
-def _clear(path: Path, frame: SweepFrame) -> None:
-    """Remove what is left of a making that was cut short; InputError where there is anything else."""
-    clear_drafts(path)
     names = {column.name for column in frame.asked.columns}
-    ours = {METADATA, PROGRESS, *map(str, frame.empty.coords), *names}
-    remains = [entry for entry in path.iterdir() if entry.name != PROGRESS]
-    if any(entry.name not in ours and not DRAFT.fullmatch(entry.name) for entry in remains):
-        raise InputError(str(path), _("the folder holds something else"), _("give another path"))
-    for entry in (*remains, path / PROGRESS / METADATA, path / PROGRESS / DONE):
-        if entry.is_dir() and not entry.is_symlink():
-            clear_folder(entry)
-        else:
-            remove_file(entry)
+    # a making cut short left no study, so nothing there counts
+    storage.make(files, {METADATA, *map(str, frame.empty.coords), *names})
+    # in one order: zarr writes them as they come
+    checksums = {name: hashlib.sha256(files[name]).hexdigest() for name in sorted(files)}
+    told = {"study": study, "blocks": [blocks.axis, blocks.step], "files": checksums}
+    storage.write_durably(f"{PROGRESS}/{STUDY}", told)
 
 
-def _remove_drafts(path: Path) -> None:
-    """Remove what zarr was writing in a run that was killed."""
-    for draft in path.rglob("*.partial"):
-        if DRAFT.fullmatch(draft.name):
-            remove_file(draft)
-
-
-def _refuse_damaged_files(path: Path, files: Mapping[str, bytes], checksums: Mapping[str, Any]) -> None:
+def _refuse_damaged_files(storage: Storage, files: Mapping[str, bytes], checksums: Mapping[str, Any]) -> None:
     """InputError where metadata or labels are not those that the store was made with."""
     for name, content in files.items():
-        if not _as_made(path / name, content, checksums.get(name)):
-            raise _damage_error(path, name)
+        if not _as_made(storage, name, content, checksums.get(name)):
+            raise _damage_error(storage, name)
 
 
-def _as_made(file: Path, content: bytes, checksum: object) -> bool:
-    """Whether a file holds what a making writes: metadata of the same meaning, labels as they were written."""
-    stored = read_bounded(file, 2 * len(content) + GREATEST)
+def _as_made(storage: Storage, name: str, content: bytes, checksum: object) -> bool:
+    """Whether an object holds what a making writes: metadata of the same meaning, labels as they were written."""
+    stored = storage.read(name, 2 * len(content) + GREATEST)
     if stored is None or stored == content:
         return stored is not None
-    if file.name != METADATA:
+    if PurePosixPath(name).name != METADATA:
         # on another machine coordinates may differ in their last bits
         return hashlib.sha256(stored).hexdigest() == checksum
     try:
@@ -750,6 +761,17 @@ def _empty_store(frame: SweepFrame, blocks: Blocks) -> dict[str, bytes]:
     root = _zarr().open_group(memory, mode="a", zarr_format=FORMAT)
     root.create_group(PROGRESS)
     frame.empty.to_zarr(memory, mode="a", zarr_format=FORMAT, consolidated=False)
+    _empty_arrays(memory, frame, blocks)
+    with warnings.catch_warnings():
+        # the metadata in one place, for readers; zarr warns that this is new
+        warnings.simplefilter("ignore")
+        _zarr().consolidate_metadata(memory, zarr_format=FORMAT)
+    return {name: content.to_bytes() for name, content in files.items()}
+
+
+def _empty_arrays(memory: Any, frame: SweepFrame, blocks: Blocks) -> Any:
+    """The group with the arrays of the columns, without numbers."""
+    root = _zarr().open_group(memory, mode="a", zarr_format=FORMAT)
     for column in frame.asked.columns:
         root.create_array(
             column.name,
@@ -761,8 +783,4 @@ def _empty_store(frame: SweepFrame, blocks: Blocks) -> dict[str, bytes]:
             dimension_names=frame.design.dimensions + column.dimensions,
             attributes=dict(column.attributes),
         )
-    with warnings.catch_warnings():
-        # the metadata in one place, for readers; zarr warns that this is new
-        warnings.simplefilter("ignore")
-        _zarr().consolidate_metadata(memory, zarr_format=FORMAT)
-    return {name: content.to_bytes() for name, content in files.items()}
+    return root

@@ -4,50 +4,42 @@ from __future__ import annotations
 
 import functools
 import importlib
-import json
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
 from centrode.errors import InputError
-from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.preparation import ready
-from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, load, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, read_file, value_text
 from centrode.model.toml import toml_tables
 from centrode.model.units import ANGULAR, bare_angle, is_bare
-from centrode.numerics.arrays import ARRAYS
-from centrode.structure.dimensions import dimensions_of
+from centrode.numerics.executors import MACHINE_CODE
+from centrode.numerics.machine_code.targets import baseline
 from centrode.sweeps import designs
-from centrode.sweeps.arrays import SweepTask
-from centrode.sweeps.designs import METHODS, Design, Grid, Sample, design_of, grid, sample, unit_of
-from centrode.sweeps.executors import Executor, check_executor, check_threads, executor_of
-from centrode.sweeps.kept_plans import KeptValues
-from centrode.sweeps.outputs import Outputs, Reduce, asked_of, with_slopes
+from centrode.sweeps.cluster_blocks import check_libraries, compute_on_cluster, work_text
+from centrode.sweeps.clusters import ClusterSource, check_cluster, wanted_libraries
+from centrode.sweeps.designs import METHODS, Grid, Sample, design_of, grid, sample
+from centrode.sweeps.executors import check_executor, check_threads
+from centrode.sweeps.outputs import Outputs, Reduce
 from centrode.sweeps.sample_tables import Tables
-from centrode.sweeps.store import (
-    Blocks,
-    InMemory,
-    Kept,
-    SweepFrame,
-    frame_of,
-    open_store,
-    read_store,
-    tally_of,
-    with_tally,
+from centrode.sweeps.storage import storage_of
+from centrode.sweeps.store import InMemory, Kept, SweepFrame, open_store, read_store, study_of, with_tally
+from centrode.sweeps.sweep_plans import (
+    Progress,
+    SweepPlan,
+    blocks_of,
+    check_target,
+    measured_blocks_of,
+    plan_of,
 )
-
-Progress: TypeAlias = Callable[[int, int], None]
 
 # what analyses of machines need is not loaded for motions
 _studies = functools.partial(importlib.import_module, "centrode.sweeps.parameter_studies")
@@ -70,6 +62,8 @@ def sweep(
     dependent: Mapping[str, str] | None = None,
     tables: Tables = None,
     out: npt.NDArray[np.float64] | None = None,
+    cluster: ClusterSource = None,
+    target: str | None = None,
 ) -> xr.Dataset:
     """Motions of many mechanisms of one structure, or one number of each motion, in bounded memory.
 
@@ -91,7 +85,7 @@ def sweep(
         mechanisms that are not ok everywhere.
     executor : "auto", "arrays" or "machine code"
         What computes; the one used stands in the attributes.
-    store : a folder for a result too great for memory
+    store : a folder, or an address such as "s3://bucket/sweep.zarr", for a result too great for memory
         It goes on where an earlier run of the same sweep ended.
     progress : called with (mechanisms done, mechanisms in all)
     threads : that machine code shares the mechanisms among
@@ -106,6 +100,10 @@ def sweep(
     out : array of float64
         Room for what is kept of every sample: the result's arrays are views of it. A call after call then writes
         to memory that is there.
+    cluster : a number of workers on this machine, "tcp://..." or "tls://...", a client of `distributed`
+        Workers compute the blocks and write them to the store, which all of them reach (docs: clusters).
+    target : "x86-64-v2", "x86-64-v3", "x86-64-v4" or "aarch64"
+        The processor that machine code is compiled for; this machine's by default, with a cluster a baseline.
 
     Returns
     -------
@@ -137,72 +135,62 @@ def sweep(
             store=store,
             tables=tables,
             out=out,
+            target=target,
         )
         if isinstance(outputs, Mapping):
             what = _("formulas belong to sweeps of motions")
             raise InputError("outputs", what, _("give names, or omit compute"))
         study: xr.Dataset = _studies().parameter_study(
-            mechanism, vary, compute, outputs, samples, dependent, progress
+            mechanism, vary, compute, outputs, samples, dependent, progress, cluster
         )
         return study
     if dependent:
         raise InputError("dependent", _("it belongs to a parameter study"), _("give compute too"))
     name = check_executor(executor)
+    named = _target_of(target, cluster, threads, store)
     design = design_of(mechanism, vary)
     if store is not None and out is not None:
         raise InputError("out", _("a store keeps its results itself"), _("give one of store and out"))
-    motion, task = _task_of(mechanism, design, outputs, reduce, gradient, tables, (samples, start, stop))
-    chosen, told_of_it = executor_of(name, task, design, check_threads(threads))
-    units = {path: unit_of(mechanism, path) for path in design.coordinates}
-    frame = frame_of(motion, design, units, task.asked, told_of_it)
-    blocks = _blocks(frame, task, chosen)
+    span = samples, start, stop
+    plan = plan_of(
+        mechanism, design, name, outputs, reduce, gradient, tables, span, check_threads(threads), named
+    )
     if store is None:
-        return _in_memory(frame, blocks, task, chosen, progress, out).assign_attrs(topic="sweep")
-    _check_size(frame, designs.IN_STORE, _("reduce it, or choose fewer"))
-    with open_store(Path(store), frame, blocks, task) as kept:
+        return _in_memory(plan, progress, out).assign_attrs(topic="sweep")
+    _check_size(plan.frame, designs.IN_STORE, _("reduce it, or choose fewer"))
+    storage = storage_of(store)
+    facts = study_of(plan.frame, plan.task, plan.target)
+    # a cluster's store may be greater than what can be read at every beginning
+    blocks = functools.partial(blocks_of if cluster is None else measured_blocks_of, plan)
+    with open_store(
+        storage, plan.frame, blocks, facts, thorough=cluster is None and storage.reads_back
+    ) as kept:
         finished = kept.tally.mechanisms
-        _compute(frame, kept, task, chosen, progress)
-    data = with_tally(read_store(Path(store), frame), frame, kept.tally)
+        wanted = wanted_libraries(machine_code=plan.executor.name == MACHINE_CODE)
+        check_libraries(storage, wanted)
+        if cluster is None:
+            _compute(plan, kept, progress)
+        else:
+            text = work_text(plan, outputs, reduce, gradient, span, wanted, kept.blocks)
+            compute_on_cluster(kept, text, wanted, cluster, progress)
+    data = with_tally(read_store(storage, plan.frame), plan.frame, kept.tally)
     # a store says what was computed, and not how that is shown: the topic is only in what is returned
     return data.assign_attrs(mechanisms_found=finished, topic="sweep")
 
 
-MOST_SAMPLES = 20_000
-"""Samples of a sweep whose plan is kept for the next one."""
-_plans: KeptValues[tuple[xr.Dataset, SweepTask]] = KeptValues(16)
-
-
-def _task_of(
-    mechanism: Mechanism,
-    design: Design,
-    outputs: Outputs,
-    reduce: Reduce,
-    gradient: bool,
-    tables: Tables,
-    span: tuple[Any, Any, Any],
-) -> tuple[xr.Dataset, SweepTask]:
-    """The description's own motion, and the task; what was requested before is not made again."""
-
-    def make() -> tuple[xr.Dataset, SweepTask]:
-        prepared = ready(mechanism)
-        grid_of_samples = requested_grid(prepared, *span)
-        # the description's own motion says what there is to name
-        motion = motion_with_names(solve(prepared, grid_of_samples), f"{outputs} {reduce}")
-        asked = asked_of(motion, design, outputs, reduce, tables)
-        paths = tuple(design.coordinates)
-        return motion, SweepTask(
-            prepared, grid_of_samples, with_slopes(asked, len(paths)) if gradient else asked, paths
+def _target_of(target: str | None, cluster: ClusterSource, threads: int, store: object) -> str | None:
+    """The processor that kernels are compiled for; InputError where options of a cluster do not fit."""
+    if cluster is None:
+        return check_target(target)
+    check_cluster(cluster)
+    if store is None:
+        what = _("workers write to a store, which is missing")
+        raise InputError("store", what, _("name a folder or an address that all workers reach"))
+    if threads != 1:
+        raise InputError(
+            "threads", _("workers of a cluster have one thread each"), _("omit it, or omit cluster")
         )
-
-    # tables are compared by nobody; a long motion would stay in memory
-    if tables is not None or not isinstance(span[0], int | None) or (span[0] or 0) > MOST_SAMPLES:
-        return make()
-    try:
-        # as text whole numbers, numbers and truth values differ
-        key = json.dumps([list(design.coordinates), outputs, reduce, gradient, span])
-    except (TypeError, ValueError):
-        return make()
-    return _plans.get(mechanism, key, make)
+    return check_target(baseline() if target is None else target)
 
 
 def _refuse_of_motions(**options: object) -> None:
@@ -252,43 +240,19 @@ def check_table(data: xr.Dataset) -> None:
         raise InputError("", what.format(most=TABLE_ROWS, count=count), _("write zarr"))
 
 
-def motion_with_names(solved: Solved, words: str) -> xr.Dataset:
-    """The description's own motion, with its reduction where words name a number of it."""
-    motion = dataset_of(solved)
-    # reductions are computed only where they are named: masses need not be complete otherwise
-    if "reduced_" not in words:
-        return motion
-    check_reducible(solved)
-    reduction = reduction_of(solved)
-    return motion.assign({name: reduction[name] for name in REDUCED})
-
-
 def _check_size(frame: SweepFrame, most: int, repair: str) -> None:
     if frame.bytes > most:
         what = _("the result would take {size:.3g} GB").format(size=frame.bytes / 1e9)
         raise InputError("", what, repair)
 
 
-def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor) -> Blocks:
-    each = max(1, sum(column.bytes for column in task.asked.columns))
-    # positions of a block by time, its bytes by memory: the lesser of both
-    most = min(executor.blocks * designs.BLOCK_POSITIONS // task.places, designs.BLOCK_BYTES // each)
-    return Blocks.of(frame.design.shape, max(1, most))
-
-
-def _in_memory(
-    frame: SweepFrame,
-    blocks: Blocks,
-    task: SweepTask,
-    executor: Executor,
-    progress: Progress | None,
-    out: npt.NDArray[np.float64] | None,
-) -> xr.Dataset:
+def _in_memory(plan: SweepPlan, progress: Progress | None, out: npt.NDArray[np.float64] | None) -> xr.Dataset:
+    frame = plan.frame
     if out is None:
         _check_size(frame, designs.IN_MEMORY, _("reduce it, choose fewer, or give a store"))
-    kept = InMemory(frame, blocks, out)
+    kept = InMemory(frame, blocks_of(plan), out)
     try:
-        _compute(frame, kept, task, executor, progress)
+        _compute(plan, kept, progress)
     except KeyboardInterrupt:
         if not kept.tally.mechanisms:
             raise
@@ -300,26 +264,21 @@ def _in_memory(
     return kept.dataset()
 
 
-def _compute(
-    frame: SweepFrame, kept: Kept, task: SweepTask, executor: Executor, progress: Progress | None
-) -> None:
+def _compute(plan: SweepPlan, kept: Kept, progress: Progress | None) -> None:
     """Compute the blocks that are not there, one after the other."""
-    lanes = executor.lanes(task)
     for block in kept.blocks:
         if kept.has(block):
             continue
         first, stop = kept.blocks.mechanisms(block)
-        # parts that are solved together stay below the working set; a block is kept as a whole
         before = kept.tally.mechanisms
-        results = kept.room(block)
-        for low in range(first, stop, lanes):
-            high = min(low + lanes, stop)
-            values = frame.design.rows(low, high)
-            numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
-            executor.run(task, numbers, values, results.part(slice(low - first, high - first)))
+
+        def tell(done: int, before: int = before) -> None:
             if progress is not None:
-                progress(before + high - first, frame.mechanisms)
-        kept.put(block, results, tally_of(task.asked, len(task.span.parameter), results))
+                progress(before + done, plan.frame.mechanisms)
+
+        # a block is kept as a whole
+        results = kept.room(block)
+        kept.put(block, results, plan.compute(first, stop, results, tell))
 
 
 # Sweeps in files: which mechanism, what varies, what is requested.

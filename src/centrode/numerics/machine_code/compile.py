@@ -11,6 +11,7 @@ import llvmlite
 import llvmlite.binding as llvm
 
 from centrode.numerics.machine_code.loops import ARGUMENTS, FUNCTION
+from centrode.numerics.machine_code.targets import TARGETS, architecture, chosen_target
 
 # The machine that is compiled for.
 
@@ -54,6 +55,28 @@ def host() -> Target:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     return target_of(llvm.get_process_triple(), llvm.get_host_cpu_name(), dict(llvm.get_host_cpu_features()))
+
+
+def standing() -> Target:
+    """The machine that kernels are compiled for now: the one that was named, or the one that this runs on."""
+    name = chosen_target()
+    return host() if name is None else named_target(name)
+
+
+@functools.cache
+def named_target(name: str) -> Target:
+    """A target of TARGETS."""
+    host()  # code generators are made ready
+    cpu, features = TARGETS[name]
+    return target_of(llvm.get_process_triple(), cpu, dict.fromkeys(features, True))
+
+
+def lacking_features(name: str) -> tuple[str, ...]:
+    """The features of a named target that this machine does not have; its architecture where that is another one."""
+    if not name.startswith(architecture()):
+        return (name.partition("-v")[0],)
+    present = dict(llvm.get_host_cpu_features())
+    return tuple(feature for feature in TARGETS[name][1] if not present.get(feature, False))
 
 
 def target_of(triple: str, cpu: str, features: dict[str, bool]) -> Target:

@@ -27,6 +27,7 @@ from centrode.numerics.machine_code.compile import (
     in_haste,
     load_object_code,
     object_code,
+    standing,
 )
 from centrode.numerics.machine_code.language import Vector
 from centrode.numerics.machine_code.loops import (
@@ -141,12 +142,12 @@ def kernel_of(
     width : numbers in a vector; what the machine's registers hold if left out
     lanes_inside : take every step along all lanes; only for scans without a state
     relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
-    target : the machine to compile for; this one if left out
+    target : the machine to compile for; the one that is named now (`targets`), or this one, if left out
     hasty : the code is waited for, see `in_haste`
     """
     if np.dtype(number) not in NUMBERS:
         raise ValueError(f"numbers of a kernel are float64 or float32, not {np.dtype(number)}")
-    machine = target or host()
+    machine = target or standing()
     if hasty:
         machine = in_haste(machine)
     vector = Vector(NUMBERS[np.dtype(number)], 1)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from centrode.assignments.answers import VariantAnswers, read_answers
 from centrode.assignments.results import spoken_variants
@@ -20,7 +20,8 @@ from centrode.report.document import report_of_study
 from centrode.report.files import DEFAULT_FORMATS, check_formats, document, write_report
 from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answers import answer_sheet, answers_of
-from centrode.report.variants.folders import Progress, write_variants
+from centrode.report.variants.folders import Progress, row_of_text, write_variants
+from centrode.sweeps.clusters import ClusterSource
 from centrode.topics.registry import INTEGRATE
 
 if TYPE_CHECKING:
@@ -42,6 +43,16 @@ class VariantReport:
         """All that the files depend on besides the variant."""
         return json.dumps(["report and answers", sorted(self.formats), self.language])
 
+    @property
+    def told(self) -> dict[str, Any]:
+        """All that it is made of, as JSON has it."""
+        return {"formats": list(self.formats), "language": self.language}
+
+    @property
+    def work(self) -> Callable[[str], dict[str, Any]]:
+        """What a worker of a cluster does."""
+        return row_of_report_text
+
     def __call__(self, results: VariantResults, folder: Path) -> None:
         """Write `report.html`, `report.pdf` and `answers.json`."""
         mechanism = results.mechanism
@@ -55,6 +66,12 @@ class VariantReport:
             write_report(named, folder, self.formats)
             text = answers_of(study).json_text()
         (folder / ANSWERS).write_text(text, encoding="utf-8", newline="\n")
+
+
+def row_of_report_text(text: str) -> dict[str, Any]:
+    """`row_of_text` of a variant with a report."""
+    more = json.loads(text)["more"]
+    return row_of_text(text, VariantReport(tuple(more["formats"]), more["language"]))
 
 
 def study_of_variant(mechanism: Mechanism, results: VariantResults) -> ReportStudy:
@@ -79,12 +96,13 @@ def write_variant_reports(
     progress: Progress | None = None,
     spelling: TableSpelling | None = None,
     compute: str | None = None,
+    cluster: ClusterSource = None,
 ) -> Variants:
     """What `write_variants` writes, with a report for each variant and one sheet of answers.
 
     Parameters
     ----------
-    topology, table, folder, jobs, figures, progress, spelling, compute : as of `write_variants`
+    topology, table, folder, jobs, figures, progress, spelling, compute, cluster : as of `write_variants`
         Those finished before with the same numbers, formats and language are not made again.
     formats : "html", "pdf", "docx", "tex", "ipynb"
     language : "en", "ru" or "uk", optional
@@ -108,7 +126,9 @@ def write_variant_reports(
                 Report("", "", spoken), kind
             )  # what is not installed is told here, and not by every variant
     more = VariantReport(tuple(formats), spoken)
-    variants = write_variants(topology, table, folder, jobs, figures, progress, more, spelling, compute)
+    variants = write_variants(
+        topology, table, folder, jobs, figures, progress, more, spelling, compute, cluster
+    )
     variants = replace(variants, answers=_answers(Path(folder), variants.rows))
     with speaking(spoken):
         write_report(answer_sheet(_spoken(variants)), folder, formats, name="answers")

@@ -7,6 +7,7 @@ import hashlib
 import json
 import multiprocessing
 import signal
+import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -28,6 +29,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.sweeps.clusters import ClusterSource, open_cluster, wanted_libraries
 from centrode.sweeps.parameter_studies import analysis_results, check_analysis
 from centrode.topics.presentation import sheet_of
 from centrode.version import __version__
@@ -48,6 +50,16 @@ class WritesMore(Protocol):
     @property
     def key(self) -> str:
         """All that these files depend on besides the variant."""
+        ...
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """All that it is made of, as JSON has it."""
+        ...
+
+    @property
+    def work(self) -> Callable[[str], dict[str, Any]]:
+        """The function of a module that does `row_of_text` with these files."""
         ...
 
     def __call__(self, results: VariantResults, folder: Path) -> None:
@@ -183,6 +195,7 @@ def write_variants(
     more: WritesMore | None = None,
     spelling: TableSpelling | None = None,
     compute: str | None = None,
+    cluster: ClusterSource = None,
 ) -> Variants:
     """Compute every variant of a table into a folder of its own, and sum them up in `summary.csv`.
 
@@ -199,6 +212,7 @@ def write_variants(
     more : writes further files of each variant into its folder
     spelling : workbooks, decimal commas; plain CSV alone by default
     compute : as of `variants`; the folder of each variant has the tables and figures of the analysis too
+    cluster : as of `sweep`; its workers compute variants into `folder`, which all of them reach
 
     Returns
     -------
@@ -244,7 +258,7 @@ def write_variants(
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with hold_lock(folder / LOCK, str(folder), remove=remove_file):
-            rows = tuple(_all(tasks, jobs, progress))
+            rows = tuple(_all(tasks, jobs, progress, cluster))
             variants = Variants(topology, given, rows, compute=compute)
             _write_summary(variants, folder, spelling)
     return variants
@@ -263,13 +277,21 @@ def _check_jobs(jobs: object) -> None:
         raise InputError("jobs", what, _("give 1 to {most}").format(most=MOST_JOBS))
 
 
-def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[VariantRow]:
+def _all(
+    tasks: Sequence[Task], jobs: int, progress: Progress | None, cluster: ClusterSource
+) -> list[VariantRow]:
     """Rows of all tasks, those of finished ones from their markers."""
     rows = {task.variant.name: row for task in tasks if (row := finished_row(task)) is not None}
     open_tasks = [task for task in tasks if task.variant.name not in rows]
     if progress is not None:
         progress(len(rows), len(tasks))
-    for row in _several(open_tasks, jobs) if min(jobs, len(open_tasks)) > 1 else map(run, open_tasks):
+    if cluster is not None:
+        computed = _on_cluster(open_tasks, cluster)
+    elif min(jobs, len(open_tasks)) > 1:
+        computed = _several(open_tasks, jobs)
+    else:
+        computed = map(run, open_tasks)
+    for row in computed:
         rows[row.variant] = row
         if progress is not None:
             progress(len(rows), len(tasks))
@@ -300,3 +322,57 @@ def _prepare(read: Sequence[Input]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(*COLLECTION)
     carry_on(read)
+
+
+# On a cluster: a worker is told a variant as text.
+
+_one_at_a_time = threading.Lock()
+
+
+def _on_cluster(tasks: Sequence[Task], cluster: ClusterSource) -> Iterator[VariantRow]:
+    """Rows as workers finish them; nothing is begun where every variant is finished."""
+    if not tasks:
+        return
+    texts = ((k, task_text(task)) for k, task in enumerate(tasks))
+    more = tasks[0].more
+    work = row_of_text if more is None else more.work
+    with open_cluster(cluster) as workers:
+        for _k, row in workers.answers(work, texts, wanted_libraries(machine_code=True)):
+            yield VariantRow(**row)
+
+
+def task_text(task: Task) -> str:
+    """A variant to be computed, as JSON from which `task_of_text` has it again."""
+    told = {
+        "topology": task.topology,
+        "variant": {
+            "name": task.variant.name,
+            "values": dict(task.variant.values),
+            "source": task.variant.source,
+        },
+        "folder": str(task.folder.absolute()),
+        "figures": task.figures,
+        "more": None if task.more is None else task.more.told,
+        "spelling": asdict(task.spelling),
+        "compute": task.compute,
+    }
+    return json.dumps(told)
+
+
+def task_of_text(text: str, more: WritesMore | None) -> Task:
+    """The variant of a text; InputError where the folder of all variants is not there."""
+    told = json.loads(text)
+    folder = Path(told["folder"])
+    if not folder.parent.is_dir():
+        what = _("the folder of the results is not there")
+        raise InputError(str(folder.parent), what, _("name a folder that all workers reach by the same path"))
+    variant, spelling = Variant(**told["variant"]), TableSpelling(**told["spelling"])
+    return Task(told["topology"], variant, folder, told["figures"], more, spelling, told["compute"])
+
+
+def row_of_text(text: str, more: WritesMore | None = None) -> dict[str, Any]:
+    """Compute the variant of a text into its folder; its row as JSON has it."""
+    task = task_of_text(text, more)
+    # what was finished before its worker died is not made again; figures and languages are those of a process
+    with _one_at_a_time:
+        return (finished_row(task) or run(task)).as_dict()
