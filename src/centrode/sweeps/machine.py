@@ -45,7 +45,7 @@ from centrode.numerics.executors import MACHINE_CODE, streamer
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.scans import LINE, Reduction, Scan, evaluate, room_of, together
+from centrode.numerics.scans import LINE, LaneExtreme, Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.sweeps import designs
@@ -390,6 +390,12 @@ class Expressed:
         return {column.name: every[column.name] for column in streamed_columns(self.task.asked.columns)}
 
     @cached_property
+    def fixed(self) -> dict[int, float]:
+        """Of `outputs`: place -> the number that every sample of every mechanism has, as those of fixed points."""
+        nodes = enumerate(self.outputs.values())
+        return {place: float(node.detail) for place, node in nodes if node.operation == CONSTANT}
+
+    @cached_property
     def slopes(self) -> Slopes:
         """Derivatives of the columns by the varied values; raises Untraceable."""
         return Slopes.of(self.task.paths, self.varied, self.traced, self.folds, self._moving)
@@ -550,8 +556,12 @@ class Passing(Protocol):
     def reducing(self, reduction: Reduction) -> Reducing:
         """A pass over all samples, for any number of batches."""
 
+    @property
+    def fixed(self) -> Mapping[int, float]:
+        """Numbers that are not written, as they are the same everywhere: place among all -> number."""
+
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
-        """Write every sample; returns what mechanisms are judged by."""
+        """Write every sample but what is fixed; returns what mechanisms are judged by."""
 
 
 def passing_of(asked: Expressed) -> Passing:
@@ -575,26 +585,35 @@ class EachForItself:
 
         return reduce
 
-    @cached_property
-    def _judging(self) -> Reducing:
-        return self.reducing(judging_states(self.asked))
+    @property
+    def fixed(self) -> Mapping[int, float]:
+        return self.asked.fixed
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
+        of_mechanisms = np.stack([rows[name] for name in scan.inputs]) if scan.inputs else None
+        judged = np.empty((len(scan.extremes), len(next(iter(rows.values())))))
         for part, room in rooms:
-            take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self._judging(rows)
+            take(None if of_mechanisms is None else of_mechanisms[:, part], room, judged[:, part])
+        return dict(zip(scan.extremes, judged, strict=True))
 
     @cached_property
     def _scan(self) -> Scan:
-        """Lanes are samples, steps are mechanisms."""
-        outputs = self.asked.outputs
-        used = Graph(outputs).variables
+        """Lanes are samples, steps are mechanisms; judged by extremes over the samples while these are written."""
+        asked = self.asked
+        written = [(place, x) for place, x in enumerate(asked.outputs.items()) if place not in asked.fixed]
+        outputs = dict(x for _place, x in written)
+        extremes = {RESIDUAL: LaneExtreme("maximum", asked.judges[RESIDUAL], 0.0)}
+        if SLACK in asked.judges:
+            extremes[SLACK] = LaneExtreme("minimum", asked.judges[SLACK], math.inf)
+        used = Graph({**outputs, **{name: x.value for name, x in extremes.items()}}).variables
         # the parameter stays an input in any case: something has to say how many samples there are
-        along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
-        return Scan(along, tuple(name for name in used if name not in along), outputs)
+        along = tuple(name for name in asked.inputs if name in used or name == PARAMETER)
+        of_mechanisms = tuple(name for name in used if name not in along)
+        places = tuple(place for place, _x in written)
+        return Scan(along, of_mechanisms, outputs, extremes=extremes, places=places)
 
 
 @dataclass(frozen=True)
@@ -602,6 +621,7 @@ class Along:
     """Every place is found from the one before: what is written is judged on the same way."""
 
     asked: Expressed
+    fixed: Mapping[int, float] = field(default_factory=dict)
 
     def reducing(self, reduction: Reduction) -> Reducing:
         asked = self.asked
@@ -644,15 +664,17 @@ class StreamedColumns(dict[str, AnyArray]):
     """Arrays of some mechanisms by name: (mechanisms, ...).
 
     `streams` is what is kept of every sample, in the order of the columns, where it stands like that in memory:
-    (numbers, mechanisms, samples).
+    (numbers, mechanisms, samples). `blank` says that it is all zeros, which take no pages until they are written to.
     """
 
     streams: npt.NDArray[np.float64] | None = None
+    blank: bool = False
 
     def part(self, rows: slice) -> StreamedColumns:
         """A view of some mechanisms."""
         chosen = StreamedColumns({name: array[rows] for name, array in self.items()})
         chosen.streams = None if self.streams is None else self.streams[:, rows]
+        chosen.blank = self.blank
         return chosen
 
 
@@ -677,7 +699,7 @@ def columns_for(
         _check_room(out, mechanisms * sum(math.prod(column.shape) for column in kept))
     if kept:
         numbers = [math.prod(column.shape[1:]) for column in kept]
-        streamed.streams = _streams((sum(numbers), mechanisms, kept[0].shape[0]), out)
+        streamed.streams, streamed.blank = _streams((sum(numbers), mechanisms, kept[0].shape[0]), out)
         first = 0
         for column, count in zip(kept, numbers, strict=True):
             streams = streamed.streams[first : first + count].reshape(
@@ -689,15 +711,21 @@ def columns_for(
     return streamed
 
 
-def _streams(shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None) -> npt.NDArray[np.float64]:
-    """Room for streams; fresh memory begins where a line of the cache does."""
+BLANK = 32_000_000
+"""Bytes from which on the operating system gives zeros as pages that it has not made yet; less would be cleared."""
+
+
+def _streams(
+    shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None
+) -> tuple[npt.NDArray[np.float64], bool]:
+    """Room for streams, and whether it is blank; fresh memory begins where a line of the cache does."""
     numbers = math.prod(shape)
     if out is not None:
-        return out.reshape(-1)[:numbers].reshape(shape)
-    spare = LINE // NUMBER
-    whole = np.empty(numbers + spare)
+        return out.reshape(-1)[:numbers].reshape(shape), False
+    spare, blank = LINE // NUMBER, numbers * NUMBER > BLANK
+    whole = (np.zeros if blank else np.empty)(numbers + spare)
     first = (-whole.ctypes.data % LINE) // NUMBER
-    return whole[first : first + numbers].reshape(shape)
+    return whole[first : first + numbers].reshape(shape), blank
 
 
 def _check_room(out: object, numbers: int) -> None:
@@ -733,18 +761,23 @@ class EverySample:
     results : column -> (mechanisms, ...)
     at : the mechanisms among these that are written: a whole slice, or their numbers
     samples : how many there are
+    fixed : place among all numbers -> number of every sample, which is not filled into rooms
     """
 
     columns: Mapping[str, Sequence[Node]]
     results: Mapping[str, AnyArray]
     at: Any
     samples: int
+    fixed: Mapping[int, float]
 
     def rooms(self) -> Iterator[tuple[slice, Array]]:
         """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is requested."""
         streams = self.results.streams if isinstance(self.results, StreamedColumns) else None
         # a whole slice has its place in the result, and is written straight there
         if streams is not None and isinstance(self.at, slice):
+            for place, number in self.fixed.items():
+                if not (self.results.blank and _is_zero(number)):
+                    streams[place] = number
             yield slice(0, streams.shape[1]), streams
             return
         numbers = sum(map(len, self.columns.values()))
@@ -759,12 +792,18 @@ class EverySample:
             self._put(room, where)
 
     def _put(self, room: Array, where: npt.NDArray[np.intp]) -> None:
-        stream = iter(room)
+        place = 0
         for name, nodes in self.columns.items():
             target = self.results[name].reshape(*self.results[name].shape[:2], len(nodes))
             for k in range(len(nodes)):
                 # number by number, as streams come; the target has them side by side
-                target[where, :, k] = next(stream)
+                target[where, :, k] = self.fixed.get(place, room[place])
+                place += 1
+
+
+def _is_zero(number: float) -> bool:
+    """Whether it is zero to the last bit."""
+    return number == 0.0 and math.copysign(1.0, number) > 0.0
 
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -855,6 +894,8 @@ class MachineCodeExecutor:
                 some = rows if everywhere else {name: row[at] for name, row in rows.items()}
                 clear[at] = self._without_events(some, at, results, sure)
         left = np.nonzero(~clear)[0]
+        if not len(left):
+            return
         # few mechanisms with events are not worth a kernel of their own
         worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
         if worth and self._eventful.possible:
@@ -976,7 +1017,7 @@ class MachineCodeExecutor:
             rows = self._fill_reductions(rows, at, results, certain=False)
             # what is written is judged as it is written
             rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
-        every = EverySample(self.asked.written, results, at, self.asked.samples)
+        every = EverySample(self.asked.written, results, at, self.asked.samples, self._passing.fixed)
         return self._passing.write_samples(rows, every.rooms())
 
 

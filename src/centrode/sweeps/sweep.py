@@ -155,7 +155,7 @@ def sweep(
     chosen, told_of_it = executor_of(name, task, design, check_threads(threads))
     units = {path: unit_of(mechanism, path) for path in design.coordinates}
     frame = frame_of(motion, design, units, task.asked, told_of_it)
-    blocks = _blocks(frame, task, chosen)
+    blocks = _blocks(frame, task, chosen, stored=store is not None)
     if store is None:
         return _in_memory(frame, blocks, task, chosen, progress, out).assign_attrs(topic="sweep")
     _check_size(frame, designs.IN_STORE, _("reduce it, or choose fewer"))
@@ -269,10 +269,12 @@ def _check_size(frame: SweepFrame, most: int, repair: str) -> None:
         raise InputError("", what, repair)
 
 
-def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor) -> Blocks:
-    each = max(1, sum(column.bytes for column in task.asked.columns))
-    # positions of a block by time, its bytes by memory: the lesser of both
-    most = min(executor.blocks * designs.BLOCK_POSITIONS // task.places, designs.BLOCK_BYTES // each)
+def _blocks(frame: SweepFrame, task: SweepTask, executor: Executor, stored: bool) -> Blocks:
+    most = executor.blocks * designs.BLOCK_POSITIONS // task.places
+    if stored:
+        # positions of a block by time, its bytes by memory: the lesser of both. A result in memory has its own room
+        each = max(1, sum(column.bytes for column in task.asked.columns))
+        most = min(most, designs.BLOCK_BYTES // each)
     return Blocks.of(frame.design.shape, max(1, most))
 
 
