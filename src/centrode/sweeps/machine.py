@@ -45,6 +45,7 @@ from centrode.numerics.executors import MACHINE_CODE, streamer
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
+from centrode.numerics.rooms import check_room, fresh_room, is_blank
 from centrode.numerics.scans import LINE, LaneExtreme, Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
@@ -696,12 +697,16 @@ def columns_for(
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
     if out is not None:
-        _check_room(out, mechanisms * sum(math.prod(column.shape) for column in kept))
+        numbers = mechanisms * sum(math.prod(column.shape) for column in kept)
+        if not numbers:
+            what = _("nothing is kept of every sample")
+            raise InputError("out", what, _("omit it, or request outputs that are not reduced"))
+        check_room(out, numbers)
     if kept:
-        numbers = [math.prod(column.shape[1:]) for column in kept]
-        streamed.streams, streamed.blank = _streams((sum(numbers), mechanisms, kept[0].shape[0]), out)
+        counts = [math.prod(column.shape[1:]) for column in kept]
+        streamed.streams, streamed.blank = _streams((sum(counts), mechanisms, kept[0].shape[0]), out)
         first = 0
-        for column, count in zip(kept, numbers, strict=True):
+        for column, count in zip(kept, counts, strict=True):
             streams = streamed.streams[first : first + count].reshape(
                 *column.shape[1:], *streamed.streams.shape[1:]
             )
@@ -711,10 +716,6 @@ def columns_for(
     return streamed
 
 
-BLANK = 32_000_000
-"""Bytes from which on the operating system gives zeros as pages that it has not made yet; less would be cleared."""
-
-
 def _streams(
     shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None
 ) -> tuple[npt.NDArray[np.float64], bool]:
@@ -722,29 +723,10 @@ def _streams(
     numbers = math.prod(shape)
     if out is not None:
         return out.reshape(-1)[:numbers].reshape(shape), False
-    spare, blank = LINE // NUMBER, numbers * NUMBER > BLANK
-    whole = (np.zeros if blank else np.empty)(numbers + spare)
+    spare = LINE // NUMBER
+    whole, blank = fresh_room(numbers + spare)
     first = (-whole.ctypes.data % LINE) // NUMBER
     return whole[first : first + numbers].reshape(shape), blank
-
-
-def _check_room(out: object, numbers: int) -> None:
-    if not numbers:
-        what = _("nothing is kept of every sample")
-        raise InputError("out", what, _("omit it, or request outputs that are not reduced"))
-    if (
-        not isinstance(out, np.ndarray)
-        or out.dtype != np.float64
-        or not out.flags.c_contiguous
-        or not out.flags.writeable
-    ):
-        what = _("an array of float64 that is contiguous and can be written to is required")
-        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
-    if out.size < numbers:
-        what = _("it has room for {size} numbers, {numbers} are needed").format(
-            size=out.size, numbers=numbers
-        )
-        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
 
 
 # Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
@@ -772,11 +754,14 @@ class EverySample:
 
     def rooms(self) -> Iterator[tuple[slice, Array]]:
         """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is requested."""
-        streams = self.results.streams if isinstance(self.results, StreamedColumns) else None
+        results = self.results
+        streams, blank = (
+            (results.streams, results.blank) if isinstance(results, StreamedColumns) else (None, False)
+        )
         # a whole slice has its place in the result, and is written straight there
         if streams is not None and isinstance(self.at, slice):
             for place, number in self.fixed.items():
-                if not (self.results.blank and _is_zero(number)):
+                if not (blank and is_blank(number)):
                     streams[place] = number
             yield slice(0, streams.shape[1]), streams
             return
@@ -799,11 +784,6 @@ class EverySample:
                 # number by number, as streams come; the target has them side by side
                 target[where, :, k] = self.fixed.get(place, room[place])
                 place += 1
-
-
-def _is_zero(number: float) -> bool:
-    """Whether it is zero to the last bit."""
-    return number == 0.0 and math.copysign(1.0, number) > 0.0
 
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
