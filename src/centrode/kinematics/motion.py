@@ -13,7 +13,7 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from centrode.errors import STATUSES_OF_MOTION, InputError
+from centrode.errors import STATUSES_OF_MOTION, InputError, Status
 from centrode.kinematics.hinge_angles import HINGE_ANGLES, hinge_rates, moving_hinges, spherical_coordinates
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import layout_of
@@ -28,7 +28,7 @@ from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.rooms import GivenRoom, check_room
+from centrode.numerics.rooms import GivenRoom, blank_like, check_room
 from centrode.quantities import QUANTITIES
 from centrode.structure.assur import name_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
@@ -92,7 +92,8 @@ def _in_time(solved: Solved, front: tuple[str, ...], room: GivenRoom | None) -> 
     variables: dict[str, Variable] = {}
     for kind in kinds_of(solved):
         for order in range(3):
-            values = by_time(kind.orders, order, span, room)
+            still = _still_points(solved) if kind.dimensions[0] == "point" and order > 0 else 0
+            values = by_time(kind.orders, order, span, room, still)
             if values is None:
                 continue
             name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
@@ -100,15 +101,31 @@ def _in_time(solved: Solved, front: tuple[str, ...], room: GivenRoom | None) -> 
     return variables
 
 
-def by_time(orders: Orders, order: int, span: SampleGrid, room: GivenRoom | None = None) -> Array | None:
-    """Values (order 0), or first or second derivatives by time (lanes, samples, ...); None where there are none."""
+def _still_points(solved: Solved) -> int:
+    """Points in front of all others whose derivatives are zero at every sample."""
+    # the frame's points are absent where the motion is; and with a drive that runs backwards zeros are negative
+    moves = (solved.status == Status.OPEN).any() or not (solved.span.rate > 0.0).all()
+    return 0 if moves else solved.all_points.shape[3] - solved.points.shape[3]
+
+
+def by_time(
+    orders: Orders, order: int, span: SampleGrid, room: GivenRoom | None = None, still: int = 0
+) -> Array | None:
+    """Values (order 0), or first or second derivatives by time (lanes, samples, ...); None where there are none.
+
+    `still` is the number of points in front that do not move: of many samples their zeros are not written.
+    """
     by_parameter = orders[order]
     if order == 0 or by_parameter is None:
         return by_parameter
     along = (slice(None), *[None] * (by_parameter.ndim - 2))  # samples, then what stands behind them
     # the chain rule: d/dt = rate d/dq, and second derivatives have rate^2 and the second rate
     factor = (span.rate if order == 1 else span.rate**2)[along]
-    if room is None:
+    blank = blank_like(by_parameter) if room is None and still else None
+    if blank is not None:
+        values = blank
+        np.multiply(by_parameter[:, :, still:], factor, out=values[:, :, still:])
+    elif room is None:
         values = by_parameter * factor
     else:
         values = np.multiply(by_parameter, factor, out=room.take_like(by_parameter))

@@ -28,6 +28,12 @@ def is_blank(number: float) -> bool:
     return number == 0.0 and math.copysign(1.0, number) > 0.0
 
 
+def blank_like(array: Array) -> Array | None:
+    """Blank memory of the shape of an array, its axes in the same order in memory; none where it would be cleared."""
+    whole, blank = fresh_room(array.size)
+    return GivenRoom(whole).take_like(array) if blank else None
+
+
 def check_room(out: object, numbers: int) -> None:
     """InputError where `out` has too little room for so many numbers, or is no array that they can be written to."""
     if (
