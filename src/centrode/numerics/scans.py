@@ -96,7 +96,9 @@ class Scan:
         """The scan with other expressions under the same names."""
         outputs = {name: graph.outputs[name] for name in self.outputs}
         state = {name: graph.outputs[NEXT + name] for name in self.state}
-        extremes = {name: x._replace(value=graph.outputs[EXTREME + name]) for name, x in self.extremes.items()}
+        extremes = {
+            name: x._replace(value=graph.outputs[EXTREME + name]) for name, x in self.extremes.items()
+        }
         return Scan(parameters, inputs, outputs, state, extremes, self.places)
 
 
@@ -169,7 +171,9 @@ def call_of(
 
 def check_room(scan: Scan, out: Array, steps: int, lanes: int, number: npt.DTypeLike) -> None:
     """Raise ValueError where outputs cannot be written to an array."""
-    fits = out.ndim == 3 and (len(out) == scan.height or (len(out) > scan.height and bool(scan.places)))
+    # rows may be left over where places say so, or where nothing is written
+    sparse = bool(scan.places) or not scan.outputs
+    fits = out.ndim == 3 and (len(out) == scan.height or (len(out) > scan.height and sparse))
     contiguous = not out.size or out.strides[-1] == out.itemsize
     if not fits or out.shape[1:] != (steps, lanes) or out.dtype != number or not contiguous:
         shape = (scan.height, steps, lanes)
@@ -358,6 +362,9 @@ FUNCTIONS: Mapping[str, Callable[..., Number]] = {
     "where": np.where,
 }
 
+EXTREMES: Mapping[str, np.ufunc] = {"minimum": np.minimum, "maximum": np.maximum}
+"""What is taken of all lanes."""
+
 
 def evaluate(
     graph: Graph, values: Mapping[str, Number], number: npt.DTypeLike = np.float64
@@ -421,7 +428,7 @@ def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> Array:
         for i, (name, extreme) in enumerate(scan.extremes.items()):
             shape = call.outputs[:, some].shape[1:]
             of_lanes = np.broadcast_to(results[EXTREME + name], shape)
-            extremes[i, some] = FUNCTIONS[extreme.operation].reduce(of_lanes, axis=1, initial=extreme.start)
+            extremes[i, some] = EXTREMES[extreme.operation].reduce(of_lanes, axis=1, initial=extreme.start)
     return extremes
 
 

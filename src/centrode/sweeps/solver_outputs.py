@@ -25,7 +25,7 @@ from centrode.numerics.expressions import Node, as_node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import evaluate
 from centrode.sweeps.designs import Listed
-from centrode.sweeps.machine import Fold, Folds, Slopes, States
+from centrode.sweeps.folds import Fold, Folds, Slopes, States
 from centrode.sweeps.outputs import Output, OutputFormula, formulas_of, outputs_of, quantities_of
 from centrode.sweeps.sweep import motion_with_names
 

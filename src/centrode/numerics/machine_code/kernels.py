@@ -36,7 +36,7 @@ from centrode.numerics.machine_code.loops import (
     function_text,
     with_reciprocals,
 )
-from centrode.numerics.scans import FUNCTIONS, Array, Call, Scan, Scanned, call_of, check_room
+from centrode.numerics.scans import EXTREMES, Array, Call, Scan, Scanned, call_of, check_room
 
 NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
 REMEMBERED = 256
@@ -83,7 +83,7 @@ class Kernel:
         width = self.shape.vector.width
         # a kernel reads and writes whole vectors: fewer lanes are filled up outside the caller's arrays
         if call.lanes < width:
-            return _without_padding(self._run(_pad_lanes(call, width), 1), call)
+            return _without_padding(self._run(_pad_lanes(call, width), 1), call, self.scan.rows)
         return self._run(call, threads)
 
     def _run(self, call: Call, threads: int) -> Scanned:
@@ -107,8 +107,8 @@ class Kernel:
 
     def extremes_of(self, room: Array) -> Array:
         """Extremes (extremes, steps) from those in each lane of a vector."""
-        kinds = [FUNCTIONS[x.operation] for x in self.scan.extremes.values()]
-        return np.stack([kind.reduce(x, axis=-1) for kind, x in zip(kinds, room, strict=True)])  # type: ignore[attr-defined]
+        kinds = [EXTREMES[x.operation] for x in self.scan.extremes.values()]
+        return np.stack([kind.reduce(x, axis=-1) for kind, x in zip(kinds, room, strict=True)])
 
     def _parts(self, call: Call, state: Array, threads: int) -> Iterator[tuple[Call, Array]]:
         """The call in parts that do not touch one another."""
@@ -278,8 +278,9 @@ def _pad_lanes(call: Call, width: int) -> Call:
     return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)
 
 
-def _without_padding(scanned: Scanned, call: Call) -> Scanned:
-    call.outputs[...] = scanned.outputs[:, :, : call.lanes]
+def _without_padding(scanned: Scanned, call: Call, rows: tuple[int, ...]) -> Scanned:
+    for row in rows:
+        call.outputs[row] = scanned.outputs[row, :, : call.lanes]
     return Scanned(call.outputs, np.ascontiguousarray(scanned.state[:, : call.lanes]), scanned.extremes)
 
 
