@@ -42,9 +42,9 @@ from centrode.kinematics.samples import CLOSED
 from centrode.locale import _, mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
-from centrode.numerics.expressions import Node, as_node, variable
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph
-from centrode.numerics.operations import CONSTANT
+from centrode.numerics.operations import CONSTANT, VARIABLE
 from centrode.numerics.rooms import check_room, fresh_room, is_blank
 from centrode.numerics.scans import LINE, LaneExtreme, Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
@@ -59,7 +59,8 @@ from centrode.sweeps.outputs import OutputFormula, SweepColumn, table_variable
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = dict[str, Array]
 
-RESIDUAL, SLACK = "worst residual", "slack at samples"
+m = EXPRESSIONS
+RESIDUAL, LENGTHS, SLACK = "worst residual", "worst length", "slack at samples"
 CHECKED = 3
 """Samples at which residuals are looked at where closed forms say that a mechanism closes at all of them."""
 
@@ -302,6 +303,55 @@ def passing_of(asked: Expressed) -> Passing:
 
 
 @dataclass(frozen=True)
+class ResidualParts:
+    """The greatest residual of a sample in two parts, so that lengths are divided by the scale once a mechanism.
+
+    A greater number has no lesser quotient, to the last bit: the greatest quotient is that of the greatest length.
+
+    Attributes
+    ----------
+    without_unit : the greatest of the parts that are not divided
+    lengths, scale : dividend and divisor of the part that is; none where there is none
+    """
+
+    without_unit: Node
+    lengths: Node | None = None
+    scale: Node | None = None
+
+    @classmethod
+    def of(cls, residual: Node) -> ResidualParts:
+        """The parts of a node that is a maximum of some."""
+        parts = list(_parts_of_maximum(residual))
+        divided = [x for x in parts if x.operation == "divide" and _is_scale(x.arguments[1])]
+        if len(divided) != 1:
+            return cls(residual)
+        without_unit: Operand = 0.0
+        for part in parts:
+            without_unit = without_unit if part is divided[0] else m.max(without_unit, part)
+        return cls(as_node(without_unit), *divided[0].arguments)
+
+    def scale_of(self, rows: PassedValues) -> Array | float:
+        """The divisor of mechanisms."""
+        assert self.scale is not None
+        return rows[SCALE] if self.scale.operation == VARIABLE else float(self.scale.detail)
+
+
+def _parts_of_maximum(node: Node) -> Iterator[Node]:
+    if node.operation == "maximum":
+        for x in node.arguments:
+            yield from _parts_of_maximum(x)
+    else:
+        yield node
+
+
+def _is_scale(node: Node) -> bool:
+    """Whether it is the greatest length of mechanisms, or a constant above zero as that is."""
+    if node.operation == VARIABLE:
+        return node.detail == SCALE
+    return node.operation == CONSTANT and float(node.detail) > 0.0
+
+
+@dataclass(frozen=True)
 class EachForItself:
     """Nothing is handed on but what is reduced. Every number that is written is one stream."""
 
@@ -329,7 +379,16 @@ class EachForItself:
         judged = np.empty((len(scan.extremes), len(next(iter(rows.values())))))
         for part, room in rooms:
             take(None if of_mechanisms is None else of_mechanisms[:, part], room, judged[:, part])
-        return dict(zip(scan.extremes, judged, strict=True))
+        found = dict(zip(scan.extremes, judged, strict=True))
+        if LENGTHS in found:
+            with np.errstate(invalid="ignore"):
+                lengths = found.pop(LENGTHS) / self._residual.scale_of(rows)
+            found[RESIDUAL] = np.maximum(found[RESIDUAL], lengths)
+        return found
+
+    @cached_property
+    def _residual(self) -> ResidualParts:
+        return ResidualParts.of(self.asked.judges[RESIDUAL])
 
     @cached_property
     def _scan(self) -> Scan:
@@ -337,7 +396,9 @@ class EachForItself:
         asked = self.asked
         written = [(place, x) for place, x in enumerate(asked.outputs.items()) if place not in asked.fixed]
         outputs = dict(x for _place, x in written)
-        extremes = {RESIDUAL: LaneExtreme("maximum", asked.judges[RESIDUAL], 0.0)}
+        extremes = {RESIDUAL: LaneExtreme("maximum", self._residual.without_unit, 0.0)}
+        if self._residual.lengths is not None:
+            extremes[LENGTHS] = LaneExtreme("maximum", self._residual.lengths, 0.0)
         if SLACK in asked.judges:
             extremes[SLACK] = LaneExtreme("minimum", asked.judges[SLACK], math.inf)
         used = Graph({**outputs, **{name: x.value for name, x in extremes.items()}}).variables

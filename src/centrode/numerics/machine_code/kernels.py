@@ -324,7 +324,7 @@ class Stream:
         extremes : (extremes, steps), is written to where the scan has some
         """
         kernel = self.kernel
-        if not self._alone or inputs is None or kernel.scan.extremes:
+        if not self._alone or inputs is None:
             scanned = kernel.run(self.parameters, inputs, out=out, steps=out.shape[1], threads=self.threads)
             if extremes is not None:
                 extremes[...] = scanned.extremes
@@ -333,10 +333,16 @@ class Stream:
         self._check(rows, out)
         rows = kernel.tables.of_steps.below(rows)
         if rows.shape[1]:
+            room, place = None, (0, 0)
+            if kernel.scan.extremes:
+                room = kernel.room_of_extremes(rows.shape[1])
+                place = address(room), room.strides[0] // size
             kernel.function.call(
-                self.lanes, rows.shape[1], *self._of_lanes, address(rows), rows.strides[0] // size, 0, 0, 0, 0,
+                self.lanes, rows.shape[1], *self._of_lanes, address(rows), rows.strides[0] // size, 0, 0, *place,
                 address(out), out.strides[0] // size, out.strides[1] // size,
             )  # fmt: skip
+            if room is not None and extremes is not None:
+                extremes[...] = kernel.extremes_of(room)
         return out
 
     def _check(self, rows: npt.NDArray[Any], out: Array) -> None:
