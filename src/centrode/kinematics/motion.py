@@ -343,17 +343,14 @@ def motion(
     samples : int
         The description's own number, else 361 (with both ends).
     start, stop : float [rad or m, or s], or texts with a unit ("60 deg")
-        Values of the drive; times where the drive is a law of time or there are several drives. One turn of
-        an angle drive by default.
+        Values of the drive; times by a law of time or with several drives. One turn of an angle drive by default.
     at : (n,) values of the drive [rad or m], times [s], or texts with a unit
         Exactly these places instead of evenly spaced ones; the three arguments before it are then not used.
     vary : path -> (batch,) values [m or rad], or texts with a unit
-        Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial
-        position stay.
+        Dimensions that vary between mechanisms ("links.AC.length"); the signs of the initial position stay.
     progress : called with (mechanisms done, mechanisms in all)
     out : array of float64
-        Room for points, angles and displacements with all derivatives: these arrays of the result are views of it. A
-        call after call then writes to memory that is there. A message says how many numbers are needed.
+        Room for points, angles and displacements with all derivatives, which are views of it (docs: results).
 
     Returns
     -------
@@ -364,8 +361,7 @@ def motion(
     Raises
     ------
     InputError
-        The description does not define a motion: drives against mobility, initial position, range. `out` is no
-        array of float64 that is contiguous and can be written to, or has too little room.
+        The description does not define a motion: drives against mobility, initial position, range. No room in `out`.
     NotComputedYet
         It names what this version does not compute.
 
