@@ -57,6 +57,13 @@ class ColumnRows:
         """Write a vector to a place."""
         self.block.line(f"store {self.vector.name} {value}, ptr {place}, align {self.vector.bits // 8}")
 
+    def fetch(self, place: Value, ahead: int) -> None:
+        """Have memory so many bytes behind a place brought near, as it is written to soon."""
+        index = str(8 * ahead // self.vector.bits)
+        self.block.declared["declare void @llvm.prefetch.p0(ptr, i32, i32, i32)"] = None
+        # for a write, kept in all caches, data
+        self.block.line(f"call void @llvm.prefetch.p0(ptr {self.place(place, index)}, i32 1, i32 3, i32 1)")
+
     def everywhere(self, place: Value) -> Value:
         """Vector with one number of memory in every lane."""
         vector, block = self.vector, self.block
@@ -212,6 +219,8 @@ ARGUMENTS = (
     "ptr noalias %outputs", "i64 %output", "i64 %output_row",
 )  # fmt: skip
 """Rows are distances, in numbers, of one row from the next; `output` is that of one output from the next."""
+AHEAD = 512
+"""Bytes by which streams of outputs are fetched before they are written: with many of them that saves waiting."""
 PIECE = 64
 """Lanes that a stage goes through before the next one: what waits in between stays in the nearest cache."""
 
@@ -444,6 +453,8 @@ class _Writer:
         for node in nodes:
             for place in places[node]:
                 self.rows.write(self.operating.value(node), place)
+                if self.shape.lanes_inside:
+                    self.rows.fetch(place, AHEAD)
 
     # extremes over lanes stand on the stack, a vector of them: loops of several stages add to it, and the last vector,
     # which has some lanes twice, changes nothing
