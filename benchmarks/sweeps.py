@@ -5,16 +5,18 @@ from __future__ import annotations
 import functools
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from statistics import median
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 import centrode as ct
+from benchmarks import peer
 from benchmarks.plans import SIX
 from benchmarks.table import Promise, Row
-from benchmarks.timing import best_times, paired_times, ratio, two_threads
+from benchmarks.timing import Times, best_times, paired_times, ratio, two_threads
 from centrode.kinematics.machine_code.batch import solve_many
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import requested_grid, solve
@@ -43,6 +45,16 @@ SECONDS = 3.0
 """In which a billion positions are reduced, of one core: two need half as long."""
 LONG = 4
 """How many times as many mechanisms two threads are given: what is done once should not count."""
+FOUR_BARS, FOUR_BAR_SAMPLES = 4000, 360
+"""Four-bars with every sample kept."""
+LENGTHS = ("links.OA.length", "links.AB.length", "links.DB.length")
+KINDS = ("position", "velocity", "acceleration")
+POINTS = tuple(f"{kind}.{point}" for kind in KINDS for point in "AB")
+EVERY = (*KINDS, "angle", "angular_velocity", "angular_acceleration")
+PEERS, PEER = 200, 60.0
+"""Four-bars that pylinkage is given, and how many times as long as ours its motion should take."""
+AGREE = 1e-9
+"""Greatest difference of positions that counts as the same, in units of the greatest length."""
 BILLION = 1_000_000_000
 MOST_MEMORY = 1e9
 """Bytes that a billion positions may take."""
@@ -63,6 +75,8 @@ def sweeps() -> Iterator[Row]:
     yield _on_the_sphere()
     yield from _with_events()
     yield _everything()
+    yield from _two_points()
+    yield _two_points_in_threads()
     yield _billion()
 
 
@@ -203,35 +217,117 @@ def _written(name: str, paths: tuple[str, ...], point: str) -> Row:
 
 
 def _everything() -> Row:
-    """All that 4000 four-bars have, over writing as many numbers to fresh memory; two points to given room."""
-    name, count, samples = "crank-rocker", 4000, 360
-    mechanism, values = ct.example(name), _values(name, MECHANISMS[name][0], 4000)
-    kinds = ("position", "velocity", "acceleration")
-    every = [*kinds, "angle", "angular_velocity", "angular_acceleration"]
-    points = [f"{kind}.{point}" for kind in kinds for point in "AB"]
-    room = np.empty(count * samples * 2 * len(points))
-    run = functools.partial(ct.sweep, mechanism, values, samples=samples, executor="machine code")
-    numbers = sum(array.size for key, array in run(outputs=every).data_vars.items() if key in every)
+    """All that four-bars have, over writing as many numbers to fresh memory, and to memory that is there."""
+    run, numbers = _kept(EVERY)
+    room = np.empty(numbers)
     times = paired_times(
         {
-            "every": functools.partial(run, outputs=every),
-            "fresh": functools.partial(_fresh, numbers),
-            "points": functools.partial(run, outputs=points),
-            "room": functools.partial(run, outputs=points, out=room),
+            "fresh memory": run,
+            "with out": functools.partial(run, out=room),
+            "bound, fresh": functools.partial(_fresh, numbers),
+            "bound, there": functools.partial(room.fill, 1.0),
         },
         ROUNDS,
     )
-    each = 1e9 / (count * samples)
-    over = ratio(times, "every", "fresh")
+    over = ratio(times, "fresh memory", "bound, fresh")
     return Row(
-        f"{name}, everything of {count}",
+        f"crank-rocker, everything of {FOUR_BARS}",
         {
-            "/ fresh memory": over,
-            "ns, two points": median(times["points"]) * each,
-            "ns, with out": median(times["room"]) * each,
+            **_each(times),
+            "/ fresh": over,
+            "out / there": ratio(times, "with out", "bound, there"),
         },
         promises=[Promise("sweep, everything kept, over fresh memory", over, 1.3)],
     )
+
+
+def _two_points() -> Iterator[Row]:
+    """Two moving points with derivatives of four-bars that differ in all lengths, and a peer's compiled motion."""
+    run, numbers = _kept(POINTS)
+    room = np.empty(numbers)
+    tasks: dict[str, Callable[[], object]] = {
+        "fresh memory": run,
+        "with out": functools.partial(run, out=room),
+        "bound, fresh": functools.partial(_fresh, numbers),
+        "bound, there": functools.partial(room.fill, 1.0),
+    }
+    subject = f"crank-rocker, two points of {FOUR_BARS}"
+    if not peer.PRESENT:
+        yield Row(subject, _each(paired_times(tasks, ROUNDS)), f"pylinkage omitted: {peer.MISSING}")
+        return
+    peers, difference = _peers(run())
+    if difference > AGREE:
+        yield Row(subject, note=f"positions differ by {difference:.1e}: not compared")
+        return
+    times = paired_times({**tasks, "pylinkage": lambda: peer.run_batch(peers, FOUR_BAR_SAMPLES)}, ROUNDS)
+    share = FOUR_BARS / len(peers)
+    over = {name: ratio(times, "pylinkage", name) * share for name in tasks}
+    nanoseconds = {**_each(times), "pylinkage": _each(times)["pylinkage"] * share}
+    yield Row(subject, nanoseconds, f"ns a position; positions agree to {difference:.0e}")
+    yield Row(
+        "crank-rocker, two points, pylinkage /",
+        over,
+        "the last two: writing as many numbers and nothing else",
+        promises=[
+            Promise(f"sweep, pylinkage / two points kept, {name}", over[name], at_least=PEER)
+            for name in ("fresh memory", "with out")
+        ],
+    )
+
+
+def _two_points_in_threads() -> Row:
+    """Two moving points by one thread over two, by the clock, to memory that is there."""
+    run, numbers = _kept(POINTS, LONG * FOUR_BARS)
+    room = np.empty(numbers)
+    halves = [_kept(POINTS, LONG * FOUR_BARS // 2)[0] for _half in (0, 1)]
+    threads = two_threads(
+        lambda count: run(threads=count, out=room),
+        [functools.partial(half, out=part) for half, part in zip(halves, np.split(room, 2), strict=True)],
+        ROUNDS,
+    )
+    return Row(
+        "crank-rocker, two points, two threads", {"1 thread / 2": threads.gain, "possible": threads.possible}
+    )
+
+
+def _kept(outputs: Sequence[str], count: int = FOUR_BARS) -> tuple[Callable[..., xr.Dataset], int]:
+    """A sweep of four-bars, called with what else it takes, and how many numbers it keeps of samples."""
+    run = functools.partial(
+        ct.sweep, ct.example("crank-rocker"), _values("crank-rocker", LENGTHS, count), list(outputs),
+        FOUR_BAR_SAMPLES, executor="machine code",
+    )  # fmt: skip
+    found = run()
+    return run, sum(
+        array.size
+        for array in found.data_vars.values()
+        if array.dtype == np.float64 and "sample" in array.dims
+    )
+
+
+def _each(times: Times) -> dict[str, float]:
+    """Medians [ns] of a position."""
+    return {name: median(x) / (FOUR_BARS * FOUR_BAR_SAMPLES) * 1e9 for name, x in times.items()}
+
+
+def _peers(found: xr.Dataset) -> tuple[list[peer.Peer], float]:
+    """The first of these four-bars in pylinkage, and how far its positions are from those found, over the greatest."""
+    prepared = ready(ct.example("crank-rocker"))
+    values = {path: found[path].values[:PEERS] for path in LENGTHS}
+    numbers = dimensions_of(prepared.mechanism, values, np)
+    moving = prepared.mechanism.moving_points
+    positions = np.stack([found[f"position.{name}"].values[:PEERS] for name in moving], axis=2)
+    peers = []
+    for lane in range(PEERS):
+        own = numbers.map_numbers(functools.partial(_number_of, lane))
+        places = {name: (float(x), float(y)) for name, (x, y) in zip(moving, positions[lane, 0], strict=True)}
+        peers.append(peer.build(prepared, own, places, FOUR_BAR_SAMPLES))
+    runs = peer.run_batch(peers, FOUR_BAR_SAMPLES)
+    theirs = np.stack([run[0][:, one.columns] for run, one in zip(runs, peers, strict=True)])
+    return peers, float(np.abs(theirs - positions).max() / np.abs(positions).max())
+
+
+def _number_of(lane: int, x: float | Array) -> float:
+    return x if isinstance(x, float) else float(x[lane])
 
 
 def _fresh(numbers: int) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.numerics import machine_code
-from centrode.sweeps.machine import Slopes, States
+from centrode.sweeps.folds import Slopes, States
 from centrode.sweeps.sweep import read_sweep
 from drives import five_bar
 from mechanisms import EPS, four_bar

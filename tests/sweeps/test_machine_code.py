@@ -14,7 +14,7 @@ import centrode as ct
 from centrode.kinematics.hinge_angles import HINGE_ANGLES
 from centrode.kinematics.machine_code.event_screening import EventScreening
 from centrode.kinematics.preparation import ready
-from centrode.numerics import machine_code
+from centrode.numerics import machine_code, rooms
 from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton
 from centrode.sweeps import designs
@@ -325,6 +325,28 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     calls: list[int] = []
     xr.testing.assert_identical(whole, computed(progress=lambda done, _of: calls.append(done)))
     assert len(calls) > 3, "one chunk proves nothing"
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("outputs", [["position", "angle", "velocity"], ["position.D", "velocity.O"]])
+def test_numbers_of_fixed_points_are_not_written(
+    outputs: list[str], threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They stand in blank memory, in used memory and in a result by arrays alike; with what is open they are absent."""
+    mechanism, vary = open_and_whole()
+
+    def computed(**more: Any) -> xr.Dataset:
+        return ct.sweep(mechanism, vary, outputs, 37, **more)
+
+    expected = computed(executor=ARRAYS)
+    room = np.full(sum(array.size for array in expected.data_vars.values()), np.pi)
+    used = computed(executor=MACHINE, out=room, threads=threads)
+    monkeypatch.setattr(rooms, "BLANK", 0)
+    blank = computed(executor=MACHINE, threads=threads)
+    xr.testing.assert_identical(used, blank)
+    assert np.isnan(blank["position" if "position" in blank else outputs[0]]).any()
+    for name, array in expected.data_vars.items():
+        np.testing.assert_allclose(blank[name], array, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("threads", [0, 1000, True, "two", 1.0])

@@ -13,11 +13,13 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from centrode.errors import STATUSES_OF_MOTION, InputError
+from centrode.errors import STATUSES_OF_MOTION, InputError, Status
 from centrode.kinematics.hinge_angles import HINGE_ANGLES, hinge_rates, moving_hinges, spherical_coordinates
 from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.plan_evaluation import layout_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
+from centrode.kinematics.samples import ORDERS
 from centrode.kinematics.solve import Progress, Solved, grid_of, solve
 from centrode.locale import _, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -26,6 +28,7 @@ from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.rooms import GivenRoom, blank_like, check_room
 from centrode.quantities import QUANTITIES
 from centrode.structure.assur import name_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
@@ -41,14 +44,17 @@ BATCH = "mechanism"
 EVENT_KINDS = ("limit", "change point")
 
 
-def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Dataset:
+def dataset_of(
+    solved: Solved, vary: Mapping[str, Any] | None = None, room: GivenRoom | None = None
+) -> xr.Dataset:
     """The labelled result of a motion; a batch has the dimension `mechanism` in front.
 
+    Derivatives by time are fresh arrays, or views of given room.
     What it says in words is English, whatever language messages are in, so that the same motion gives the same file.
     """
     batch = bool(vary)
     front = (BATCH,) if batch else ()
-    variables = _in_time(solved, front) | spherical_variables(solved, front)
+    variables = _in_time(solved, front, room) | spherical_variables(solved, front)
     if not solved.ready.kinematics.path.by_time:
         variables |= _coefficients(solved, front)
     variables |= judgements_of(solved, front) | _contacts(solved, front)
@@ -80,13 +86,14 @@ def _lanes(array: Any, batch: tuple[str, ...]) -> Any:
     return array if batch else array[0]
 
 
-def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+def _in_time(solved: Solved, front: tuple[str, ...], room: GivenRoom | None) -> dict[str, Variable]:
     """Values and derivatives by time, by the chain rule from those by the path's parameter."""
     span, unit = solved.span, _length_unit(solved)
     variables: dict[str, Variable] = {}
     for kind in kinds_of(solved):
         for order in range(3):
-            values = by_time(kind.orders, order, span)
+            still = _still_points(solved) if kind.dimensions[0] == "point" and order > 0 else 0
+            values = by_time(kind.orders, order, span, room, still)
             if values is None:
                 continue
             name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
@@ -94,14 +101,34 @@ def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     return variables
 
 
-def by_time(orders: Orders, order: int, span: SampleGrid) -> Array | None:
-    """Values (order 0), or first or second derivatives by time (lanes, samples, ...); None where there are none."""
+def _still_points(solved: Solved) -> int:
+    """Points in front of all others whose derivatives are zero at every sample."""
+    # the frame's points are absent where the motion is; and with a drive that runs backwards zeros are negative
+    moves = (solved.status == Status.OPEN).any() or not (solved.span.rate > 0.0).all()
+    return 0 if moves else solved.all_points.shape[3] - solved.points.shape[3]
+
+
+def by_time(
+    orders: Orders, order: int, span: SampleGrid, room: GivenRoom | None = None, still: int = 0
+) -> Array | None:
+    """Values (order 0), or first or second derivatives by time (lanes, samples, ...); None where there are none.
+
+    `still` is the number of points in front that do not move: of many samples their zeros are not written.
+    """
     by_parameter = orders[order]
     if order == 0 or by_parameter is None:
         return by_parameter
     along = (slice(None), *[None] * (by_parameter.ndim - 2))  # samples, then what stands behind them
     # the chain rule: d/dt = rate d/dq, and second derivatives have rate^2 and the second rate
-    values = by_parameter * (span.rate if order == 1 else span.rate**2)[along]
+    factor = (span.rate if order == 1 else span.rate**2)[along]
+    blank = blank_like(by_parameter) if room is None and still else None
+    if blank is not None:
+        values = blank
+        np.multiply(by_parameter[:, :, still:], factor, out=values[:, :, still:])
+    elif room is None:
+        values = by_parameter * factor
+    else:
+        values = np.multiply(by_parameter, factor, out=room.take_like(by_parameter))
     if order == 2 and span.accelerates:
         values += orders[1] * span.second_rate[along]
     return values
@@ -307,6 +334,7 @@ def motion(
     at: npt.ArrayLike | None = None,
     vary: Values | None = None,
     progress: Progress | None = None,
+    out: npt.NDArray[np.float64] | None = None,
 ) -> xr.Dataset:
     """Positions, velocities and accelerations of a mechanism, at evenly spaced samples or at given places.
 
@@ -315,14 +343,14 @@ def motion(
     samples : int
         The description's own number, else 361 (with both ends).
     start, stop : float [rad or m, or s], or texts with a unit ("60 deg")
-        Values of the drive; times where the drive is a law of time or there are several drives. One turn of
-        an angle drive by default.
+        Values of the drive; times by a law of time or with several drives. One turn of an angle drive by default.
     at : (n,) values of the drive [rad or m], times [s], or texts with a unit
         Exactly these places instead of evenly spaced ones; the three arguments before it are then not used.
     vary : path -> (batch,) values [m or rad], or texts with a unit
-        Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial
-        position stay.
+        Dimensions that vary between mechanisms ("links.AC.length"); the signs of the initial position stay.
     progress : called with (mechanisms done, mechanisms in all)
+    out : array of float64
+        Room for points, angles and displacements with all derivatives, which are views of it (docs: results).
 
     Returns
     -------
@@ -333,7 +361,7 @@ def motion(
     Raises
     ------
     InputError
-        The description does not define a motion: drives against mobility, initial position, range.
+        The description does not define a motion: drives against mobility, initial position, range. No room in `out`.
     NotComputedYet
         It names what this version does not compute.
 
@@ -351,7 +379,23 @@ def motion(
     vary = _varied_numbers(mechanism, vary)
     numbers, lanes = _batch(mechanism, vary)
     span = grid_of(prepared, samples, start, stop, at)
-    return dataset_of(_solve_range(prepared, span, numbers, lanes, progress), vary)
+    if out is None:
+        return dataset_of(_solve_range(prepared, span, numbers, lanes, progress), vary)
+    check_room(out, lanes * len(span.parameter) * _numbers_of_position(prepared))
+    room = GivenRoom(out)
+    return dataset_of(_solve_range(prepared, span, numbers, lanes, progress, room), vary, room)
+
+
+def _numbers_of_position(prepared: Ready) -> int:
+    """Numbers that the arrays of a motion, and the way to them, take of one sample at most."""
+    layout, mechanism = layout_of(prepared.kinematics), prepared.mechanism
+    points = layout.axes * (len(prepared.structure.dimensions.frame) + len(layout.points))
+    # on the sphere angular velocities are vectors
+    turning = 3 * len(layout.links) if mechanism.space == "sphere" else 0
+    solved = ORDERS * (points - layout.axes * len(layout.points) + layout.width + len(layout.angles))
+    by_time = points + len(layout.angles) + turning + len(layout.guides)
+    # contact points have two coordinates; the last two are the residual and the slack of radicands
+    return solved + 2 * by_time + 2 * turning + 2 * len(mechanism.rolling) + 2
 
 
 def initial_place(mechanism: Mechanism) -> float:
@@ -370,14 +414,19 @@ def default_instants(mechanism: Mechanism) -> tuple[float, ...]:
 
 
 def _solve_range(
-    ready: Ready, span: SampleGrid, numbers: Dimensions | None, lanes: int, progress: Progress | None
+    ready: Ready,
+    span: SampleGrid,
+    numbers: Dimensions | None,
+    lanes: int,
+    progress: Progress | None,
+    room: GivenRoom | None = None,
 ) -> Solved:
     if numbers is None:
-        return solve(ready, span, progress=progress)
+        return solve(ready, span, progress=progress, given=room)
     # angles at hinges take their turns from the search of the arrays
     if ready.mechanism.space == "sphere" and moving_hinges(ready.mechanism):
-        return solve(ready, span, numbers, lanes, progress)
-    solved: Solved = _many().solve_many(ready, span, numbers, lanes, progress)
+        return solve(ready, span, numbers, lanes, progress, room)
+    solved: Solved = _many().solve_many(ready, span, numbers, lanes, progress, room)
     return solved
 
 

@@ -44,6 +44,7 @@ from centrode.kinematics.quick_turns import QuickTurns
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
+from centrode.numerics.rooms import GivenRoom
 from centrode.numerics.rounding import SAFETY
 from centrode.structure.constraints import Constraint, Contact, PointInLink, Positions, contact_point
 from centrode.structure.dimensions import Dimensions
@@ -235,14 +236,22 @@ class ResultArrays:
     status: npt.NDArray[np.int8]
 
     @classmethod
-    def of(cls, layout: PlanLayout, numbers: Dimensions, lanes: int, samples: int) -> ResultArrays:
+    def of(
+        cls,
+        layout: PlanLayout,
+        numbers: Dimensions,
+        lanes: int,
+        samples: int,
+        given: GivenRoom | None = None,
+    ) -> ResultArrays:
         """The room for mechanisms with as many points of the frame as these dimensions have."""
         frame = layout.axes * len(numbers.frame)
+        room = GivenRoom(None) if given is None else given
         return cls(
             layout,
             frame,
-            np.empty((ORDERS, frame + layout.width, lanes, samples)),
-            np.empty((ORDERS, len(layout.angles), lanes, samples)),
+            room.take((ORDERS, frame + layout.width, lanes, samples)),
+            room.take((ORDERS, len(layout.angles), lanes, samples)),
             np.zeros((lanes, samples), dtype=np.int8),
         )
 

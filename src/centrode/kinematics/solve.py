@@ -29,6 +29,7 @@ from centrode.kinematics.samples import (
 from centrode.locale import _
 from centrode.model.motion_parameter import MotionVariable
 from centrode.model.settings import REACHABLE
+from centrode.numerics.rooms import GivenRoom
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -127,15 +128,16 @@ def solve(
     numbers: Dimensions | None = None,
     lanes: int = 1,
     progress: Progress | None = None,
+    given: GivenRoom | None = None,
 ) -> Solved:
-    """Motion at the samples of a span."""
+    """Motion at the samples of a span; its arrays are fresh, or views of given room."""
     ready = fit_for(ready, span)
     kinematics = ready.kinematics if numbers is None else of_batch(ready.kinematics, numbers)
     samples = len(span.parameter)
     layout = layout_of(kinematics)
     check_size(layout, lanes, samples)
     size = lanes_at_once(kinematics, span)
-    room = ResultArrays.of(layout, kinematics.numbers, lanes, samples)
+    room = ResultArrays.of(layout, kinematics.numbers, lanes, samples, given)
     parts = []
     for first in range(0, lanes, size):
         rows = slice(first, min(first + size, lanes))

@@ -15,7 +15,7 @@ from centrode.numerics.machine_code import PRESENT
 from centrode.numerics.scans import Array, Scan, Scanned, run_on_arrays
 
 Run: TypeAlias = Callable[..., Scanned]
-Take: TypeAlias = Callable[[npt.ArrayLike | None, Array], Array]
+Take: TypeAlias = Callable[..., Array]
 AUTO, ARRAYS, MACHINE_CODE = "auto", "arrays", "machine code"
 
 # llvmlite is heavy and may be missing: it is imported when the first kernel is requested
@@ -62,6 +62,7 @@ def streamer(
     """A function (inputs, out) that takes a scan's steps part by part, its lanes the same; `out` has the steps' room.
 
     `parameters` are (parameters, lanes); inputs (inputs, steps) or none; out (outputs, steps, lanes), returned again.
+    Of a scan with extremes over lanes they are written to a third array, (extremes, steps).
     `hasty` is that of `kernel_of`.
 
     Raises
@@ -72,8 +73,11 @@ def streamer(
     lanes = np.array(parameters, np.float64)  # a copy: the caller may change its own array afterwards
     if choose_executor(executor) == ARRAYS:
 
-        def take(inputs: npt.ArrayLike | None, out: Array) -> Array:
-            return run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1]).outputs
+        def take(inputs: npt.ArrayLike | None, out: Array, extremes: Array | None = None) -> Array:
+            scanned = run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1])
+            if extremes is not None:
+                extremes[...] = scanned.extremes
+            return scanned.outputs
 
         return take
     kernel = _kernels().kernel_of(scan, lanes_inside=True, hasty=hasty)

@@ -25,8 +25,16 @@ from centrode.numerics.operations import CONSTANT, VARIABLE
 Array: TypeAlias = npt.NDArray[Any]
 LINE = 64
 """Bytes of a line of the cache, and of the widest vector: one that begins elsewhere is written twice."""
-NEXT = "next "
-"""Before the name of a state: its value after the step, in the scan's graph."""
+NEXT, EXTREME = "next ", "extreme "
+"""Before the name of a state, its value after the step; before that of an extreme, its number in a lane."""
+
+
+class LaneExtreme(NamedTuple):
+    """The greatest ("maximum") or least ("minimum") number of all lanes of a step, or `start`; NaN where one is."""
+
+    operation: str
+    value: Node
+    start: float
 
 
 @dataclass(frozen=True)
@@ -39,12 +47,16 @@ class Scan:
     inputs : names of numbers of which every step has its own, the same in all lanes
     outputs : name -> node; written at every step for every lane
     state : name -> node; what is handed to the next step under this name
+    extremes : name -> extreme over all lanes, one number a step; only without a state
+    places : rows of `out` in which the outputs stand; one behind the other where there are none
     """
 
     parameters: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: Mapping[str, Node] = field(default_factory=dict)
     state: Mapping[str, Node] = field(default_factory=dict)
+    extremes: Mapping[str, LaneExtreme] = field(default_factory=dict)
+    places: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         names = [*self.parameters, *self.inputs, *self.state]
@@ -53,21 +65,41 @@ class Scan:
         unknown = [name for name in self.graph.variables if name not in names]
         if unknown:
             raise ValueError(f"neither parameter, input nor state: {', '.join(unknown)}")
+        if self.extremes and self.state:
+            raise ValueError("a scan with a state has no extremes over lanes")
+        if self.places and len(self.places) != len(self.outputs):
+            raise ValueError(f"{len(self.outputs)} outputs have {len(self.places)} places")
 
     @cached_property
     def graph(self) -> Graph:
-        """Outputs and next states together."""
-        return Graph({**self.outputs, **{NEXT + name: node for name, node in self.state.items()}})
+        """Outputs, next states and what extremes are taken of, together."""
+        states = {NEXT + name: node for name, node in self.state.items()}
+        return Graph({**self.outputs, **states, **{EXTREME + x: y.value for x, y in self.extremes.items()}})
+
+    @cached_property
+    def rows(self) -> tuple[int, ...]:
+        """The row of `out` for each output."""
+        return self.places or tuple(range(len(self.outputs)))
+
+    @property
+    def height(self) -> int:
+        """Rows that `out` has at least."""
+        return max(self.rows, default=-1) + 1
 
     @cached_property
     def key(self) -> tuple[object, ...]:
         """Key that distinguishes the scan from all others, equal in every process."""
-        return self.parameters, self.inputs, tuple(self.state), self.graph.key
+        extremes = tuple((name, x.operation, x.start) for name, x in self.extremes.items())
+        return self.parameters, self.inputs, tuple(self.state), extremes, self.places, self.graph.key
 
     def with_graph(self, graph: Graph, parameters: tuple[str, ...], inputs: tuple[str, ...]) -> Scan:
         """The scan with other expressions under the same names."""
         outputs = {name: graph.outputs[name] for name in self.outputs}
-        return Scan(parameters, inputs, outputs, {name: graph.outputs[NEXT + name] for name in self.state})
+        state = {name: graph.outputs[NEXT + name] for name in self.state}
+        extremes = {
+            name: x._replace(value=graph.outputs[EXTREME + name]) for name, x in self.extremes.items()
+        }
+        return Scan(parameters, inputs, outputs, state, extremes, self.places)
 
 
 class Scanned(NamedTuple):
@@ -77,10 +109,12 @@ class Scanned(NamedTuple):
     ----------
     outputs : (outputs, steps, lanes)
     state : (states, lanes), after the last step
+    extremes : (extremes, steps), over the lanes
     """
 
     outputs: Array
     state: Array
+    extremes: Array = np.empty((0, 0))
 
 
 @dataclass(frozen=True)
@@ -119,7 +153,8 @@ def call_of(
     parameters : (parameters, lanes), or (parameters, 1) for all lanes; may be left out if there are none
     inputs : (inputs, steps); may be left out if there are none
     state : (states, lanes) or (states, 1), before the first step; is left as it is
-    out : (outputs, steps, lanes), written to if given; its last axis has to be contiguous
+    out : (outputs, steps, lanes), written to if given; its last axis has to be contiguous; of a scan with places it
+        has a row for each of them
     steps : how many, if there are no inputs to tell
     """
     of_lanes, of_steps = _rows(scan.parameters, parameters, number), _rows(scan.inputs, inputs, number)
@@ -128,12 +163,21 @@ def call_of(
     count = _length("steps", [of_steps], 1 if steps is None else steps)
     if steps is not None and count != steps:
         raise ValueError(f"inputs have {count} steps, asked are {steps}")
-    shape = (len(scan.outputs), count, lanes)
     if out is None:
-        out = np.empty(shape, number)
-    if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
-        raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
+        out = np.empty((scan.height, count, lanes), number)
+    check_room(scan, out, count, lanes, number)
     return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
+
+
+def check_room(scan: Scan, out: Array, steps: int, lanes: int, number: npt.DTypeLike) -> None:
+    """Raise ValueError where outputs cannot be written to an array."""
+    # rows may be left over where places say so, or where nothing is written
+    sparse = bool(scan.places) or not scan.outputs
+    fits = out.ndim == 3 and (len(out) == scan.height or (len(out) > scan.height and sparse))
+    contiguous = not out.size or out.strides[-1] == out.itemsize
+    if not fits or out.shape[1:] != (steps, lanes) or out.dtype != number or not contiguous:
+        shape = (scan.height, steps, lanes)
+        raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
 
 
 def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:
@@ -318,6 +362,9 @@ FUNCTIONS: Mapping[str, Callable[..., Number]] = {
     "where": np.where,
 }
 
+EXTREMES: Mapping[str, np.ufunc] = {"minimum": np.minimum, "maximum": np.maximum}
+"""What is taken of all lanes."""
+
 
 def evaluate(
     graph: Graph, values: Mapping[str, Number], number: npt.DTypeLike = np.float64
@@ -356,12 +403,11 @@ def run_on_arrays(
     """Run a scan on NumPy arrays; shapes as in `call_of`."""
     call = call_of(scan, parameters, inputs, state, out, steps, number)
     if not scan.state:
-        _all_steps(scan, call, number)
-        return Scanned(call.outputs, call.state)
+        return Scanned(call.outputs, call.state, _all_steps(scan, call, number))
     rows = call.state
     for k in range(call.steps):
         results = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
-        for i, name in enumerate(scan.outputs):
+        for i, name in zip(scan.rows, scan.outputs, strict=True):
             call.outputs[i, k] = results[name]
         rows = np.array(
             [np.broadcast_to(results[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
@@ -369,15 +415,21 @@ def run_on_arrays(
     return Scanned(call.outputs, rows)
 
 
-def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> None:
-    """Steps that do not hang on each other, as many at a time as the cache holds."""
+def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> Array:
+    """Steps that do not hang on each other, as many at a time as the cache holds; returns extremes over lanes."""
+    extremes = np.empty((len(scan.extremes), call.steps), number)
     # as many steps as fill `CHUNK` numbers: one step of many lanes, or many of few
     size = max(1, CHUNK // max(1, call.lanes))
     for first in range(0, call.steps, size):
         some = slice(first, first + size)
         results = evaluate(scan.graph, _values(scan, call, some, call.state), number)
-        for i, name in enumerate(scan.outputs):
+        for i, name in zip(scan.rows, scan.outputs, strict=True):
             call.outputs[i, some] = results[name]
+        for i, (name, extreme) in enumerate(scan.extremes.items()):
+            shape = call.outputs[:, some].shape[1:]
+            of_lanes = np.broadcast_to(results[EXTREME + name], shape)
+            extremes[i, some] = EXTREMES[extreme.operation].reduce(of_lanes, axis=1, initial=extreme.start)
+    return extremes
 
 
 def _values(scan: Scan, call: Call, steps: slice, state: Array) -> dict[str, Array]:

@@ -42,292 +42,25 @@ from centrode.kinematics.samples import CLOSED
 from centrode.locale import _, mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
-from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.graphs import Graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.scans import LINE, Reduction, Scan, evaluate, room_of, together
+from centrode.numerics.rooms import check_room, fresh_room, is_blank
+from centrode.numerics.scans import LINE, LaneExtreme, Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.gearing import Straight
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import NUMBER, ArraysExecutor, SweepTask, fill_columns
 from centrode.sweeps.designs import Rows
+from centrode.sweeps.folds import Folds, Known, Slopes
 from centrode.sweeps.outputs import OutputFormula, SweepColumn, table_variable
-
-# Folds of traced formulas: what is reduced over samples becomes a state of a scan, and then a number of the
-# mechanism.
-#
-# A fold of what another fold gave (`max(abs(x - mean(x)))`) needs that one first: samples are passed once for
-# each depth of folds.
-
-
-@dataclass(frozen=True)
-class Fold:
-    """A fold: the name of its result, what is folded, and how often samples have been passed before."""
-
-    name: str
-    kind: str
-    value: Node
-    depth: int
-
-    @property
-    def state(self) -> Reduction:
-        """The fold as a state that a scan over samples carries on; NaN at a sample makes the result NaN."""
-        m, so_far = EXPRESSIONS, variable(self.name)
-        if self.kind == "sum":
-            return Reduction({self.name: as_node(so_far + self.value)}, {self.name: 0.0})
-        # `min` and `max` of nodes let NaN win, as folds over arrays do
-        extreme, start = (m.min, math.inf) if self.kind == "min" else (m.max, -math.inf)
-        return Reduction({self.name: as_node(extreme(self.value, so_far))}, {self.name: start})
-
-
-NEUTRAL = {"sum": 0.0, "min": math.inf, "max": -math.inf}
-"""What changes nothing in a fold."""
-
-
-@dataclass(frozen=True)
-class Known:
-    """The samples at which the tables of a formula have numbers: a variable that is 1 there, and how many they are."""
-
-    name: str
-    count: int
-
-    def only(self, value: Operand, otherwise: float) -> Operand:
-        """A value there, elsewhere another one."""
-        return EXPRESSIONS.where(EXPRESSIONS.equal(variable(self.name), 1.0), value, otherwise)
-
-
-@dataclass
-class Folds(Expressions):
-    """Namespace that traces formulas of so many samples; the folds they ask for are listed in `found`."""
-
-    samples: int
-    found: dict[tuple[str, bytes], Fold] = field(default_factory=dict)
-
-    def fold(self, name: str, value: Operand, known: Known | None = None) -> Operand:
-        # range and mean are made of simpler folds, which other formulas may share
-        """The number that a fold of FOLDS gives; of some samples alone where `known` says which."""
-        if name == "range":
-            return self.fold("max", value, known) - self.fold("min", value, known)
-        if name == "mean":
-            count = self.samples if known is None else known.count
-            return self.fold("sum", value, known) / float(count)
-        node = as_node(value if known is None else known.only(value, NEUTRAL[name]))
-        key = name, node.key
-        if key not in self.found:
-            self.found[key] = Fold(f"fold {len(self.found)}", name, node, self._depth(node))
-        return variable(self.found[key].name)
-
-    def within(self, known: Known | None) -> Expressions:
-        """The namespace whose folds take the known samples alone."""
-        return self if known is None else FoldsWithin(self, known)
-
-    def at_depth(self, depth: int) -> Sequence[Fold]:
-        """The folds that need so many passes before their own."""
-        return [fold for fold in self.found.values() if fold.depth == depth]
-
-    @property
-    def passes(self) -> int:
-        """Number of passes over the samples, at least one."""
-        return 1 + max((fold.depth for fold in self.found.values()), default=0)
-
-    def _depth(self, node: Node) -> int:
-        used = set(Graph({"": node}).variables)
-        # a fold inside a fold has to be finished first: so many passes lie before this one
-        return 1 + max((fold.depth for fold in self.found.values() if fold.name in used), default=-1)
-
-
-@dataclass
-class FoldsWithin(Expressions):
-    """Namespace whose folds take some samples alone; what they find is listed with all others."""
-
-    folds: Folds
-    known: Known
-
-    def fold(self, name: str, value: Operand) -> Operand:
-        """The number that a fold of FOLDS gives."""
-        return self.folds.fold(name, value, self.known)
-
-
-# Derivatives of what is requested by the values that vary, as expressions: reverse mode through samples and
-# folds.
-
-Through: TypeAlias = Sequence[tuple[Node, Operand]]
-"""The variables that a value moves, each with its derivative by that value."""
-
-m = EXPRESSIONS
-
-
-@dataclass(frozen=True)
-class States:
-    """Derivatives of a fold.
-
-    Attributes
-    ----------
-    parts : state -> what is folded into it: a derivative of the formula at a sample
-    at_end : path -> derivative by the value there, from the states when all samples are passed
-    """
-
-    parts: Mapping[str, Node]
-    at_end: Mapping[str, Node]
-
-
-@dataclass(frozen=True)
-class Slopes:
-    """Derivatives by values at paths.
-
-    Attributes
-    ----------
-    through : path -> the variables of the plan that it moves
-    standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
-    folds : whose results have derivatives of their own
-    moving : variables that differ from sample to sample
-    known : fold -> its states, once they have been requested
-    """
-
-    through: Mapping[str, Through]
-    standing: Mapping[str, Node]
-    folds: Folds
-    moving: frozenset[str]
-    known: dict[str, States] = field(default_factory=dict)
-
-    @classmethod
-    def of(
-        cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds, moving: frozenset[str]
-    ) -> Slopes:
-        """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
-        through = {path: _through(path, varied) for path in paths}
-        return cls(through, traced.standing, folds, moving)
-
-    def of_node(self, node: Node) -> dict[str, Node]:
-        # what jumps, or was found by iteration, is put aside as a variable: it has no derivative
-        """Path -> derivative of an expression, that of the folds it uses included."""
-        still = self._without_standing(node)
-        used = frozenset(Graph({"": still}).variables)
-        names = [fold.name for fold in self.folds.found.values() if fold.name in used]
-        moved = list(dict.fromkeys(x for path in self.through.values() for x, _factor in path))
-        parts = gradient(still, [*moved, *map(variable, names)])
-        partial = dict(zip(moved, parts, strict=False))
-        of_folds = dict(zip(names, parts[len(moved) :], strict=True))
-        slopes: dict[str, Operand] = {}
-        for path, through in self.through.items():
-            total: Operand = 0.0
-            for x, factor in through:
-                total = total + partial[x] * factor
-            for name, part in of_folds.items():
-                # the chain through a fold's result: its own derivatives are summed up while the samples are
-                # passed
-                total = total + part * self.states_of(name).at_end[path]
-            slopes[path] = total
-        return dict(Graph.of(slopes).substitute(self.standing).outputs)
-
-    def of_fold(self, fold: Fold) -> Reduction:
-        """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
-        so_far = variable(fold.name)
-        # strictly better, so that of equal values the first sample's derivatives stay
-        better = m.less(fold.value, so_far) if fold.kind == "min" else m.less(so_far, fold.value)
-        state = {}
-        for label, part in self.states_of(fold.name).parts.items():
-            more = variable(label) + part if fold.kind == "sum" else m.where(better, part, variable(label))
-            state[label] = as_node(more)
-        return Reduction(state, dict.fromkeys(state, 0.0))
-
-    def states_of(self, name: str) -> States:
-        """States by which a scan carries the derivatives of a fold of this name: those with less work at a sample."""
-        if name not in self.known:
-            fold = next(fold for fold in self.folds.found.values() if fold.name == name)
-            ways = [self._by_paths(fold)]
-            if (
-                fold.kind == "sum"
-            ):  # an extreme selects for each state, and its two ends have the chain in common
-                ways.append(self._by_parts(fold))
-            self.known[name] = min(ways, key=self._work)
-        return self.known[name]
-
-    def _by_paths(self, fold: Fold) -> States:
-        """A state for each path."""
-        slopes = self.of_node(fold.value)
-        labels = {path: derivative_name(fold.name, path) for path in slopes}
-        parts = {labels[path]: slope for path, slope in slopes.items()}
-        return States(parts, {path: variable(label) for path, label in labels.items()})
-
-    def _by_parts(self, fold: Fold) -> States:
-        """A state for each part of the formula that stands while the samples are passed.
-
-        To fold is linear in derivatives. So the chain from these parts down to the values at paths is gone through
-        once a mechanism, at the end.
-        """
-        still = self._without_standing(fold.value)
-        # what differs from sample to sample, and what jumps, cannot stand still
-        jumping = self.moving | self.standing.keys()
-        variables = [x for x in Graph({"": still}).variables if x not in jumping]
-        parts, rest = split_graph(Graph({"": still}), variables, f"{fold.name} part")
-        standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
-        factors = {x: self.of_node(node) for x, node in standing.items()}
-        # parts that no value moves need no state
-        moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
-        slopes = gradient(rest.outputs[""], [variable(x) for x in moved])
-        labels = {x: f"{fold.name} through {x}" for x in moved}
-        graph = Graph.of(dict(zip(labels.values(), slopes, strict=True)))
-        ends: dict[str, Operand] = dict.fromkeys(self.through, 0.0)
-        for x in moved:
-            for path, factor in factors[x].items():
-                ends[path] = (
-                    ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
-                )
-        # the parts are put back as expressions: states are folded from variables of the plan alone
-        outputs = graph.substitute({**self.standing, **parts.outputs}).outputs
-        return States(outputs, {path: as_node(end) for path, end in ends.items()})
-
-    def _without_standing(self, node: Node) -> Node:
-        standing = {x: variable(name) for name, x in self.standing.items()}
-        return rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
-
-    def _work(self, states: States) -> int:
-        """Operations that are carried out at every sample."""
-        moving = set()
-        for node in Graph(states.parts).order:
-            own = node.operation == VARIABLE and node.detail in self.moving
-            if own or any(x in moving for x in node.arguments):
-                moving.add(node)
-        return len(moving) + len(states.parts)
-
-
-def _is_something(factor: Node) -> bool:
-    return factor.operation != CONSTANT or factor.detail != 0.0
-
-
-def derivative_name(name: str, path: str) -> str:
-    """Name of the derivative of a fold by the value at a path."""
-    return f"{name} by {path}"
-
-
-def _of_a_mass(path: str) -> bool:
-    """Whether a path is that of a mass, which no dimension of the plan is."""
-    room, *_name, last = path.split(".")
-    return room == "links" and (last in ("mass", "inertia", "radius", "centre_radius") or ".centre." in path)
-
-
-def _through(path: str, varied: Varied) -> Through:
-    """The variables that the value at a path moves: itself, or cosine and sine of a direction."""
-    if path in varied.names or _of_a_mass(path):
-        return [(variable(path), 1.0)]
-    directions = {f"guides.{guide}.direction": x for guide, x in varied.numbers.direction.items()}
-    for wheel, track in varied.numbers.gearing.track.items():
-        if isinstance(track, Straight):
-            directions[f"rolling.{wheel}.along.direction"] = track.direction
-    if path not in directions or not all(isinstance(x, Node) for x in directions[path]):
-        raise Untraceable(mark("derivatives by numbers that move nothing"))
-    cosine, sine = directions[path]
-    # d cos = -sin and d sin = cos by the angle
-    return [(cosine, -sine), (sine, cosine)]
-
 
 # Outputs of a sweep as expressions: columns of a sample, or of folds over samples, and derivatives.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = dict[str, Array]
 
-RESIDUAL, SLACK = "worst residual", "slack at samples"
+m = EXPRESSIONS
+RESIDUAL, LENGTHS, SLACK = "worst residual", "worst length", "slack at samples"
 CHECKED = 3
 """Samples at which residuals are looked at where closed forms say that a mechanism closes at all of them."""
 
@@ -388,6 +121,12 @@ class Expressed:
         """Column -> its numbers, of those that have a number of every sample."""
         every = self._with_slopes
         return {column.name: every[column.name] for column in streamed_columns(self.task.asked.columns)}
+
+    @cached_property
+    def fixed(self) -> dict[int, float]:
+        """Of `outputs`: place -> the number that every sample of every mechanism has, as those of fixed points."""
+        nodes = enumerate(self.outputs.values())
+        return {place: float(node.detail) for place, node in nodes if node.operation == CONSTANT}
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -550,13 +289,66 @@ class Passing(Protocol):
     def reducing(self, reduction: Reduction) -> Reducing:
         """A pass over all samples, for any number of batches."""
 
+    @property
+    def fixed(self) -> Mapping[int, float]:
+        """Numbers that are not written, as they are the same everywhere: place among all -> number."""
+
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
-        """Write every sample; returns what mechanisms are judged by."""
+        """Write every sample but what is fixed; returns what mechanisms are judged by."""
 
 
 def passing_of(asked: Expressed) -> Passing:
     """Way to pass the samples of a task: along the path with groups of higher class, else each for itself."""
     return Along(asked) if asked.traced.steps else EachForItself(asked)
+
+
+@dataclass(frozen=True)
+class ResidualParts:
+    """The greatest residual of a sample in two parts, so that lengths are divided by the scale once a mechanism.
+
+    A greater number has no lesser quotient, to the last bit: the greatest quotient is that of the greatest length.
+
+    Attributes
+    ----------
+    without_unit : the greatest of the parts that are not divided
+    lengths, scale : dividend and divisor of the part that is; none where there is none
+    """
+
+    without_unit: Node
+    lengths: Node | None = None
+    scale: Node | None = None
+
+    @classmethod
+    def of(cls, residual: Node) -> ResidualParts:
+        """The parts of a node that is a maximum of some."""
+        parts = list(_parts_of_maximum(residual))
+        divided = [x for x in parts if x.operation == "divide" and _is_scale(x.arguments[1])]
+        if len(divided) != 1:
+            return cls(residual)
+        without_unit: Operand = 0.0
+        for part in parts:
+            without_unit = without_unit if part is divided[0] else m.max(without_unit, part)
+        return cls(as_node(without_unit), *divided[0].arguments)
+
+    def scale_of(self, rows: PassedValues) -> Array | float:
+        """The divisor of mechanisms."""
+        assert self.scale is not None
+        return rows[SCALE] if self.scale.operation == VARIABLE else float(self.scale.detail)
+
+
+def _parts_of_maximum(node: Node) -> Iterator[Node]:
+    if node.operation == "maximum":
+        for x in node.arguments:
+            yield from _parts_of_maximum(x)
+    else:
+        yield node
+
+
+def _is_scale(node: Node) -> bool:
+    """Whether it is the greatest length of mechanisms, or a constant above zero as that is."""
+    if node.operation == VARIABLE:
+        return node.detail == SCALE
+    return node.operation == CONSTANT and float(node.detail) > 0.0
 
 
 @dataclass(frozen=True)
@@ -575,26 +367,46 @@ class EachForItself:
 
         return reduce
 
-    @cached_property
-    def _judging(self) -> Reducing:
-        return self.reducing(judging_states(self.asked))
+    @property
+    def fixed(self) -> Mapping[int, float]:
+        return self.asked.fixed
 
     def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
+        of_mechanisms = np.stack([rows[name] for name in scan.inputs]) if scan.inputs else None
+        judged = np.empty((len(scan.extremes), len(next(iter(rows.values())))))
         for part, room in rooms:
-            take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
-        return self._judging(rows)
+            take(None if of_mechanisms is None else of_mechanisms[:, part], room, judged[:, part])
+        found = dict(zip(scan.extremes, judged, strict=True))
+        if LENGTHS in found:
+            with np.errstate(invalid="ignore"):
+                lengths = found.pop(LENGTHS) / self._residual.scale_of(rows)
+            found[RESIDUAL] = np.maximum(found[RESIDUAL], lengths)
+        return found
+
+    @cached_property
+    def _residual(self) -> ResidualParts:
+        return ResidualParts.of(self.asked.judges[RESIDUAL])
 
     @cached_property
     def _scan(self) -> Scan:
-        """Lanes are samples, steps are mechanisms."""
-        outputs = self.asked.outputs
-        used = Graph(outputs).variables
+        """Lanes are samples, steps are mechanisms; judged by extremes over the samples while these are written."""
+        asked = self.asked
+        written = [(place, x) for place, x in enumerate(asked.outputs.items()) if place not in asked.fixed]
+        outputs = dict(x for _place, x in written)
+        extremes = {RESIDUAL: LaneExtreme("maximum", self._residual.without_unit, 0.0)}
+        if self._residual.lengths is not None:
+            extremes[LENGTHS] = LaneExtreme("maximum", self._residual.lengths, 0.0)
+        if SLACK in asked.judges:
+            extremes[SLACK] = LaneExtreme("minimum", asked.judges[SLACK], math.inf)
+        used = Graph({**outputs, **{name: x.value for name, x in extremes.items()}}).variables
         # the parameter stays an input in any case: something has to say how many samples there are
-        along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
-        return Scan(along, tuple(name for name in used if name not in along), outputs)
+        along = tuple(name for name in asked.inputs if name in used or name == PARAMETER)
+        of_mechanisms = tuple(name for name in used if name not in along)
+        places = tuple(place for place, _x in written)
+        return Scan(along, of_mechanisms, outputs, extremes=extremes, places=places)
 
 
 @dataclass(frozen=True)
@@ -602,6 +414,7 @@ class Along:
     """Every place is found from the one before: what is written is judged on the same way."""
 
     asked: Expressed
+    fixed: Mapping[int, float] = field(default_factory=dict)
 
     def reducing(self, reduction: Reduction) -> Reducing:
         asked = self.asked
@@ -644,15 +457,17 @@ class StreamedColumns(dict[str, AnyArray]):
     """Arrays of some mechanisms by name: (mechanisms, ...).
 
     `streams` is what is kept of every sample, in the order of the columns, where it stands like that in memory:
-    (numbers, mechanisms, samples).
+    (numbers, mechanisms, samples). `blank` says that it is all zeros, which take no pages until they are written to.
     """
 
     streams: npt.NDArray[np.float64] | None = None
+    blank: bool = False
 
     def part(self, rows: slice) -> StreamedColumns:
         """A view of some mechanisms."""
         chosen = StreamedColumns({name: array[rows] for name, array in self.items()})
         chosen.streams = None if self.streams is None else self.streams[:, rows]
+        chosen.blank = self.blank
         return chosen
 
 
@@ -674,12 +489,16 @@ def columns_for(
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
     if out is not None:
-        _check_room(out, mechanisms * sum(math.prod(column.shape) for column in kept))
+        numbers = mechanisms * sum(math.prod(column.shape) for column in kept)
+        if not numbers:
+            what = _("nothing is kept of every sample")
+            raise InputError("out", what, _("omit it, or request outputs that are not reduced"))
+        check_room(out, numbers)
     if kept:
-        numbers = [math.prod(column.shape[1:]) for column in kept]
-        streamed.streams = _streams((sum(numbers), mechanisms, kept[0].shape[0]), out)
+        counts = [math.prod(column.shape[1:]) for column in kept]
+        streamed.streams, streamed.blank = _streams((sum(counts), mechanisms, kept[0].shape[0]), out)
         first = 0
-        for column, count in zip(kept, numbers, strict=True):
+        for column, count in zip(kept, counts, strict=True):
             streams = streamed.streams[first : first + count].reshape(
                 *column.shape[1:], *streamed.streams.shape[1:]
             )
@@ -689,34 +508,17 @@ def columns_for(
     return streamed
 
 
-def _streams(shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None) -> npt.NDArray[np.float64]:
-    """Room for streams; fresh memory begins where a line of the cache does."""
+def _streams(
+    shape: tuple[int, int, int], out: npt.NDArray[np.float64] | None
+) -> tuple[npt.NDArray[np.float64], bool]:
+    """Room for streams, and whether it is blank; fresh memory begins where a line of the cache does."""
     numbers = math.prod(shape)
     if out is not None:
-        return out.reshape(-1)[:numbers].reshape(shape)
+        return out.reshape(-1)[:numbers].reshape(shape), False
     spare = LINE // NUMBER
-    whole = np.empty(numbers + spare)
+    whole, blank = fresh_room(numbers + spare)
     first = (-whole.ctypes.data % LINE) // NUMBER
-    return whole[first : first + numbers].reshape(shape)
-
-
-def _check_room(out: object, numbers: int) -> None:
-    if not numbers:
-        what = _("nothing is kept of every sample")
-        raise InputError("out", what, _("omit it, or request outputs that are not reduced"))
-    if (
-        not isinstance(out, np.ndarray)
-        or out.dtype != np.float64
-        or not out.flags.c_contiguous
-        or not out.flags.writeable
-    ):
-        what = _("an array of float64 that is contiguous and can be written to is required")
-        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
-    if out.size < numbers:
-        what = _("it has room for {size} numbers, {numbers} are needed").format(
-            size=out.size, numbers=numbers
-        )
-        raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
+    return whole[first : first + numbers].reshape(shape), blank
 
 
 # Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
@@ -733,18 +535,26 @@ class EverySample:
     results : column -> (mechanisms, ...)
     at : the mechanisms among these that are written: a whole slice, or their numbers
     samples : how many there are
+    fixed : place among all numbers -> number of every sample, which is not filled into rooms
     """
 
     columns: Mapping[str, Sequence[Node]]
     results: Mapping[str, AnyArray]
     at: Any
     samples: int
+    fixed: Mapping[int, float]
 
     def rooms(self) -> Iterator[tuple[slice, Array]]:
         """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is requested."""
-        streams = self.results.streams if isinstance(self.results, StreamedColumns) else None
+        results = self.results
+        streams, blank = (
+            (results.streams, results.blank) if isinstance(results, StreamedColumns) else (None, False)
+        )
         # a whole slice has its place in the result, and is written straight there
         if streams is not None and isinstance(self.at, slice):
+            for place, number in self.fixed.items():
+                if not (blank and is_blank(number)):
+                    streams[place] = number
             yield slice(0, streams.shape[1]), streams
             return
         numbers = sum(map(len, self.columns.values()))
@@ -759,12 +569,13 @@ class EverySample:
             self._put(room, where)
 
     def _put(self, room: Array, where: npt.NDArray[np.intp]) -> None:
-        stream = iter(room)
+        place = 0
         for name, nodes in self.columns.items():
             target = self.results[name].reshape(*self.results[name].shape[:2], len(nodes))
             for k in range(len(nodes)):
                 # number by number, as streams come; the target has them side by side
-                target[where, :, k] = next(stream)
+                target[where, :, k] = self.fixed.get(place, room[place])
+                place += 1
 
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -855,6 +666,8 @@ class MachineCodeExecutor:
                 some = rows if everywhere else {name: row[at] for name, row in rows.items()}
                 clear[at] = self._without_events(some, at, results, sure)
         left = np.nonzero(~clear)[0]
+        if not len(left):
+            return
         # few mechanisms with events are not worth a kernel of their own
         worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
         if worth and self._eventful.possible:
@@ -976,7 +789,7 @@ class MachineCodeExecutor:
             rows = self._fill_reductions(rows, at, results, certain=False)
             # what is written is judged as it is written
             rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
-        every = EverySample(self.asked.written, results, at, self.asked.samples)
+        every = EverySample(self.asked.written, results, at, self.asked.samples, self._passing.fixed)
         return self._passing.write_samples(rows, every.rooms())
 
 

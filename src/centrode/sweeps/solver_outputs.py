@@ -34,7 +34,7 @@ from centrode.numerics.graphs import Graph, directional_derivatives
 from centrode.numerics.jets import Jet
 from centrode.numerics.scans import evaluate
 from centrode.sweeps.designs import Listed
-from centrode.sweeps.machine import Fold, Folds, Slopes, States
+from centrode.sweeps.folds import Fold, Folds, Slopes, States
 from centrode.sweeps.outputs import Output, OutputFormula, formulas_of, outputs_of, quantities_of
 from centrode.sweeps.sweep_plans import motion_with_names
 

@@ -39,6 +39,7 @@ from centrode.sweeps.sweep_plans import (
     check_target,
     measured_blocks_of,
     plan_of,
+    stored_blocks_of,
 )
 
 # what analyses of machines need is not loaded for motions
@@ -161,7 +162,7 @@ def sweep(
     storage = storage_of(store)
     facts = study_of(plan.frame, plan.task, plan.target)
     # a cluster's store may be greater than what can be read at every beginning
-    blocks = functools.partial(blocks_of if cluster is None else measured_blocks_of, plan)
+    blocks = functools.partial(stored_blocks_of if cluster is None else measured_blocks_of, plan)
     with open_store(
         storage, plan.frame, blocks, facts, thorough=cluster is None and storage.reads_back
     ) as kept:

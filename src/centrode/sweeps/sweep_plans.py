@@ -135,10 +135,13 @@ def check_target(target: object) -> str | None:
 
 
 def blocks_of(plan: SweepPlan) -> Blocks:
-    """Blocks of a sweep on this machine."""
-    # positions of a block by time, its bytes by memory: the lesser of both
-    most = min(plan.executor.blocks * designs.BLOCK_POSITIONS // plan.task.places, _most_by_bytes(plan))
-    return Blocks.of(plan.frame.design.shape, max(1, most))
+    """Blocks of a sweep in memory, whose result has its own room: by time alone."""
+    return Blocks.of(plan.frame.design.shape, max(1, _most_by_time(plan)))
+
+
+def stored_blocks_of(plan: SweepPlan) -> Blocks:
+    """Blocks of a sweep into a store on this machine: positions by time, bytes by memory, the lesser of both."""
+    return Blocks.of(plan.frame.design.shape, max(1, min(_most_by_time(plan), _most_by_bytes(plan))))
 
 
 def measured_blocks_of(plan: SweepPlan) -> Blocks:
@@ -147,6 +150,10 @@ def measured_blocks_of(plan: SweepPlan) -> Blocks:
     # so many that marks can be listed
     least = -(-plan.frame.mechanisms // designs.BLOCKS)
     return Blocks.of(plan.frame.design.shape, max(1, min(max(by_time, least), _most_by_bytes(plan))))
+
+
+def _most_by_time(plan: SweepPlan) -> int:
+    return plan.executor.blocks * designs.BLOCK_POSITIONS // plan.task.places
 
 
 def _most_by_bytes(plan: SweepPlan) -> int:

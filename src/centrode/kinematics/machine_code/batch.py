@@ -17,7 +17,15 @@ import numpy.typing as npt
 from centrode.errors import Status
 from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
 from centrode.kinematics.machine_code.events import Eventful
-from centrode.kinematics.machine_code.outputs import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
+from centrode.kinematics.machine_code.outputs import (
+    RESIDUAL,
+    ROOMS,
+    SINES,
+    Writer,
+    nodes_of,
+    solved_of,
+    streams_of,
+)
 from centrode.kinematics.machine_code.path_continuation import SURE, Walking, Way, beginnings, way_of
 from centrode.kinematics.machine_code.trace import Traced, Untraceable, trace_motion
 from centrode.kinematics.machine_code.variables import (
@@ -40,8 +48,10 @@ from centrode.kinematics.samples import CLOSED, Kept
 from centrode.kinematics.solve import CHUNK, Progress, Solved, check_size, solve
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE
+from centrode.numerics.expressions import as_node
 from centrode.numerics.graphs import Graph
-from centrode.numerics.scans import evaluate
+from centrode.numerics.rooms import GivenRoom
+from centrode.numerics.scans import LaneExtreme, evaluate
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -59,19 +69,24 @@ SLACK = "slack"
 
 
 def solve_many(
-    ready: Ready, span: SampleGrid, numbers: Dimensions, lanes: int, progress: Progress | None = None
+    ready: Ready,
+    span: SampleGrid,
+    numbers: Dimensions,
+    lanes: int,
+    progress: Progress | None = None,
+    room: GivenRoom | None = None,
 ) -> Solved:
     """Motion of a batch at the samples of a span: what `solve` gives, but for angles at hinges on the sphere."""
     # the search for events looks at the mesh, the motion at the samples: the longer of the two says what the
     # work is
     places = max(len(span.parameter), len(mesh_of(ready.kinematics.path, span.parameter)))
     if lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
-        return solve(ready, span, numbers, lanes, progress)
+        return solve(ready, span, numbers, lanes, progress, room)
     varied = varied_of(numbers, {})
     try:
         plan = trace_motion(ready, span, varied)
     except Untraceable:
-        return solve(ready, span, numbers, lanes, progress)
+        return solve(ready, span, numbers, lanes, progress, room)
     check_size(plan.solved.layout, lanes, len(span.parameter))
     names = tuple(dict.fromkeys([*varied.names, SCALE]))
     judging = EventScreening(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
@@ -80,15 +95,14 @@ def solve_many(
     # without varied numbers there is one mechanism; and a plan whose functions a kernel would round must not
     # change bits, save in groups of higher class, where bits hang on Newton's method anyway
     if not values or not (plan.steps or writer.alike):
-        return solve(ready, span, numbers, lanes, progress)
+        return solve(ready, span, numbers, lanes, progress, room)
     if plan.steps:
         values |= beginnings(ready, numbers, lanes)
     judged = judging.judge(values)
     if plan.steps and np.mean(judged.clear) < WORTH_WALKING:
-        return solve(ready, span, numbers, lanes, progress)
-    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solve(
-        progress
-    )
+        return solve(ready, span, numbers, lanes, progress, room)
+    many = _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged)
+    return many.solve(progress, room)
 
 
 @dataclass(frozen=True)
@@ -103,19 +117,14 @@ class _Many:
     judging: EventScreening
     judged: ScreenedEvents
 
-    def solve(self, progress: Progress | None) -> Solved:
-        writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
-        room = writer.room(self.lanes)
-        sure = self._write(writer, room, progress)
+    def solve(self, progress: Progress | None, given: GivenRoom | None) -> Solved:
+        writer = Writer(
+            self._outputs(), self._inputs, MACHINE_CODE, sparing=not self.plan.steps, judged=self._judged
+        )
+        room = self._room(writer, given)
+        clear = self._write(writer, room, progress)
         arrays = writer.views(room)
         residual = arrays["residual"]
-        # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes to
-        # the arrays
-        clear = sure & (residual.max(axis=1) <= 0.5 * CLOSED)
-        if SLACK in arrays:
-            # any radicand this near to zero has to be compared with its rounding error, which is the arrays'
-            # work
-            clear &= arrays[SLACK].min(axis=1) > 0.0
         if SINES in arrays:
             # the arc tangent is NumPy's, so that angles have the bits of `solve`
             self._angles(arrays["angles"], arrays[SINES])
@@ -129,17 +138,40 @@ class _Many:
         )
         return replace(solved, worst_constraint=self._worst(residual))
 
+    def _room(self, writer: Writer, given: GivenRoom | None) -> Array:
+        """Memory for what is written; sines stand behind what the result keeps, where room is given for more."""
+        room = writer.room(self.lanes, None if given is None else given.left)
+        if given is not None:
+            kept = sum(nodes.size for name, nodes in writer.outputs.items() if name in ROOMS)
+            given.take((kept, *room.shape[1:]))
+        return room
+
     def _outputs(self) -> dict[str, Nodes]:
-        nodes = nodes_of(self.plan)
+        nodes, slack = nodes_of(self.plan), self._slack
+        # a walk has no extremes over its places
+        return nodes if slack is None or not self.plan.steps else {**nodes, SLACK: slack}
+
+    @property
+    def _slack(self) -> Nodes | None:
         slack = self.judging.slack_at_samples
-        return nodes if slack is None else {**nodes, SLACK: box_array([slack]).reshape(1, 1)}
+        return None if slack is None else box_array([slack]).reshape(1, 1)
+
+    @property
+    def _judged(self) -> dict[str, LaneExtreme]:
+        """Extremes over samples, taken while these are written: greatest residual, least slack of radicands."""
+        if self.plan.steps:
+            return {}
+        found = {RESIDUAL: LaneExtreme("maximum", as_node(self.plan.solved.residual[0, 0]), 0.0)}
+        if self._slack is not None:
+            found[SLACK] = LaneExtreme("minimum", as_node(self._slack[0, 0]), np.inf)
+        return found
 
     @cached_property
     def _inputs(self) -> dict[str, Array]:
         return inputs_of(self.ready.kinematics.path, self.span)
 
     def _write(self, writer: Writer, room: Array, progress: Progress | None) -> Mask:
-        """All samples of all mechanisms, but where none of some is clear; which of them are sure to be right."""
+        """All samples of all mechanisms, but where none of some is clear; which of them are clear."""
         sure = self.judged.clear.copy()
         walking = Walking(self.judging.walk, outputs=writer.graph.outputs) if self.plan.steps else None
         for rows in self._parts():
@@ -147,13 +179,25 @@ class _Many:
             if sure[rows].any():
                 some = {name: row[rows] for name, row in self.values.items()}
                 if walking is None:
-                    writer.write(some, room[:, rows])
+                    judged = writer.write(some, room[:, rows])
                 else:
                     at_end = walking.write_samples(self._way, some, MACHINE_CODE, 1, room[:, rows])
                     sure[rows] &= at_end[SURE] > 0.0
+                    judged = self._judge(writer.streams(room[:, rows]))
+                # a kernel may round a residual otherwise: half of the bound is kept free, and what lies in it goes
+                # to the arrays
+                sure[rows] &= judged[RESIDUAL] <= 0.5 * CLOSED
+                if SLACK in judged:
+                    # any radicand this near to zero has to be compared with its rounding error, which is the arrays'
+                    # work
+                    sure[rows] &= judged[SLACK] > 0.0
             if progress is not None:
                 progress(rows.stop, self.lanes)
         return sure
+
+    def _judge(self, streams: Mapping[str, Array]) -> dict[str, Array]:
+        judged = {RESIDUAL: streams[RESIDUAL][0].max(axis=1)}
+        return judged if SLACK not in streams else {**judged, SLACK: streams[SLACK][0].min(axis=1)}
 
     @cached_property
     def _way(self) -> Way:

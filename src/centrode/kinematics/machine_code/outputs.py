@@ -18,8 +18,9 @@ from centrode.numerics.executors import runner
 from centrode.numerics.expressions import Node, as_node
 from centrode.numerics.graphs import Graph, topological_order
 from centrode.numerics.machine_code.loops import FUNCTIONS
-from centrode.numerics.operations import VARIABLE
-from centrode.numerics.scans import Scan
+from centrode.numerics.operations import CONSTANT, VARIABLE
+from centrode.numerics.rooms import fresh_room, is_blank
+from centrode.numerics.scans import LaneExtreme, Scan
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
@@ -60,6 +61,8 @@ class Writer:
     places : what the variables of a place on the path stand for: name -> (n,)
     kernels : what runs scans, see `numerics.executors`
     memory : what `same_room` hands out, in its first place; writers that do not write at once may share it
+    sparing : numbers that are the same everywhere, as those of fixed points, are put into a room once and not written
+    judged : name -> extreme over the places of each mechanism
     """
 
     outputs: Mapping[str, Nodes]
@@ -67,6 +70,8 @@ class Writer:
     kernels: str
     threads: int = 1
     memory: list[Array] = field(default_factory=list)
+    sparing: bool = False
+    judged: Mapping[str, LaneExtreme] = field(default_factory=dict)
 
     @cached_property
     def flat(self) -> list[Node]:
@@ -79,11 +84,21 @@ class Writer:
         return Graph({str(k): node for k, node in enumerate(self.flat)})
 
     @cached_property
+    def fixed(self) -> dict[int, float]:
+        """Place among all numbers -> what stands there everywhere, and is not written."""
+        nodes = enumerate(self.flat if self.sparing else ())
+        return {k: float(node.detail) for k, node in nodes if node.operation == CONSTANT}
+
+    @cached_property
     def scan(self) -> Scan:
         """Lanes are places, steps are mechanisms."""
-        graph = self.graph
-        along = tuple(name for name in self.places if name in graph.variables or name == PARAMETER)
-        return Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
+        written = [k for k in range(len(self.flat)) if k not in self.fixed]
+        outputs = {str(k): self.flat[k] for k in written}
+        used = Graph({**outputs, **{name: x.value for name, x in self.judged.items()}}).variables
+        along = tuple(name for name in self.places if name in used or name == PARAMETER)
+        of_mechanisms = tuple(name for name in used if name not in along)
+        places = tuple(written) if self.fixed else ()
+        return Scan(along, of_mechanisms, outputs, extremes=self.judged, places=places)
 
     @cached_property
     def alike(self) -> bool:
@@ -108,9 +123,16 @@ class Writer:
     def _along(self) -> Array:
         return np.stack([self.places[name] for name in self.scan.parameters])
 
-    def room(self, lanes: int) -> Array:
-        """Fresh memory for what is written for so many mechanisms: (numbers, lanes, n)."""
-        return np.empty((len(self.flat), lanes, len(self.places[PARAMETER])))
+    def room(self, lanes: int, out: Array | None = None) -> Array:
+        """Memory for what is written for so many mechanisms, fresh or that of `out`: (numbers, lanes, n)."""
+        shape = (len(self.flat), lanes, len(self.places[PARAMETER]))
+        numbers = math.prod(shape)
+        whole, blank = fresh_room(numbers) if out is None else (out.reshape(-1)[:numbers], False)
+        room = whole.reshape(shape)
+        for place, number in self.fixed.items():
+            if not (blank and is_blank(number)):
+                room[place] = number
+        return room
 
     def same_room(self, lanes: int) -> Array:
         """Memory (numbers, lanes, n) that every call uses again, which is faster: the last call's numbers are lost."""
@@ -121,12 +143,13 @@ class Writer:
             self.memory[:] = [np.empty(size)]
         return self.memory[0][:size].reshape(shape)
 
-    def write(self, values: Mapping[str, Array], room: Array) -> None:
-        """Fill a room from what variables stand for in its mechanisms."""
+    def write(self, values: Mapping[str, Array], room: Array) -> dict[str, Array]:
+        """Fill a room from what variables stand for in its mechanisms; returns what these are judged by."""
         scan = self.scan
         of_lanes = np.stack([values[name] for name in scan.inputs]) if scan.inputs else None
         run = runner(scan, self.kernels, lanes_inside=True, threads=self.threads)
-        run(self._along, of_lanes, out=room, steps=room.shape[1])
+        found = run(self._along, of_lanes, out=room, steps=room.shape[1])
+        return dict(zip(self.judged, found.extremes, strict=True))
 
     def streams(self, room: Array) -> dict[str, Array]:
         """Outputs by name, as views of the room: (numbers, lanes, n)."""

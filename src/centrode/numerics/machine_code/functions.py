@@ -213,6 +213,10 @@ class Operating:
         if node.arguments:
             self.values[node] = self._compute(node, [self.value(x) for x in node.arguments])
 
+    def extreme(self, operation: str, a: Value, b: Value) -> Value:
+        """The lesser ("minimum") or greater ("maximum") of two values."""
+        return _OTHERS[operation](self.code, a, b)
+
     def _compute(self, node: Node, arguments: list[Value]) -> Value:
         operation, code = node.operation, self.code
         if operation in ARITHMETIC:

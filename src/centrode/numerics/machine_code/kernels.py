@@ -37,7 +37,7 @@ from centrode.numerics.machine_code.loops import (
     function_text,
     with_reciprocals,
 )
-from centrode.numerics.scans import Array, Call, Scan, Scanned, call_of
+from centrode.numerics.scans import EXTREMES, Array, Call, Scan, Scanned, call_of, check_room
 
 NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
 REMEMBERED = 256
@@ -80,16 +80,17 @@ class Kernel:
         """Run the scan; shapes as in `call_of`. Threads share lanes, or steps if lanes are inside."""
         call = call_of(self.scan, parameters, inputs, state, out, steps, self.number)
         if not call.lanes or not call.steps:
-            return Scanned(call.outputs, call.state)
+            return Scanned(call.outputs, call.state, np.empty((len(self.scan.extremes), call.steps)))
         width = self.shape.vector.width
         # a kernel reads and writes whole vectors: fewer lanes are filled up outside the caller's arrays
         if call.lanes < width:
-            return _without_padding(self._run(_pad_lanes(call, width), 1), call)
+            return _without_padding(self._run(_pad_lanes(call, width), 1), call, self.scan.rows)
         return self._run(call, threads)
 
     def _run(self, call: Call, threads: int) -> Scanned:
         prepared = self.tables.split_call(call)
-        state = np.empty_like(call.state)
+        # there are no states where there are extremes, and these take their place
+        state = self.room_of_extremes(call.steps) if self.scan.extremes else np.empty_like(call.state)
         if threads == 1:
             self._call(prepared, state)
         else:
@@ -97,7 +98,18 @@ class Kernel:
             running = [pool.submit(self._call, *part) for part in self._parts(prepared, state, threads)]
             for done in as_completed(running):
                 done.result()
+        if self.scan.extremes:
+            return Scanned(call.outputs, call.state, self.extremes_of(state))
         return Scanned(call.outputs, state)
+
+    def room_of_extremes(self, steps: int) -> Array:
+        """Room for extremes over the lanes of each step, one in every lane of a vector: (extremes, steps, width)."""
+        return np.empty((len(self.scan.extremes), steps, self.shape.vector.width), self.number)
+
+    def extremes_of(self, room: Array) -> Array:
+        """Extremes (extremes, steps) from those in each lane of a vector."""
+        kinds = [EXTREMES[x.operation] for x in self.scan.extremes.values()]
+        return np.stack([kind.reduce(x, axis=-1) for kind, x in zip(kinds, room, strict=True)])
 
     def _parts(self, call: Call, state: Array, threads: int) -> Iterator[tuple[Call, Array]]:
         """The call in parts that do not touch one another."""
@@ -112,7 +124,8 @@ class Kernel:
         for first, last in pairwise(bounds):
             some = slice(first, last)
             if inside:
-                yield replace(call, inputs=call.inputs[:, some], outputs=call.outputs[:, some]), state
+                room = state[:, some] if self.scan.extremes else state
+                yield replace(call, inputs=call.inputs[:, some], outputs=call.outputs[:, some]), room
             else:
                 yield _of_lanes(call, some), state[:, some]
 
@@ -154,6 +167,8 @@ def kernel_of(
     vector = replace(vector, width=width or machine.width(vector.bits))
     if lanes_inside and scan.state:
         raise ValueError("a scan with a state takes its steps inside")
+    if scan.extremes and not lanes_inside:
+        raise ValueError("extremes over lanes are taken with the lanes inside")
     shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed)
     key = (scan.key, shape, machine)
     # compiling is done without the lock: two threads may compile the same kernel, which costs time and
@@ -276,9 +291,10 @@ def _pad_lanes(call: Call, width: int) -> Call:
     return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)
 
 
-def _without_padding(scanned: Scanned, call: Call) -> Scanned:
-    call.outputs[...] = scanned.outputs[:, :, : call.lanes]
-    return Scanned(call.outputs, np.ascontiguousarray(scanned.state[:, : call.lanes]))
+def _without_padding(scanned: Scanned, call: Call, rows: tuple[int, ...]) -> Scanned:
+    for row in rows:
+        call.outputs[row] = scanned.outputs[row, :, : call.lanes]
+    return Scanned(call.outputs, np.ascontiguousarray(scanned.state[:, : call.lanes]), scanned.extremes)
 
 
 def _of_lanes(call: Call, some: slice) -> Call:
@@ -311,27 +327,35 @@ class Stream:
         self._below = kernel.tables.of_lanes.below(self.parameters)
         self._of_lanes = (address(self._below), self._below.strides[0] // kernel.number.itemsize)
 
-    def __call__(self, inputs: npt.ArrayLike | None, out: Array) -> Array:
+    def __call__(self, inputs: npt.ArrayLike | None, out: Array, extremes: Array | None = None) -> Array:
         """Take some steps.
 
         Parameters
         ----------
         inputs : (inputs, steps), numbers of a row side by side; none if the scan has none
         out : (outputs, steps, lanes), is written to; its last axis has to be contiguous
+        extremes : (extremes, steps), is written to where the scan has some
         """
         kernel = self.kernel
         if not self._alone or inputs is None:
-            return kernel.run(
-                self.parameters, inputs, out=out, steps=out.shape[1], threads=self.threads
-            ).outputs
+            scanned = kernel.run(self.parameters, inputs, out=out, steps=out.shape[1], threads=self.threads)
+            if extremes is not None:
+                extremes[...] = scanned.extremes
+            return scanned.outputs
         rows, size = np.asarray(inputs, kernel.number), kernel.number.itemsize
         self._check(rows, out)
         rows = kernel.tables.of_steps.below(rows)
         if rows.shape[1]:
+            room, place = None, (0, 0)
+            if kernel.scan.extremes:
+                room = kernel.room_of_extremes(rows.shape[1])
+                place = address(room), room.strides[0] // size
             kernel.function.call(
-                self.lanes, rows.shape[1], *self._of_lanes, address(rows), rows.strides[0] // size, 0, 0, 0, 0,
+                self.lanes, rows.shape[1], *self._of_lanes, address(rows), rows.strides[0] // size, 0, 0, *place,
                 address(out), out.strides[0] // size, out.strides[1] // size,
             )  # fmt: skip
+            if room is not None and extremes is not None:
+                extremes[...] = kernel.extremes_of(room)
         return out
 
     def bare_call(self, rows: Array, out: Array) -> tuple[int, ...] | None:
@@ -359,6 +383,4 @@ class Stream:
         scan, number = self.kernel.scan, self.kernel.number
         if rows.ndim != 2 or len(rows) != len(scan.inputs) or rows.strides[1] != number.itemsize:
             raise ValueError(f"expected ({len(scan.inputs)}, n) values, row by row, got {rows.shape}")
-        shape = (len(scan.outputs), rows.shape[1], self.lanes)
-        if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != number.itemsize):
-            raise ValueError(f"out has to be {shape} of {number} with a contiguous last axis")
+        check_room(scan, out, rows.shape[1], self.lanes, number)

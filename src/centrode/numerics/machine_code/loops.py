@@ -57,6 +57,13 @@ class ColumnRows:
         """Write a vector to a place."""
         self.block.line(f"store {self.vector.name} {value}, ptr {place}, align {self.vector.bits // 8}")
 
+    def fetch(self, place: Value, ahead: int) -> None:
+        """Have memory so many bytes behind a place brought near, as it is written to soon."""
+        index = str(8 * ahead // self.vector.bits)
+        self.block.declared["declare void @llvm.prefetch.p0(ptr, i32, i32, i32)"] = None
+        # for a write, kept in all caches, data
+        self.block.line(f"call void @llvm.prefetch.p0(ptr {self.place(place, index)}, i32 1, i32 3, i32 1)")
+
     def everywhere(self, place: Value) -> Value:
         """Vector with one number of memory in every lane."""
         vector, block = self.vector, self.block
@@ -212,6 +219,8 @@ ARGUMENTS = (
     "ptr noalias %outputs", "i64 %output", "i64 %output_row",
 )  # fmt: skip
 """Rows are distances, in numbers, of one row from the next; `output` is that of one output from the next."""
+AHEAD = 512
+"""Bytes by which streams of outputs are fetched before they are written: with many of them that saves waiting."""
 PIECE = 64
 """Lanes that a stage goes through before the next one: what waits in between stays in the nearest cache."""
 
@@ -274,6 +283,7 @@ class _Writer:
         rest = [node for node in self.scan.graph.order if node not in early]
         stages = stages_of(rest) if inside else [LoopStage(tuple(rest), ())]
         left = self._room(stages)
+        self._extremes = self._room_of_extremes()
         bases = self._begin_rows()
         block.line("br label %outer")
         block.begin("outer")
@@ -281,6 +291,7 @@ class _Writer:
         # in afterwards
         head = len(block.lines)
         self.rows.stand(outer)
+        self._begin_extremes()
         self._take(outer)
         self._compute([node for node in self.scan.graph.order if node in early])
         if len(stages) == 1:
@@ -289,6 +300,7 @@ class _Writer:
             self._pieces(stages, bases, early, left)
         block.begin("outer_end")
         self._write_state()
+        self._write_extremes()
         self.rows.advance(outer, "%lanes" if outer == "%lane" else "%steps", "outer", "end")
         block.begin("end")
         block.line("ret void")
@@ -301,7 +313,7 @@ class _Writer:
         self._parameters = [row("%parameters", i, "%parameter_row") for i in range(len(scan.parameters))]
         self._inputs = [row("%inputs", i, "%input_row") for i in range(len(scan.inputs))]
         self._states = [row("%state", i, "%state_row") for i in range(len(scan.state))]
-        return [row("%outputs", i, "%output") for i in range(len(scan.outputs))]
+        return [row("%outputs", i, "%output") for i in scan.rows]
 
     def _loop(self, axis: str, nodes: list[Node], bases: list[Value], early: set[Node]) -> None:
         """The inner loop, with all that is left to compute."""
@@ -408,6 +420,7 @@ class _Writer:
             self.operating.compute(node)
             if places is not None and node in places:
                 self._write([node], places)
+            self._fold(node)
 
     def _take(self, axis: str) -> None:
         """Load what belongs to a place of the loop."""
@@ -440,6 +453,36 @@ class _Writer:
         for node in nodes:
             for place in places[node]:
                 self.rows.write(self.operating.value(node), place)
+                if self.shape.lanes_inside:
+                    self.rows.fetch(place, AHEAD)
+
+    # extremes over lanes stand on the stack, a vector of them: loops of several stages add to it, and the last vector,
+    # which has some lanes twice, changes nothing
+
+    def _room_of_extremes(self) -> dict[Node, list[tuple[str, Value]]]:
+        """Node -> the extremes that it belongs to, each with its place."""
+        found: dict[Node, list[tuple[str, Value]]] = {}
+        for i, extreme in enumerate(self.scan.extremes.values()):
+            self.block.line(f"%extreme{i} = alloca {self.shape.vector.name}, align 64")
+            found.setdefault(extreme.value, []).append((extreme.operation, f"%extreme{i}"))
+        return found
+
+    def _begin_extremes(self) -> None:
+        for i, extreme in enumerate(self.scan.extremes.values()):
+            self.rows.write(self.code.constant(extreme.start), f"%extreme{i}")
+
+    def _fold(self, node: Node) -> None:
+        """Add the number of a node that is known to the extremes that it belongs to."""
+        for operation, place in self._extremes.get(node, ()):
+            so_far = self.rows.read(place)
+            self.rows.write(self.operating.extreme(operation, self.operating.value(node), so_far), place)
+
+    def _write_extremes(self) -> None:
+        """One number in every lane of a vector: the caller takes the extreme of these."""
+        for i in range(len(self.scan.extremes)):
+            index = self.block.put(f"mul i64 %step, {self.shape.vector.width}")
+            place = self.rows.place(self.rows.row("%new_state", i, "%new_state_row"), index)
+            self.rows.write(self.rows.read(f"%extreme{i}"), place)
 
     def _write_state(self) -> None:
         for i, node in enumerate(self.scan.state.values()):
