@@ -133,7 +133,9 @@ def call_of(
         out = np.empty(shape, number)
     if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
         raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
-    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
+    # a copy, as what the caller gave stays
+    state = np.array(np.broadcast_to(states, (len(states), lanes)), order="C")
+    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), state, out)
 
 
 def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:

@@ -26,6 +26,7 @@ from centrode.kinematics.machine_code.variables import (
     ALONG,
     PARAMETER,
     SCALE,
+    LaneRows,
     Pass,
     Varied,
     before_of,
@@ -461,7 +462,16 @@ class Expressed:
 
     def functions(self, rows: Mapping[str, Array]) -> Values:
         """Functions of the numbers of mechanisms, which all passes over their samples have in common."""
-        return {} if self.traced.steps else self._over_some.functions(rows)
+        return {} if self.traced.steps else self._standing.functions(rows)
+
+    @cached_property
+    def _standing(self) -> Pass:
+        """What is folded, or where nothing is, the residual: its functions are those that passes have in common."""
+        folded = [fold.value for fold in self.folds.found.values()] if self.columns else []
+        nodes = folded or [as_node(self.traced.solved.residual[0, 0])]
+        state = {f"{END}{k}": node for k, node in enumerate(nodes)}
+        names = (*self.judging.names, *self.task.paths)
+        return Pass(Reduction(state, dict.fromkeys(state, 0.0)), names, {})
 
     def check_some(self, rows: Mapping[str, Array]) -> Values:
         """The greatest residual of a few samples, of mechanisms that are certain to close at all of them."""
@@ -470,7 +480,9 @@ class Expressed:
     @cached_property
     def _checked(self) -> Pass:
         # residuals of gears and wheels have angles with their turns, which are known when samples are checked
-        return replace(self._over_some, names=(*self._over_some.names, *self._of_angles))
+        # a residual is no more than rounding, so functions of its own need not be those of NumPy
+        names = (*self._over_some.names, *self._of_angles, *self._standing.function_names)
+        return replace(self._over_some, names=names, compiled=True)
 
     @cached_property
     def _over_some(self) -> Pass:
@@ -813,7 +825,7 @@ class MachineCodeExecutor:
         """
         # reported before anything is traced
         check_present(kernels)
-        varied = varied_of(numbers, values)
+        varied = varied_of(numbers, values).with_traced_scale()
         asked = Expressed(
             task,
             varied,
@@ -838,12 +850,12 @@ class MachineCodeExecutor:
         self, task: SweepTask, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
         """Fill in all columns for the mechanisms of these dimensions."""
-        rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
+        known = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
         if self.asked.traced.steps:
-            rows |= beginnings(task.ready, numbers, len(next(iter(rows.values()))))
-        rows |= self.asked.functions(rows)
+            known |= beginnings(task.ready, numbers, len(next(iter(known.values()))))
+        rows = LaneRows.of(known | self.asked.functions(known))
         judged = self.asked.judging.judge(rows)
-        rows |= judged.values
+        rows = rows | judged.values
         # mechanisms that turn out doubtful at a sample are taken out again below
         clear = judged.clear.copy()
         # every sample that is kept has its residual judged; of reduced ones that are certain a few do
@@ -852,7 +864,7 @@ class MachineCodeExecutor:
             if which.any():
                 everywhere = bool(which.all())
                 at: Any = slice(None) if everywhere else np.nonzero(which)[0]
-                some = rows if everywhere else {name: row[at] for name, row in rows.items()}
+                some = rows if everywhere else rows.take(at)
                 clear[at] = self._without_events(some, at, results, sure)
         left = np.nonzero(~clear)[0]
         # few mechanisms with events are not worth a kernel of their own
@@ -899,7 +911,9 @@ class MachineCodeExecutor:
     def _passing(self) -> Passing:
         return passing_of(self.asked)
 
-    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool) -> Mask:
+    def _without_events(
+        self, rows: LaneRows, at: Any, results: Mapping[str, AnyArray], certain: bool
+    ) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         states = (
             self._fill_reductions(rows, at, results, certain)
@@ -916,16 +930,15 @@ class MachineCodeExecutor:
         return clear
 
     def _fill_reductions(
-        self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool
-    ) -> Values:
+        self, rows: LaneRows, at: Any, results: Mapping[str, AnyArray], certain: bool
+    ) -> LaneRows:
         """Fill in one number, or a few, of each motion; returns what is known of mechanisms then."""
-        rows = dict(rows)
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows |= self._folding(depth, certain)(rows)
+            rows = rows | self._folding(depth, certain)(rows)
         if certain:
-            rows |= self.asked.check_some(rows)
+            rows = rows | self.asked.check_some(rows)
         values = self._at_end(rows)
         for name, numbers in columns.items():
             flat = results[name].reshape(len(results[name]), len(numbers))
@@ -933,7 +946,7 @@ class MachineCodeExecutor:
                 flat[at, k] = values[f"{END}{name} {k}"]
         return rows
 
-    def _at_end(self, rows: Values) -> Values:
+    def _at_end(self, rows: LaneRows) -> Values:
         """The numbers of all columns from the last states; by a kernel where that is worth compiling."""
         graph, lanes = self._ends, len(next(iter(rows.values())))
         if lanes * len(graph.order) < WORTH_A_KERNEL:
@@ -968,14 +981,15 @@ class MachineCodeExecutor:
             parts.append(judging_states(self.asked))
         return together(*parts)
 
-    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_samples(self, rows: LaneRows, at: Any, results: Mapping[str, AnyArray]) -> Mapping[str, Array]:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         # formulas of every sample may name what is folded
         if self.asked.final or self.asked.folds.found:
             rows = self._fill_reductions(rows, at, results, certain=False)
             # what is written is judged as it is written
-            rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
+            judged = {RESIDUAL, SLACK, SURE}
+            rows = replace(rows, more={name: row for name, row in rows.more.items() if name not in judged})
         every = EverySample(self.asked.written, results, at, self.asked.samples)
         return self._passing.write_samples(rows, every.rooms())
 

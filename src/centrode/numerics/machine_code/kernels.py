@@ -132,6 +132,7 @@ def kernel_of(
     relaxed: bool = False,
     target: Target | None = None,
     hasty: bool = False,
+    own_functions: bool = False,
 ) -> Kernel:
     """The kernel of a scan, from memory or disk if it has been compiled before.
 
@@ -143,6 +144,7 @@ def kernel_of(
     relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
     target : the machine to compile for; this one if left out
     hasty : the code is waited for, see `in_haste`
+    own_functions : with the steps inside, functions of the lanes' numbers are rounded as here, not as on NumPy
     """
     if np.dtype(number) not in NUMBERS:
         raise ValueError(f"numbers of a kernel are float64 or float32, not {np.dtype(number)}")
@@ -153,7 +155,7 @@ def kernel_of(
     vector = replace(vector, width=width or machine.width(vector.bits))
     if lanes_inside and scan.state:
         raise ValueError("a scan with a state takes its steps inside")
-    shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed)
+    shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed, own_functions)
     key = (scan.key, shape, machine)
     # compiling is done without the lock: two threads may compile the same kernel, which costs time and
     # nothing else
@@ -176,7 +178,7 @@ def forget() -> None:
 
 
 def _compile_kernel(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine: Target) -> Kernel:
-    tables = Tables.of(scan, shape.lanes_inside)
+    tables = Tables.of(scan, shape.lanes_inside, shape.own_functions)
     rest = tables.rest
     if shape.relaxed:
         rest = with_reciprocals(rest, rest.parameters if shape.lanes_inside else rest.inputs)
