@@ -40,7 +40,7 @@ def runner(
     threads: int = 1,
     own_functions: bool = False,
 ) -> Run:
-    """A function (parameters, inputs, state=None, out=None, steps=None) that runs a scan.
+    """A function (parameters, inputs, state=None, out=None, steps=None, new_state=None) that runs a scan.
 
     Shapes are those of `scans.call_of`; `lanes_inside`, `relaxed` and `own_functions` those of `kernel_of`, and nothing
     to NumPy.

@@ -133,9 +133,7 @@ def call_of(
         out = np.empty(shape, number)
     if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
         raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
-    # a copy, as what the caller gave stays
-    state = np.array(np.broadcast_to(states, (len(states), lanes)), order="C")
-    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), state, out)
+    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes), out)
 
 
 def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:
@@ -353,14 +351,15 @@ def run_on_arrays(
     state: npt.ArrayLike | None = None,
     out: Array | None = None,
     steps: int | None = None,
+    new_state: Array | None = None,
     number: npt.DTypeLike = np.float64,
 ) -> Scanned:
-    """Run a scan on NumPy arrays; shapes as in `call_of`."""
+    """Run a scan on NumPy arrays; shapes as in `call_of`, `new_state` as the state is written to if given."""
     call = call_of(scan, parameters, inputs, state, out, steps, number)
     if not scan.state:
         _all_steps(scan, call, number)
         return Scanned(call.outputs, call.state)
-    rows = call.state
+    rows = call.state.copy()
     for k in range(call.steps):
         results = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
         for i, name in enumerate(scan.outputs):
@@ -368,7 +367,9 @@ def run_on_arrays(
         rows = np.array(
             [np.broadcast_to(results[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
         )
-    return Scanned(call.outputs, rows)
+    if new_state is not None:
+        new_state[...] = rows
+    return Scanned(call.outputs, rows if new_state is None else new_state)
 
 
 def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> None:

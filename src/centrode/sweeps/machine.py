@@ -546,14 +546,12 @@ def _known_of(formula: OutputFormula) -> Known | None:
 
 # How machine code passes samples: each for itself, or along the path where groups of higher class ask for it.
 
-PassedValues: TypeAlias = Mapping[str, Array]
-"""Of mechanisms: name -> (lanes,)."""
 Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 """Some mechanisms after the other, and where their samples go: (numbers, lanes, samples)."""
 
 
-Reducing: TypeAlias = Callable[[PassedValues], dict[str, Array]]
-"""From what is known of mechanisms to the states when all samples are passed."""
+Reducing: TypeAlias = Callable[[LaneRows], LaneRows]
+"""Adds the states when all samples are passed to what is known of mechanisms."""
 
 
 class Passing(Protocol):
@@ -562,7 +560,7 @@ class Passing(Protocol):
     def reducing(self, reduction: Reduction) -> Reducing:
         """A pass over all samples, for any number of batches."""
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         """Write every sample; returns what mechanisms are judged by."""
 
 
@@ -581,9 +579,9 @@ class EachForItself:
         asked = self.asked
         over_samples = Pass(reduction, asked.names, asked.inputs)
 
-        def reduce(rows: PassedValues) -> dict[str, Array]:
+        def reduce(rows: LaneRows) -> LaneRows:
             # where nothing moves the samples are counted all the same
-            return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
+            return over_samples.onto(rows, asked.kernels, asked.threads, steps=asked.samples)
 
         return reduce
 
@@ -591,7 +589,7 @@ class EachForItself:
     def _judging(self) -> Reducing:
         return self.reducing(judging_states(self.asked))
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
@@ -619,12 +617,12 @@ class Along:
         asked = self.asked
         walking = Walking(asked.judging.walk, reduction, further=asked.further)
 
-        def reduce(rows: PassedValues) -> dict[str, Array]:
-            return walking.reduce(asked.way, rows, asked.kernels, asked.threads)
+        def reduce(rows: LaneRows) -> LaneRows:
+            return rows | walking.reduce(asked.way, rows, asked.kernels, asked.threads)
 
         return reduce
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         asked = self.asked
         walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs, asked.further)
         parts = []
@@ -853,7 +851,7 @@ class MachineCodeExecutor:
         known = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
         if self.asked.traced.steps:
             known |= beginnings(task.ready, numbers, len(next(iter(known.values()))))
-        rows = LaneRows.of(known | self.asked.functions(known))
+        rows = LaneRows.of(known | self.asked.functions(known), self._spare)
         judged = self.asked.judging.judge(rows)
         rows = rows | judged.values
         # mechanisms that turn out doubtful at a sample are taken out again below
@@ -936,7 +934,7 @@ class MachineCodeExecutor:
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows = rows | self._folding(depth, certain)(rows)
+            rows = self._folding(depth, certain)(rows)
         if certain:
             rows = rows | self.asked.check_some(rows)
         values = self._at_end(rows)
@@ -969,6 +967,13 @@ class MachineCodeExecutor:
         if key not in self._foldings:
             self._foldings[key] = self._passing.reducing(self._states(depth, certain))
         return self._foldings[key]
+
+    @cached_property
+    def _spare(self) -> int:
+        """Rows that passes over the samples add to what is known of mechanisms."""
+        if not self.asked.columns:
+            return 0
+        return sum(len(self._states(depth, False).state) for depth in range(self.asked.folds.passes))
 
     def _states(self, depth: int, certain: bool) -> Reduction:
         """States handed on in a pass over the samples."""

@@ -279,18 +279,35 @@ class LaneRows(Mapping[str, Array]):
     Attributes
     ----------
     names : of the rows of the block
-    block : (names, lanes)
+    memory : (names or more, lanes), the block and room for what passes add to it
     more : numbers that stand elsewhere
     """
 
     names: tuple[str, ...]
-    block: Array
+    memory: Array
     more: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, values: Values) -> LaneRows:
-        """The numbers as one block."""
-        return cls(tuple(values), np.stack(list(values.values())))
+    def of(cls, values: Values, spare: int) -> LaneRows:
+        """The numbers as one block, with room for so many further rows."""
+        memory = np.empty((len(values) + spare, len(next(iter(values.values())))))
+        for row, numbers in zip(memory, values.values(), strict=False):
+            row[:] = numbers
+        return cls(tuple(values), memory)
+
+    @property
+    def block(self) -> Array:
+        """The numbers that stand together, (names, lanes)."""
+        return self.memory[: len(self.names)]
+
+    @property
+    def room(self) -> Array:
+        """Rows of the memory behind the block."""
+        return self.memory[len(self.names) :]
+
+    def with_room(self, names: Sequence[str]) -> LaneRows:
+        """The block with rows behind it that have been filled in."""
+        return replace(self, names=(*self.names, *names))
 
     def block_has(self, names: Sequence[str]) -> bool:
         """Whether numbers of these names stand in the block, at least one of them."""
@@ -298,16 +315,16 @@ class LaneRows(Mapping[str, Array]):
 
     def take(self, lanes: npt.NDArray[np.intp]) -> LaneRows:
         """Those of some mechanisms."""
-        return LaneRows(
-            self.names, self.block[:, lanes], {name: row[lanes] for name, row in self.more.items()}
-        )
+        memory = np.empty((len(self.memory), len(lanes)))
+        np.take(self.block, lanes, axis=1, out=memory[: len(self.names)])
+        return LaneRows(self.names, memory, {name: row[lanes] for name, row in self.more.items()})
 
     def __or__(self, more: Values) -> LaneRows:
         return replace(self, more={**self.more, **more})
 
     def __getitem__(self, name: str) -> Array:
         found = self.more.get(name)
-        return self.block[self._places[name]] if found is None else found
+        return self.memory[self._places[name]] if found is None else found
 
     def __iter__(self) -> Iterator[str]:
         return iter({**self._places, **self.more})
@@ -392,9 +409,19 @@ class Pass:
         names = self.scan.inputs
         return np.stack([self.places[name] for name in names]) if names else None
 
+    def _start(self, lanes: int) -> Array:
+        """What every lane starts with, (states, lanes): kept from one batch to the next."""
+        start = self._starts.get(lanes)
+        if start is None:
+            values = np.array([[value] for value in self.reduction.start.values()])
+            start = np.repeat(values, lanes, axis=1)
+            self._starts.clear()
+            self._starts[lanes] = start
+        return start
+
     @cached_property
-    def _start(self) -> Array:
-        return np.array([[value] for value in self.reduction.start.values()])
+    def _starts(self) -> dict[int, Array]:
+        return {}
 
     @property
     def function_names(self) -> tuple[str, ...]:
@@ -415,8 +442,20 @@ class Pass:
         Functions that the values have already are not computed again, see `functions`.
         """
         scan = self.scan
-        if not scan.state:
-            return {}
+        state = self._state(values, kernels, threads, steps, None) if scan.state else ()
+        return dict(zip(scan.state, state, strict=True))
+
+    def onto(self, rows: LaneRows, kernels: str, threads: int, steps: int = 1) -> LaneRows:
+        """The numbers of mechanisms with these states, as `run` gives them, in one block where it has room."""
+        names = tuple(self.scan.state)
+        if not names or len(rows.room) < len(names) or rows.more.keys() & set(names):
+            return rows | self.run(rows, kernels, threads, steps)
+        self._state(rows, kernels, threads, steps, rows.room[: len(names)])
+        return rows.with_room(names)
+
+    def _state(self, values: Values, kernels: str, threads: int, steps: int, room: Array | None) -> Array:
+        """States (states, lanes), in the room where there is one."""
+        scan, lanes = self.scan, len(next(iter(values.values())))
         if isinstance(values, LaneRows) and values.block_has(scan.parameters):
             parameters, take = values.block, self._runner(kernels, threads, values.names)
         else:
@@ -424,13 +463,13 @@ class Pass:
             parameters = np.stack([known[name] for name in scan.parameters]) if scan.parameters else None
             take = self._runner(kernels, threads, scan.parameters)
         if self._at_once:
-            return dict(zip(scan.state, take(parameters, None).outputs[:, 0], strict=True))
-        # every lane starts alike; where no parameter tells how many there are, the start does
-        start = self._start
-        if parameters is None:
-            start = np.repeat(start, len(next(iter(values.values()))), axis=1)
-        state = take(parameters, self._inputs, start, steps=None if scan.inputs else steps).state
-        return dict(zip(scan.state, state, strict=True))
+            out = None if room is None else room[:, None]
+            found: Array = take(parameters, None, out=out).outputs[:, 0]
+            return found
+        # every lane starts alike; where nothing else tells how many places or lanes there are, steps and states do
+        count = None if scan.inputs else steps
+        found = take(parameters, self._inputs, self._start(lanes), steps=count, new_state=room).state
+        return found
 
 
 def greatest(name: str, value: Node, start: float = -INFINITE) -> Reduction:

@@ -74,21 +74,26 @@ class Kernel:
         state: npt.ArrayLike | None = None,
         out: Array | None = None,
         steps: int | None = None,
+        new_state: Array | None = None,
         threads: int = 1,
     ) -> Scanned:
-        """Run the scan; shapes as in `call_of`. Threads share lanes, or steps if lanes are inside."""
+        """Run the scan; shapes as in `call_of`, `new_state` is written to if given.
+
+        Threads share lanes, or steps if lanes are inside.
+        """
         call = call_of(self.scan, parameters, inputs, state, out, steps, self.number)
         if not call.lanes or not call.steps:
-            return Scanned(call.outputs, call.state)
+            return Scanned(call.outputs, _copied(call.state, new_state))
         width = self.shape.vector.width
         # a kernel reads and writes whole vectors: fewer lanes are filled up outside the caller's arrays
         if call.lanes < width:
-            return _without_padding(self._run(_pad_lanes(call, width), 1), call)
-        return self._run(call, threads)
+            scanned = _without_padding(self._run(_pad_lanes(call, width), 1), call)
+            return Scanned(scanned.outputs, _copied(scanned.state, new_state))
+        return self._run(call, threads, new_state)
 
-    def _run(self, call: Call, threads: int) -> Scanned:
+    def _run(self, call: Call, threads: int, new_state: Array | None = None) -> Scanned:
         prepared = self.tables.split_call(call)
-        state = np.empty_like(call.state)
+        state = np.empty_like(call.state) if new_state is None else new_state
         if threads == 1:
             self._call(prepared, state)
         else:
@@ -263,6 +268,14 @@ def _pad_lanes(call: Call, width: int) -> Call:
 
     outputs = np.empty((*call.outputs.shape[:2], width), call.outputs.dtype)
     return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)
+
+
+def _copied(state: Array, new_state: Array | None) -> Array:
+    """A state of its own, that of the caller where there is one."""
+    if new_state is None:
+        return state.copy()
+    new_state[...] = state
+    return new_state
 
 
 def _without_padding(scanned: Scanned, call: Call) -> Scanned:
