@@ -160,6 +160,7 @@ def _swing(x: TrigonometricPolynomial, y: TrigonometricPolynomial) -> tuple[Oper
         (1.0, (half(plus(a, d)), half(minus(c, b)))),
         (-1.0, (half(minus(a, d)), half(plus(b, c)))),
     ]
+    sense: Operand
     (sense, longest), *others = coefficients
     most: Operand = length(*longest)
     whole = most

@@ -456,6 +456,7 @@ class Pass:
     def _state(self, values: Values, kernels: str, threads: int, steps: int, room: Array | None) -> Array:
         """States (states, lanes), in the room where there is one."""
         scan, lanes = self.scan, len(next(iter(values.values())))
+        parameters: Array | None
         if isinstance(values, LaneRows) and values.block_has(scan.parameters):
             parameters, take = values.block, self._runner(kernels, threads, values.names)
         else:
