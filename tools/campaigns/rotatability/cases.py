@@ -10,11 +10,13 @@ import numpy.typing as npt
 
 from centrode.errors import Status
 from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.link_rotation import LinkRotation
 from centrode.kinematics.machine_code.trace import trace_motion
-from centrode.kinematics.machine_code.variables import SCALE, varied_of
+from centrode.kinematics.machine_code.variables import SCALE, centre_of, varied_of, winding_of
+from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.samples import SUSPECT
-from centrode.kinematics.solve import requested_grid, solve
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 from tools.campaigns.campaign import Campaign, Outcome, random_of
@@ -76,6 +78,16 @@ def reserve(kind: Kind, values: Values, lane: int, low: float, high: float) -> t
         return float(min(one / abs(other) for one, other in ends)), float(share)
 
 
+def shares(kind: Kind, values: Values, low: float, high: float) -> Array:
+    """How far mechanisms are from the border by doubles, as shares of the greatest values."""
+    wave = kind.wave(values, Doubles)
+    least, greatest = extremes_of_many(wave, low, high)
+    ends = [np.sort(np.stack([a + b * least, a + b * greatest]), axis=0) for a, b in wave.factors]
+    worst = np.min([one / np.abs(other) for one, other in ends], axis=0)
+    product = np.prod([one / np.abs(other) for one, other in ends], axis=0)
+    return np.where(worst > 0.0, product, np.abs(worst))
+
+
 def drawn(seed: int, number: int) -> tuple[Kind, Values, tuple[float, float], EventScreening, Any]:
     """The batch of a case: its kind, values, range of the mesh, and what screens it."""
     random = random_of(seed, number)
@@ -120,6 +132,7 @@ def run(seed: int, number: int) -> Outcome:
     for what, lanes in (("clear", judged.clear), ("open", judged.opens), ("doubtful", doubtful)):
         found.count(what, int(np.count_nonzero(lanes)))
     found.measure(row, "doubtful", np.count_nonzero(doubtful) / LANES)
+    _compare_angles(found, row, screening, rows, span, solved, judged.clear & clear)
     for lane in np.nonzero(judged.clear & ~clear)[0]:
         least, share = reserve(kind, values, int(lane), *mesh)
         found.count("clear, and the search finds an event")
@@ -132,10 +145,41 @@ def run(seed: int, number: int) -> Outcome:
         found.measure(row, "no event found", -least)
         if not least < 0.0:
             found.fault(f"lane {lane} is called open, reserve {least:.3g}")
-    for lane in np.nonzero(doubtful)[0]:
-        least, share = reserve(kind, values, int(lane), *mesh)
-        found.hold(row, "doubt", share if least > 0.0 else abs(least), DOUBTFUL)
+    lanes = np.nonzero(doubtful)[0]
+    if len(lanes):
+        # the bound is far above the rounding of doubles
+        some = {path: x[lanes] for path, x in values.items()}
+        found.hold(row, "doubt", float(shares(kind, some, *mesh).max()), DOUBTFUL)
     return found
+
+
+def _compare_angles(
+    found: Outcome,
+    row: str,
+    screening: EventScreening,
+    rows: Values,
+    span: SampleGrid,
+    solved: Solved,
+    clear: npt.NDArray[np.bool_],
+) -> None:
+    """Angles of links with the turns that the arrays count on the mesh, from where closed forms say that they stand."""
+    traced = screening.traced
+    rotation = LinkRotation.of(traced, tuple(traced.turning), screening.names)
+    (drive,) = traced.winders
+    if not rotation.headings.keys() >= traced.turning.keys():
+        found.fault("no closed form of an angle was found")
+        return
+    stands = rotation.judge(rows, "arrays", 1)
+    told, where = clear & stands.told, stands.values
+    found.count("clear, and angles told", int(np.count_nonzero(told)))
+    found.measure(row, "angles not told", np.count_nonzero(clear & ~told) / max(1, np.count_nonzero(clear)))
+    # of angles that begin half a turn off those of the description the arrays alone count turns
+    lanes = np.nonzero(told & stands.near)[0]
+    for link in traced.turning if len(lanes) else ():
+        angle = solved.angles[0, lanes][:, :, solved.layout.angles.index(link)]
+        turning = where[winding_of(link, drive)][lanes, None] * span.parameter
+        off = np.abs(angle - turning - where[centre_of(link)][lanes, None]).max()
+        found.hold(row, "angle", float(off / np.pi), 1.0)
 
 
 CAMPAIGN = Campaign(
@@ -150,7 +194,8 @@ CAMPAIGN = Campaign(
     on the mesh. Where clear mechanisms have an event or a sample that is not ok, and where open ones have none,
     the extremes of what decides are computed by other formulas to 50 digits from the same doubles: a fault is a
     clear mechanism that does not close by its margin, and an open one that closes. Doubtful ones lie next to
-    the border, or are a fault.""",
+    the border, or are a fault. Of the clear ones the angles of all links, with the turns that the arrays count
+    on the mesh, stay within half a turn of where closed forms say that they stand.""",
     {
         "doubtful": "share of the mechanisms of a case that are left to the mesh",
         "event found": "where the search finds an event of a clear mechanism: the radicand's least value over "
@@ -159,6 +204,9 @@ CAMPAIGN = Campaign(
         "over its greatest value",
         "doubt": f"how far from the border, as a share of the greatest value, a doubtful mechanism is; "
         f"bound {DOUBTFUL:g}",
+        "angle": "greatest distance of a link's angle from where closed forms say that it stands, in half turns; "
+        "bound 1",
+        "angles not told": "share of the clear mechanisms whose angles are followed on the mesh",
     },
     run,
     1000,
