@@ -190,8 +190,8 @@ def _compare_angles(
 CAMPAIGN = Campaign(
     "rotatability",
     "Conditions of closure in closed form",
-    """Dyads on a turning crank, a thousand random mechanisms a case: four-bars, slider-cranks, inverted slider-
-    cranks and spherical four-bars, over a turn and over a part of one; among them equal sides, kites, collinear
+    """Dyads on a turning crank, a thousand random mechanisms a case: four-bars, slider-cranks, inverted
+    slider-cranks and spherical four-bars, over a turn and over a part of one; among them equal sides, kites, collinear
     pivots, guides that pass the crank's axis, and two fifths that miss the border between closing and opening
     by a share of 1e-1 to 1e-16 of a length.
 
