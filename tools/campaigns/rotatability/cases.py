@@ -87,9 +87,10 @@ def shares(kind: Kind, values: Values, low: float, high: float) -> Array:
     wave = kind.wave(values, Doubles)
     least, greatest = extremes_of_many(wave, low, high)
     ends = [np.sort(np.stack([a + b * least, a + b * greatest]), axis=0) for a, b in wave.factors]
-    worst = np.min([one / np.abs(other) for one, other in ends], axis=0)
-    product = np.prod([one / np.abs(other) for one, other in ends], axis=0)
-    return np.where(worst > 0.0, product, np.abs(worst))
+    each = np.stack([one / np.abs(other) for one, other in ends])
+    worst = each.min(axis=0)
+    found: Array = np.where(worst > 0.0, each.prod(axis=0), np.abs(worst))
+    return found
 
 
 def drawn(seed: int, number: int) -> tuple[Kind, Values, tuple[float, float], EventScreening, Any]:
@@ -150,10 +151,9 @@ def run(seed: int, number: int) -> Outcome:
         found.measure(row, "no event found", -least)
         if not least < 0.0:
             found.fault(f"lane {lane} is called open, reserve {least:.3g}")
-    lanes = np.nonzero(doubtful)[0]
-    if len(lanes):
+    if doubtful.any():
         # the bound is far above the rounding of doubles
-        some = {path: x[lanes] for path, x in values.items()}
+        some = {path: x[doubtful] for path, x in values.items()}
         found.hold(row, "doubt", float(shares(kind, some, *mesh).max()), DOUBTFUL)
     return found
 
@@ -177,7 +177,9 @@ def _compare_angles(
     stands = rotation.judge(rows, "arrays", 1)
     told, where = clear & stands.told, stands.values
     found.count("clear, and angles told", int(np.count_nonzero(told)))
-    found.measure(row, "angles not told", np.count_nonzero(clear & ~told) / max(1, np.count_nonzero(clear)))
+    found.measure(
+        row, "angles not told", int(np.count_nonzero(clear & ~told)) / (int(np.count_nonzero(clear)) or 1)
+    )
     # of angles that begin half a turn off those of the description the arrays alone count turns
     lanes = np.nonzero(told & stands.near)[0]
     for link in traced.turning if len(lanes) else ():
