@@ -56,6 +56,32 @@ def test_a_sweep(run: Runner) -> None:
     assert found.state.shape == (0, 13)
 
 
+@pytest.mark.parametrize("lanes", [3, 40])
+def test_states_go_where_they_are_wanted(run: Runner, lanes: int) -> None:
+    """Rows of a greater array may be given; what the scan starts with stays as it is."""
+    numbers, steps = np.linspace(1, 2, lanes)[None], np.linspace(0, 6, 7)[None]
+    scan, start = Scan(("a",), ("t",), {}, {"x": x + a * t, "v": v - t}), np.ones((2, lanes))
+    memory = np.full((4, lanes), 7.0)
+    found = run(scan, numbers, steps, start, new_state=memory[1:3])
+    assert np.shares_memory(found.state, memory)
+    np.testing.assert_array_equal(memory[1:3], run(scan, numbers, steps, start).state)
+    assert (memory[[0, 3]] == 7.0).all() and (start == 1.0).all()
+
+
+@NEEDS
+def test_functions_of_lanes_are_those_of_numpy_or_the_kernel() -> None:
+    """By themselves they have the bits of NumPy; the kernel's own are right to a unit of the last place."""
+    scan = Scan(("a",), ("t",), {}, {"x": x + m.sin(a) * t})
+    numbers, steps = np.linspace(0.1, 3.0, 1000)[None], np.ones((1, 1))
+    alike, own = (
+        executors.runner(scan, "machine code", own_functions=own)(numbers, steps, [[0.0]]).state[0]
+        for own in (False, True)
+    )
+    np.testing.assert_array_equal(alike, np.sin(numbers[0]))
+    assert 0 < np.count_nonzero(own != alike) < 500
+    assert np.abs(own - alike).max() <= 2.0 * EPS
+
+
 def test_outputs_go_where_they_are_wanted(run: Runner) -> None:
     scan = Scan(("a",), ("t",), {"y": a * t})
     room = np.zeros((1, 4, 40))

@@ -156,6 +156,17 @@ def test_arcs_that_vary_give_the_same_bits_reduced(seed: int) -> None:
     np.testing.assert_array_equal(found["position"], expected["position"])
 
 
+def test_a_residual_on_the_sphere_takes_its_own_functions() -> None:
+    """Reduced sweeps round sines of arcs in the worst residual otherwise: by units of the last place of an angle."""
+    mechanism = ct.example("spherical-four-bar")
+    vary = {path: ct.value_at(mechanism, path) * np.linspace(0.99, 1.01, 40) for path in ("links.BC.length",)}
+    found = ct.sweep(mechanism, vary, "position.C", 37, reduce="range", executor=MACHINE)
+    residual = ct.sweep(mechanism, vary, "residual", 37, executor=ARRAYS)["residual"].to_numpy()
+    some = residual[:, 37 * np.arange(3) // 3].max(axis=1)
+    assert (some > 0.0).any()
+    np.testing.assert_allclose(found["worst_residual"], some, rtol=0.0, atol=4.0 * EPS)
+
+
 @pytest.mark.parametrize("name", sorted(REASONS))
 def test_what_is_refused_is_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = ct.example(name)

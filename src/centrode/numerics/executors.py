@@ -40,10 +40,12 @@ def runner(
     lanes_inside: bool = False,
     relaxed: bool = False,
     threads: int = 1,
+    own_functions: bool = False,
 ) -> Run:
-    """A function (parameters, inputs, state=None, out=None, steps=None) that runs a scan.
+    """A function (parameters, inputs, state=None, out=None, steps=None, new_state=None) that runs a scan.
 
-    Shapes are those of `scans.call_of`; `lanes_inside` and `relaxed` those of `kernel_of`, and nothing to NumPy.
+    Shapes are those of `scans.call_of`; `lanes_inside`, `relaxed` and `own_functions` those of `kernel_of`, and nothing
+    to NumPy.
 
     Raises
     ------
@@ -52,7 +54,9 @@ def runner(
     """
     if choose_executor(executor) == ARRAYS:
         return functools.partial(run_on_arrays, scan, number=number)
-    kernel = _kernels().kernel_of(scan, number, lanes_inside=lanes_inside, relaxed=relaxed)
+    kernel = _kernels().kernel_of(
+        scan, number, lanes_inside=lanes_inside, relaxed=relaxed, own_functions=own_functions
+    )
     return functools.partial(kernel.run, threads=threads)
 
 

@@ -166,7 +166,7 @@ def call_of(
     if out is None:
         out = np.empty((scan.height, count, lanes), number)
     check_room(scan, out, count, lanes, number)
-    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
+    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes), out)
 
 
 def check_room(scan: Scan, out: Array, steps: int, lanes: int, number: npt.DTypeLike) -> None:
@@ -398,13 +398,14 @@ def run_on_arrays(
     state: npt.ArrayLike | None = None,
     out: Array | None = None,
     steps: int | None = None,
+    new_state: Array | None = None,
     number: npt.DTypeLike = np.float64,
 ) -> Scanned:
-    """Run a scan on NumPy arrays; shapes as in `call_of`."""
+    """Run a scan on NumPy arrays; shapes as in `call_of`, `new_state` as the state is written to if given."""
     call = call_of(scan, parameters, inputs, state, out, steps, number)
     if not scan.state:
         return Scanned(call.outputs, call.state, _all_steps(scan, call, number))
-    rows = call.state
+    rows = call.state.copy()
     for k in range(call.steps):
         results = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
         for i, name in zip(scan.rows, scan.outputs, strict=True):
@@ -412,7 +413,9 @@ def run_on_arrays(
         rows = np.array(
             [np.broadcast_to(results[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
         )
-    return Scanned(call.outputs, rows)
+    if new_state is not None:
+        new_state[...] = rows
+    return Scanned(call.outputs, rows if new_state is None else new_state)
 
 
 def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> Array:

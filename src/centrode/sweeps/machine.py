@@ -26,6 +26,7 @@ from centrode.kinematics.machine_code.variables import (
     ALONG,
     PARAMETER,
     SCALE,
+    LaneRows,
     Pass,
     Varied,
     before_of,
@@ -200,7 +201,16 @@ class Expressed:
 
     def functions(self, rows: Mapping[str, Array]) -> Values:
         """Functions of the numbers of mechanisms, which all passes over their samples have in common."""
-        return {} if self.traced.steps else self._over_some.functions(rows)
+        return {} if self.traced.steps else self._standing.functions(rows)
+
+    @cached_property
+    def _standing(self) -> Pass:
+        """What is folded, or where nothing is, the residual: its functions are those that passes have in common."""
+        folded = [fold.value for fold in self.folds.found.values()] if self.columns else []
+        nodes = folded or [as_node(self.traced.solved.residual[0, 0])]
+        state = {f"{END}{k}": node for k, node in enumerate(nodes)}
+        names = (*self.judging.names, *self.task.paths)
+        return Pass(Reduction(state, dict.fromkeys(state, 0.0)), names, {})
 
     def check_some(self, rows: Mapping[str, Array]) -> Values:
         """The greatest residual of a few samples, of mechanisms that are certain to close at all of them."""
@@ -209,7 +219,9 @@ class Expressed:
     @cached_property
     def _checked(self) -> Pass:
         # residuals of gears and wheels have angles with their turns, which are known when samples are checked
-        return replace(self._over_some, names=(*self._over_some.names, *self._of_angles))
+        # a residual is no more than rounding, so functions of its own need not be those of NumPy
+        names = (*self._over_some.names, *self._of_angles, *self._standing.function_names)
+        return replace(self._over_some, names=names, compiled=True)
 
     @cached_property
     def _over_some(self) -> Pass:
@@ -273,14 +285,12 @@ def _known_of(formula: OutputFormula) -> Known | None:
 
 # How machine code passes samples: each for itself, or along the path where groups of higher class ask for it.
 
-PassedValues: TypeAlias = Mapping[str, Array]
-"""Of mechanisms: name -> (lanes,)."""
 Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 """Some mechanisms after the other, and where their samples go: (numbers, lanes, samples)."""
 
 
-Reducing: TypeAlias = Callable[[PassedValues], dict[str, Array]]
-"""From what is known of mechanisms to the states when all samples are passed."""
+Reducing: TypeAlias = Callable[[LaneRows], LaneRows]
+"""Adds the states when all samples are passed to what is known of mechanisms."""
 
 
 class Passing(Protocol):
@@ -293,7 +303,7 @@ class Passing(Protocol):
     def fixed(self) -> Mapping[int, float]:
         """Numbers that are not written, as they are the same everywhere: place among all -> number."""
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         """Write every sample but what is fixed; returns what mechanisms are judged by."""
 
 
@@ -330,7 +340,7 @@ class ResidualParts:
             without_unit = without_unit if part is divided[0] else m.max(without_unit, part)
         return cls(as_node(without_unit), *divided[0].arguments)
 
-    def scale_of(self, rows: PassedValues) -> Array | float:
+    def scale_of(self, rows: Values) -> Array | float:
         """The divisor of mechanisms."""
         assert self.scale is not None
         return rows[SCALE] if self.scale.operation == VARIABLE else float(self.scale.detail)
@@ -361,9 +371,9 @@ class EachForItself:
         asked = self.asked
         over_samples = Pass(reduction, asked.names, asked.inputs)
 
-        def reduce(rows: PassedValues) -> dict[str, Array]:
+        def reduce(rows: LaneRows) -> LaneRows:
             # where nothing moves the samples are counted all the same
-            return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
+            return over_samples.onto(rows, asked.kernels, asked.threads, steps=asked.samples)
 
         return reduce
 
@@ -371,7 +381,7 @@ class EachForItself:
     def fixed(self) -> Mapping[int, float]:
         return self.asked.fixed
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
@@ -420,12 +430,12 @@ class Along:
         asked = self.asked
         walking = Walking(asked.judging.walk, reduction, further=asked.further)
 
-        def reduce(rows: PassedValues) -> dict[str, Array]:
-            return walking.reduce(asked.way, rows, asked.kernels, asked.threads)
+        def reduce(rows: LaneRows) -> LaneRows:
+            return rows | walking.reduce(asked.way, rows, asked.kernels, asked.threads)
 
         return reduce
 
-    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         asked = self.asked
         walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs, asked.further)
         parts = []
@@ -624,7 +634,7 @@ class MachineCodeExecutor:
         """
         # reported before anything is traced
         check_present(kernels)
-        varied = varied_of(numbers, values)
+        varied = varied_of(numbers, values).with_traced_scale()
         asked = Expressed(
             task,
             varied,
@@ -649,12 +659,12 @@ class MachineCodeExecutor:
         self, task: SweepTask, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
         """Fill in all columns for the mechanisms of these dimensions."""
-        rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
+        known = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
         if self.asked.traced.steps:
-            rows |= beginnings(task.ready, numbers, len(next(iter(rows.values()))))
-        rows |= self.asked.functions(rows)
+            known |= beginnings(task.ready, numbers, len(next(iter(known.values()))))
+        rows = LaneRows.of(known | self.asked.functions(known), self._spare)
         judged = self.asked.judging.judge(rows)
-        rows |= judged.values
+        rows = rows | judged.values
         # mechanisms that turn out doubtful at a sample are taken out again below
         clear = judged.clear.copy()
         # every sample that is kept has its residual judged; of reduced ones that are certain a few do
@@ -663,7 +673,7 @@ class MachineCodeExecutor:
             if which.any():
                 everywhere = bool(which.all())
                 at: Any = slice(None) if everywhere else np.nonzero(which)[0]
-                some = rows if everywhere else {name: row[at] for name, row in rows.items()}
+                some = rows if everywhere else rows.take(at)
                 clear[at] = self._without_events(some, at, results, sure)
         left = np.nonzero(~clear)[0]
         if not len(left):
@@ -712,7 +722,9 @@ class MachineCodeExecutor:
     def _passing(self) -> Passing:
         return passing_of(self.asked)
 
-    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool) -> Mask:
+    def _without_events(
+        self, rows: LaneRows, at: Any, results: Mapping[str, AnyArray], certain: bool
+    ) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         states = (
             self._fill_reductions(rows, at, results, certain)
@@ -729,16 +741,15 @@ class MachineCodeExecutor:
         return clear
 
     def _fill_reductions(
-        self, rows: Values, at: Any, results: Mapping[str, AnyArray], certain: bool
-    ) -> Values:
+        self, rows: LaneRows, at: Any, results: Mapping[str, AnyArray], certain: bool
+    ) -> LaneRows:
         """Fill in one number, or a few, of each motion; returns what is known of mechanisms then."""
-        rows = dict(rows)
         columns = self.asked.final
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
-            rows |= self._folding(depth, certain)(rows)
+            rows = self._folding(depth, certain)(rows)
         if certain:
-            rows |= self.asked.check_some(rows)
+            rows = rows | self.asked.check_some(rows)
         values = self._at_end(rows)
         for name, numbers in columns.items():
             flat = results[name].reshape(len(results[name]), len(numbers))
@@ -746,7 +757,7 @@ class MachineCodeExecutor:
                 flat[at, k] = values[f"{END}{name} {k}"]
         return rows
 
-    def _at_end(self, rows: Values) -> Values:
+    def _at_end(self, rows: LaneRows) -> Values:
         """The numbers of all columns from the last states; by a kernel where that is worth compiling."""
         graph, lanes = self._ends, len(next(iter(rows.values())))
         if lanes * len(graph.order) < WORTH_A_KERNEL:
@@ -770,6 +781,13 @@ class MachineCodeExecutor:
             self._foldings[key] = self._passing.reducing(self._states(depth, certain))
         return self._foldings[key]
 
+    @cached_property
+    def _spare(self) -> int:
+        """Rows that passes over the samples add to what is known of mechanisms."""
+        if not self.asked.columns:
+            return 0
+        return sum(len(self._states(depth, False).state) for depth in range(self.asked.folds.passes))
+
     def _states(self, depth: int, certain: bool) -> Reduction:
         """States handed on in a pass over the samples."""
         folds = self.asked.folds.at_depth(depth)
@@ -781,14 +799,15 @@ class MachineCodeExecutor:
             parts.append(judging_states(self.asked))
         return together(*parts)
 
-    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_samples(self, rows: LaneRows, at: Any, results: Mapping[str, AnyArray]) -> Mapping[str, Array]:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         # formulas of every sample may name what is folded
         if self.asked.final or self.asked.folds.found:
             rows = self._fill_reductions(rows, at, results, certain=False)
             # what is written is judged as it is written
-            rows = {name: row for name, row in rows.items() if name not in {RESIDUAL, SLACK, SURE}}
+            judged = {RESIDUAL, SLACK, SURE}
+            rows = replace(rows, more={name: row for name, row in rows.more.items() if name not in judged})
         every = EverySample(self.asked.written, results, at, self.asked.samples, self._passing.fixed)
         return self._passing.write_samples(rows, every.rooms())
 

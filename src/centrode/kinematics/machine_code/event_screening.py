@@ -21,6 +21,7 @@ import numpy.typing as npt
 from centrode.kinematics.change_points import WINDOW
 from centrode.kinematics.machine_code.bends import DIVISOR, RADICAND, bends_of
 from centrode.kinematics.machine_code.closure_conditions import ClosureConditions, FoundClosure
+from centrode.kinematics.machine_code.link_rotation import LinkRotation
 from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, way_of
 from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import (
@@ -207,8 +208,47 @@ class EventScreening:
         return places_of(self._path, parameter, ORDERS - 1)
 
     @cached_property
+    def _rotation(self) -> LinkRotation:
+        return LinkRotation.of(self.traced, self.links, self.names)
+
+    @cached_property
     def _centring(self) -> Centring:
         return Centring(self.traced, self.links, self.mesh, self.names)
+
+    @cached_property
+    def _centring_of_others(self) -> Centring:
+        others = tuple(link for link in self.links if link not in self._rotation.headings)
+        return Centring(self.traced, others, self.mesh, self.names)
+
+    def _where_angles_stand(self, values: Mapping[str, Array], clear: Mask) -> Values:
+        """Centres and windings in the mechanisms that are clear; where none is found a mechanism is clear no more."""
+        names = [centre_of(link) for link in self.links]
+        names += [winding_of(link, drive) for link in self.links for drive in self.traced.winders]
+        further = {name: np.zeros(len(clear)) for name in names}
+
+        told = near = np.zeros_like(clear)
+        if self._rotation.headings:
+            found = self._rotation.judge(values, self.executor, self.threads)
+            told, near = found.told, clear & found.near
+            further |= found.values
+
+        def follow(centring: Centring, mechanisms: Mask) -> Mask:
+            """Which of some mechanisms have a centre of each angle that is looked at."""
+            found = mechanisms.copy()
+            at = np.nonzero(mechanisms)[0]
+            if len(at):
+                some = values if len(at) == len(found) else {name: x[at] for name, x in values.items()}
+                found[at], centres = centring.centres(some, self.executor, self.threads)
+                for name, x in centres.items():
+                    further[name][at] = x
+            return found
+
+        # what closed forms do not tell is followed over the mesh: other links, and of some mechanisms all
+        followed = follow(self._centring, clear & ~told)
+        if len(self._rotation.headings) < len(self.links):
+            near = follow(self._centring_of_others, near)
+        clear &= near | followed
+        return further
 
     @cached_property
     def walk(self) -> Walk:
@@ -250,9 +290,7 @@ class EventScreening:
                 clear[left] = found.clear
                 doubtful[left] = ~(found.clear | found.opens)
         if self.links and not self.traced.steps:
-            near, centres = self._centring.centres(values, self.executor, self.threads)
-            clear &= near
-            further |= centres
+            further |= self._where_angles_stand(values, clear)
         return ScreenedEvents(clear, certain & clear, further)
 
     def _in_wide_cells(self, values: Mapping[str, Array]) -> FoundClosure:

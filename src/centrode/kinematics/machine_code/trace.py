@@ -173,6 +173,7 @@ class Traced:
     turns : link -> the turns that stand in its angle: a whole number
     steps : group of higher class -> its step; there are places before and after then, see `walks`
     counted : what a gear or wheel depends on -> its turns, and its angle with these
+    at : places and poses without derivatives
     """
 
     solved: Solved
@@ -183,6 +184,7 @@ class Traced:
     winders: Mapping[str, Operand]
     steps: Mapping[int, NewtonStep]
     counted: Mapping[str, tuple[Node, Node]]
+    at: Positions
 
     @cached_property
     def bends(self) -> Mapping[tuple[str, int], Bent]:
@@ -232,7 +234,10 @@ def trace_motion(
     angles, turning = _angles(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
     solved = _motion_of_parts(_Parts(ready, kinematics, layout, columns, angles), span, varied)
     bent = BentPlan(ready, span, varied, signs)
-    return Traced(solved, hooks.radicands, hooks.divisors, bent, turning, winders, hooks.steps, hooks.counted)
+    places = at.map_numbers(plain)
+    return Traced(
+        solved, hooks.radicands, hooks.divisors, bent, turning, winders, hooks.steps, hooks.counted, places
+    )
 
 
 def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -13,11 +13,12 @@ import numpy.typing as npt
 
 from centrode.kinematics.path import JETS, Path, SampleGrid
 from centrode.kinematics.samples import ORDERS
-from centrode.numerics.executors import runner
+from centrode.numerics.executors import Run, runner
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph, split_graph
+from centrode.numerics.graphs import Graph, rebuilt, split_graph
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.machine_code.loops import FUNCTIONS
+from centrode.numerics.operations import VARIABLE
 from centrode.numerics.scans import Reduction, Scan, evaluate
 from centrode.structure.dimensions import Dimensions
 
@@ -49,7 +50,7 @@ class Varied:
     ----------
     numbers : every array of the batch a variable, floats as they are
     names : a variable for each array that `arrays_of` finds, in its order
-    scale : the greatest length, a variable where it varies
+    scale : the greatest length, a variable where it varies, or an expression of the numbers
     """
 
     numbers: Dimensions
@@ -59,9 +60,13 @@ class Varied:
     def values(self, numbers: Dimensions) -> dict[str, Array]:
         """Values of the variables in a batch of the same kind: name -> (lanes,)."""
         values = dict(zip(self.names, arrays_of(numbers), strict=True))
-        if not isinstance(self.scale, float):
+        if isinstance(self.scale, Node) and self.scale.operation == VARIABLE:
             values[SCALE] = np.asarray(numbers.scale, dtype=np.float64)
         return values
+
+    def with_traced_scale(self) -> Varied:
+        """The same with the greatest length as an expression of the numbers, of which it is a variable otherwise."""
+        return replace(self, scale=self.numbers.scale)
 
 
 def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
@@ -268,6 +273,71 @@ FUNCTION = "function "
 
 
 @dataclass(frozen=True)
+class LaneRows(Mapping[str, Array]):
+    """Numbers of mechanisms, name -> (lanes,): first those of a block, which passes take where they stand.
+
+    Attributes
+    ----------
+    names : of the rows of the block
+    memory : (names or more, lanes), the block and room for what passes add to it
+    more : numbers that stand elsewhere
+    """
+
+    names: tuple[str, ...]
+    memory: Array
+    more: Mapping[str, Array] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, values: Values, spare: int) -> LaneRows:
+        """The numbers as one block, with room for so many further rows."""
+        memory = np.empty((len(values) + spare, len(next(iter(values.values())))))
+        for row, numbers in zip(memory, values.values(), strict=False):
+            row[:] = numbers
+        return cls(tuple(values), memory)
+
+    @property
+    def block(self) -> Array:
+        """The numbers that stand together, (names, lanes)."""
+        return self.memory[: len(self.names)]
+
+    @property
+    def room(self) -> Array:
+        """Rows of the memory behind the block."""
+        return self.memory[len(self.names) :]
+
+    def with_room(self, names: Sequence[str]) -> LaneRows:
+        """The block with rows behind it that have been filled in."""
+        return replace(self, names=(*self.names, *names))
+
+    def block_has(self, names: Sequence[str]) -> bool:
+        """Whether numbers of these names stand in the block, at least one of them."""
+        return bool(names) and self._places.keys() >= set(names)
+
+    def take(self, lanes: npt.NDArray[np.intp]) -> LaneRows:
+        """Those of some mechanisms."""
+        memory = np.empty((len(self.memory), len(lanes)))
+        np.take(self.block, lanes, axis=1, out=memory[: len(self.names)])
+        return LaneRows(self.names, memory, {name: row[lanes] for name, row in self.more.items()})
+
+    def __or__(self, more: Values) -> LaneRows:
+        return replace(self, more={**self.more, **more})
+
+    def __getitem__(self, name: str) -> Array:
+        found = self.more.get(name)
+        return self.memory[self._places[name]] if found is None else found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**self._places, **self.more})
+
+    def __len__(self) -> int:
+        return len({**self._places, **self.more})
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {name: k for k, name in enumerate(self.names)}
+
+
+@dataclass(frozen=True)
 class Pass:
     """A reduction over places that have nothing to do with one another.
 
@@ -275,11 +345,14 @@ class Pass:
     ----------
     names : what may be known of mechanisms
     places : name -> (places,), what may be known of places
+    compiled : functions of what is known of mechanisms, those aside whose names are known, are rounded as kernels
+        round them, not as NumPy does
     """
 
     reduction: Reduction
     names: Sequence[str]
     places: Values
+    compiled: bool = False
 
     @cached_property
     def _known(self) -> tuple[str, ...]:
@@ -289,11 +362,15 @@ class Pass:
     @cached_property
     def _split(self) -> tuple[Graph, Graph]:
         """Functions of what is known of mechanisms, and the states with these as variables."""
-        functions, rest = split_graph(Graph(self.reduction.state), self._known, "", FUNCTIONS)
+        whole = Graph(self.reduction.state)
+        functions, rest = split_graph(whole, self._known, "", FUNCTIONS)
         # called by what they are, so that passes know them from one another
         called = {name: FUNCTION + node.key.hex() for name, node in functions.outputs.items()}
         named = Graph({called[name]: node for name, node in functions.outputs.items()})
-        return named, rest.substitute({name: variable(new) for name, new in called.items()})
+        if not self.compiled:
+            return named, rest.substitute({name: variable(new) for name, new in called.items()})
+        names = {node: variable(name) for name, node in named.outputs.items() if name in self.names}
+        return Graph({}), Graph(rebuilt(whole.outputs, lambda node, _arguments: names.get(node)))
 
     @cached_property
     def scan(self) -> Scan:
@@ -307,11 +384,57 @@ class Pass:
             rest.outputs,
         )
 
+    @cached_property
+    def _at_once(self) -> bool:
+        """Whether nothing is handed on: what is left is then computed in one step, and nothing starts."""
+        handed_on = frozenset(self._split[1].variables) & self.scan.state.keys()
+        return bool(self.scan.parameters) and not self.scan.inputs and not handed_on
+
+    @cached_property
+    def _runners(self) -> dict[tuple[str, int, tuple[str, ...]], Run]:
+        """What runs the scan, by executor, threads and parameters: found once, as a pass is made for every batch."""
+        return {}
+
+    def _runner(self, kernels: str, threads: int, parameters: tuple[str, ...]) -> Run:
+        key = kernels, threads, parameters
+        if key not in self._runners:
+            scan = replace(self.scan, parameters=parameters)
+            if self._at_once:
+                scan = replace(scan, outputs=scan.state, state={})
+            self._runners[key] = runner(scan, kernels, threads=threads, own_functions=self.compiled)
+        return self._runners[key]
+
+    @cached_property
+    def _inputs(self) -> Array | None:
+        names = self.scan.inputs
+        return np.stack([self.places[name] for name in names]) if names else None
+
+    def _start(self, lanes: int) -> Array:
+        """What every lane starts with, (states, lanes): kept from one batch to the next."""
+        start = self._starts.get(lanes)
+        if start is None:
+            values = np.array([[value] for value in self.reduction.start.values()])
+            start = np.repeat(values, lanes, axis=1)
+            self._starts.clear()
+            self._starts[lanes] = start
+        return start
+
+    @cached_property
+    def _starts(self) -> dict[int, Array]:
+        return {}
+
+    @property
+    def function_names(self) -> tuple[str, ...]:
+        """Names of the functions of what is known of mechanisms."""
+        return tuple(self._split[0].outputs)
+
     def functions(self, values: Values) -> dict[str, Array]:
         """Functions of what is known of mechanisms, as NumPy rounds them: those that are not among the values yet."""
-        missing = Graph({name: x for name, x in self._split[0].outputs.items() if name not in values})
+        missing = {name: x for name, x in self._split[0].outputs.items() if name not in values}
+        if not missing:
+            return {}
         lanes = len(next(iter(values.values())))
-        return {name: np.broadcast_to(x, (lanes,)) for name, x in evaluate(missing, values).items()}
+        return {name: np.broadcast_to(x, (lanes,)) for name, x in evaluate(Graph(missing), values).items()}
 
     def run(self, values: Values, kernels: str, threads: int, steps: int = 1) -> dict[str, Array]:
         """The states behind all places, name -> (lanes,); `steps` says how many there are where nothing tells.
@@ -319,18 +442,35 @@ class Pass:
         Functions that the values have already are not computed again, see `functions`.
         """
         scan = self.scan
-        if not scan.state:
-            return {}
-        known = {**values, **self.functions(values)}
-        parameters = np.stack([known[name] for name in scan.parameters]) if scan.parameters else None
-        inputs = np.stack([self.places[name] for name in scan.inputs]) if scan.inputs else None
-        # every lane starts alike; where no parameter tells how many there are, the start does
-        start = np.array([[value] for value in self.reduction.start.values()])
-        if parameters is None:
-            start = np.repeat(start, len(next(iter(values.values()))), axis=1)
-        run = runner(scan, kernels, threads=threads)
-        state = run(parameters, inputs, start, steps=None if scan.inputs else steps).state
+        state = self._state(values, kernels, threads, steps, None) if scan.state else ()
         return dict(zip(scan.state, state, strict=True))
+
+    def onto(self, rows: LaneRows, kernels: str, threads: int, steps: int = 1) -> LaneRows:
+        """The numbers of mechanisms with these states, as `run` gives them, in one block where it has room."""
+        names = tuple(self.scan.state)
+        if not names or len(rows.room) < len(names) or rows.more.keys() & set(names):
+            return rows | self.run(rows, kernels, threads, steps)
+        self._state(rows, kernels, threads, steps, rows.room[: len(names)])
+        return rows.with_room(names)
+
+    def _state(self, values: Values, kernels: str, threads: int, steps: int, room: Array | None) -> Array:
+        """States (states, lanes), in the room where there is one."""
+        scan, lanes = self.scan, len(next(iter(values.values())))
+        parameters: Array | None
+        if isinstance(values, LaneRows) and values.block_has(scan.parameters):
+            parameters, take = values.block, self._runner(kernels, threads, values.names)
+        else:
+            known = {**values, **self.functions(values)}
+            parameters = np.stack([known[name] for name in scan.parameters]) if scan.parameters else None
+            take = self._runner(kernels, threads, scan.parameters)
+        if self._at_once:
+            out = None if room is None else room[:, None]
+            found: Array = take(parameters, None, out=out).outputs[:, 0]
+            return found
+        # every lane starts alike; where nothing else tells how many places or lanes there are, steps and states do
+        count = None if scan.inputs else steps
+        found = take(parameters, self._inputs, self._start(lanes), steps=count, new_state=room).state
+        return found
 
 
 def greatest(name: str, value: Node, start: float = -INFINITE) -> Reduction:

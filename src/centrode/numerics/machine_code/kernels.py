@@ -75,22 +75,31 @@ class Kernel:
         state: npt.ArrayLike | None = None,
         out: Array | None = None,
         steps: int | None = None,
+        new_state: Array | None = None,
         threads: int = 1,
     ) -> Scanned:
-        """Run the scan; shapes as in `call_of`. Threads share lanes, or steps if lanes are inside."""
+        """Run the scan; shapes as in `call_of`, `new_state` is written to if given.
+
+        Threads share lanes, or steps if lanes are inside.
+        """
         call = call_of(self.scan, parameters, inputs, state, out, steps, self.number)
         if not call.lanes or not call.steps:
-            return Scanned(call.outputs, call.state, np.empty((len(self.scan.extremes), call.steps)))
+            extremes = np.empty((len(self.scan.extremes), call.steps))
+            return Scanned(call.outputs, _copied(call.state, new_state), extremes)
         width = self.shape.vector.width
         # a kernel reads and writes whole vectors: fewer lanes are filled up outside the caller's arrays
         if call.lanes < width:
-            return _without_padding(self._run(_pad_lanes(call, width), 1), call, self.scan.rows)
-        return self._run(call, threads)
+            scanned = _without_padding(self._run(_pad_lanes(call, width), 1), call, self.scan.rows)
+            return Scanned(scanned.outputs, _copied(scanned.state, new_state), scanned.extremes)
+        return self._run(call, threads, new_state)
 
-    def _run(self, call: Call, threads: int) -> Scanned:
+    def _run(self, call: Call, threads: int, new_state: Array | None = None) -> Scanned:
         prepared = self.tables.split_call(call)
-        # there are no states where there are extremes, and these take their place
-        state = self.room_of_extremes(call.steps) if self.scan.extremes else np.empty_like(call.state)
+        if self.scan.extremes:
+            # there are no states where there are extremes, and these take their place
+            state = self.room_of_extremes(call.steps)
+        else:
+            state = np.empty_like(call.state) if new_state is None else new_state
         if threads == 1:
             self._call(prepared, state)
         else:
@@ -146,6 +155,7 @@ def kernel_of(
     relaxed: bool = False,
     target: Target | None = None,
     hasty: bool = False,
+    own_functions: bool = False,
 ) -> Kernel:
     """The kernel of a scan, from memory or disk if it has been compiled before.
 
@@ -157,6 +167,7 @@ def kernel_of(
     relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
     target : the machine to compile for; the one that is named now (`targets`), or this one, if left out
     hasty : the code is waited for, see `in_haste`
+    own_functions : with the steps inside, functions of the lanes' numbers are rounded as here, not as on NumPy
     """
     if np.dtype(number) not in NUMBERS:
         raise ValueError(f"numbers of a kernel are float64 or float32, not {np.dtype(number)}")
@@ -169,7 +180,7 @@ def kernel_of(
         raise ValueError("a scan with a state takes its steps inside")
     if scan.extremes and not lanes_inside:
         raise ValueError("extremes over lanes are taken with the lanes inside")
-    shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed)
+    shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed, own_functions)
     key = (scan.key, shape, machine)
     # compiling is done without the lock: two threads may compile the same kernel, which costs time and
     # nothing else
@@ -192,7 +203,7 @@ def forget() -> None:
 
 
 def _compile_kernel(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine: Target) -> Kernel:
-    tables = Tables.of(scan, shape.lanes_inside)
+    tables = Tables.of(scan, shape.lanes_inside, shape.own_functions)
     rest = tables.rest
     if shape.relaxed:
         rest = with_reciprocals(rest, rest.parameters if shape.lanes_inside else rest.inputs)
@@ -289,6 +300,14 @@ def _pad_lanes(call: Call, width: int) -> Call:
 
     outputs = np.empty((*call.outputs.shape[:2], width), call.outputs.dtype)
     return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)
+
+
+def _copied(state: Array, new_state: Array | None) -> Array:
+    """A state of its own, that of the caller where there is one."""
+    if new_state is None:
+        return state.copy()
+    new_state[...] = state
+    return new_state
 
 
 def _without_padding(scanned: Scanned, call: Call, rows: tuple[int, ...]) -> Scanned:

@@ -235,12 +235,14 @@ class LoopShape:
     has_fma : whether the machine rounds a product and a sum at once
     lanes_inside : whether the inner loop runs over lanes, else over steps
     relaxed : whether operations behind all decisions may be rounded otherwise
+    own_functions : whether functions of lanes' numbers are computed here, not on NumPy
     """
 
     vector: Vector
     has_fma: bool
     lanes_inside: bool
     relaxed: bool
+    own_functions: bool = False
 
 
 def function_text(scan: Scan, shape: LoopShape) -> str:
@@ -557,14 +559,15 @@ class Tables:
     rest: Scan
 
     @classmethod
-    def of(cls, scan: Scan, lanes_inside: bool) -> Tables:
+    def of(cls, scan: Scan, lanes_inside: bool, own_functions: bool = False) -> Tables:
         """The tables of a scan."""
         # with the lanes inside, steps are turns of the outer loop, which computes anything once a step by
         # itself; only functions that libraries round differently are taken out there. The other way round for
         # lanes
         steps, graph = split_graph(scan.graph, scan.inputs, "of step", FUNCTIONS if lanes_inside else None)
         # of one step that hands nothing on nothing is computed twice
-        known = scan.parameters if lanes_inside or scan.inputs or scan.state else ()
+        repeated = lanes_inside or ((scan.inputs or scan.state) and not own_functions)
+        known = scan.parameters if repeated else ()
         lanes, graph = split_graph(graph, known, "of lane", None if lanes_inside else FUNCTIONS)
         rest = scan.with_graph(graph, (*scan.parameters, *lanes.outputs), (*scan.inputs, *steps.outputs))
         return cls(ConstantTable(scan.inputs, steps), ConstantTable(scan.parameters, lanes), rest)
