@@ -340,7 +340,7 @@ class ResidualParts:
             without_unit = without_unit if part is divided[0] else m.max(without_unit, part)
         return cls(as_node(without_unit), *divided[0].arguments)
 
-    def scale_of(self, rows: Values) -> Array | float:
+    def scale_of(self, rows: Mapping[str, Array]) -> Array | float:
         """The divisor of mechanisms."""
         assert self.scale is not None
         return rows[SCALE] if self.scale.operation == VARIABLE else float(self.scale.detail)
