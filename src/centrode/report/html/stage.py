@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,7 +11,8 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.render.document.blocks import Moving, Outline, RingBlock
-from centrode.render.drawing.style import GROUND, MARKERS, PALETTE
+from centrode.render.drawing.colours import GROUND, MARKERS, PALETTE
+from centrode.report.html.parts import page_data
 
 Array = NDArray[np.float64]
 WIDE, TALLEST = 6400, 5200
@@ -70,9 +70,7 @@ class PictureMap:
 
 def stage_of(moving: Moving, still: str) -> str:
     """The element of a motion: its first picture, its controls, and its data, which the page's script reads."""
-    data = json.dumps(_data(moving), ensure_ascii=False, separators=(",", ":"))
-    for sign in "<>&\u2028\u2029":
-        data = data.replace(sign, f"\\u{ord(sign):04x}")
+    data = page_data(_data(moving))
     label = html.escape(_("Mechanism in motion; drag a point, or use the arrow keys"))
     return (
         f'<div class="moving" role="group" aria-label="{label}">'
