@@ -1,0 +1,221 @@
+"""A mechanism as one file that computes its own motion: no network, no Python, no other files."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from centrode.errors import STATUSES_NOT_REACHED, STATUSES_OF_MOTION
+from centrode.kinematics.motion import motion
+from centrode.locale import _, chosen_language, decimal_mark, speaking
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
+from centrode.model.mechanism import Mechanism
+from centrode.page.program import PageProgram, page_program
+from centrode.render.document.numbers import Numbers
+from centrode.report.html.parts import page_data, page_part, page_policy, page_script
+from centrode.report.html.stage import controls_of
+from centrode.report.mechanism_page.courses import chosen_courses, courses_of
+from centrode.report.mechanism_page.drawing import drawing_of
+from centrode.report.mechanism_page.handles import handles_of
+from centrode.report.mechanism_page.numbers_that_vary import name_of, ranges_of
+from centrode.report.mechanism_page.words import words_of_page
+from centrode.version import __version__
+
+HERE = Path(__file__).parent
+SHARED_SCRIPTS = ("space.js", "picture.js", "animation.js")
+SCRIPTS = (
+    "model.js",
+    "outlines.js",
+    "handles.js",
+    "mechanism_stage.js",
+    "curves.js",
+    "panel.js",
+    "state_link.js",
+    "opening.js",
+)
+SHARED_STYLES = ("base.css", "document.css", "motion.css")
+STYLES = ("mechanism_page.css",)
+LAST_STYLES = ("print.css",)
+Vary = Mapping[str, Sequence[float | str]]
+
+
+def mechanism_page(
+    described: MechanismSource,
+    vary: Vary | None = None,
+    *,
+    language: str | None = None,
+    samples: int | None = None,
+) -> str:
+    """A mechanism as a page (HTML) on which a reader changes its dimensions and sees its motion.
+
+    Parameters
+    ----------
+    described : Mechanism, file or name of an example
+    vary : path -> (from, to), numbers [SI] or texts with a unit
+        The numbers that have a slider and follow the handles of joints; without it the lengths of all links, the places
+        of joints in links and in the frame, and the lines of the frame's guides.
+    language : "en", "ru" or "uk"; the chosen one if None
+    samples : of the motion; the description's own if None
+
+    Returns
+    -------
+    str
+        The same mechanism gives the same page.
+
+    Raises
+    ------
+    NotComputedYet
+        A group without a closed form, or a number that the page cannot vary, by its name.
+    InputError
+        A path or a range that is none, a description that defines no motion.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> page = ct.mechanism_page("crank-rocker", {"links.AB.length": ("3 m", "4 m")})
+    >>> page.startswith("<!DOCTYPE html>"), len(page) < 250_000
+    (True, True)
+    """
+    mechanism = mechanism_of(described)
+    program = page_program(mechanism, ranges_of(mechanism) if vary is None else vary, samples)
+    with speaking(language or chosen_language()):
+        return _page(mechanism, program, _data(mechanism, program))
+
+
+def _data(mechanism: Mechanism, program: PageProgram) -> dict[str, Any]:
+    """What the scripts read."""
+    data = dict(program.data)
+    points, links = list(data["points"]), list(data["links"])
+    paths = [one.path for one in program.parameters]
+    numbers = Numbers(mechanism.display)
+    courses = courses_of(mechanism, data)
+    units = dict.fromkeys(one.unit for one in program.parameters)
+    return {
+        "program": data,
+        "drawing": drawing_of(mechanism, motion(mechanism), points, links),
+        "handles": handles_of(mechanism, points, links, paths),
+        "names": {path: name_of(mechanism, path) for path in paths},
+        "units": {unit: _unit(unit, numbers) for unit in units},
+        "parameter": _parameter(mechanism, numbers),
+        "courses": courses,
+        "chosen": chosen_courses(mechanism, courses, data),
+        "reached": [status not in STATUSES_NOT_REACHED for status in STATUSES_OF_MOTION],
+        "words": words_of_page(),
+        "decimal": decimal_mark(),
+    }
+
+
+def _unit(unit: str, numbers: Numbers) -> dict[str, Any]:
+    factor, label = numbers.shown(unit)
+    return {"factor": factor, "label": label}
+
+
+def _parameter(mechanism: Mechanism, numbers: Numbers) -> dict[str, Any]:
+    """What the motion is a function of."""
+    parameter = mechanism.motion_parameter
+    variable = parameter.variable
+    return {"symbol": variable.symbol, "byTime": parameter.by_time, **_unit(variable.unit, numbers)}
+
+
+def _page(mechanism: Mechanism, program: PageProgram, data: Mapping[str, Any]) -> str:
+    title = html.escape(_(mechanism.title) or _("Mechanism"))
+    own = page_script([*map(page_part, SHARED_SCRIPTS), *map(_part, SCRIPTS)])
+    scripts = [program.javascript, own]
+    style = "".join([*map(page_part, SHARED_STYLES), *map(_part, STYLES), *map(page_part, LAST_STYLES)])
+    return (
+        f'<!DOCTYPE html>\n<html lang="{chosen_language()}">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{page_policy(scripts)}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
+        f"{_body(mechanism, program, title)}"
+        f'<script type="application/json" id="page-data">{page_data(data)}</script>\n'
+        f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
+    )
+
+
+def _body(mechanism: Mechanism, program: PageProgram, title: str) -> str:
+    """The elements of the page; scripts fill what is empty."""
+    word = _escaped
+    subtitle = word(
+        _("Computed on this page by a program that centrode {version} printed"), version=__version__
+    )
+    noscript = word(
+        _("This page computes the motion by its own script; the browser does not run scripts here.")
+    )
+    label = word(_("Mechanism in motion; drag a link, or use the arrow keys"))
+    hint = word(
+        _(
+            "Drag a ring to change the dimensions, a link to move the mechanism. By keyboard: Tab reaches every ring, "
+            "arrow keys move it, with Shift ten times as far; Space plays."
+        )
+    )
+    dimensions = ""
+    if program.parameters:
+        dimensions = (
+            f'<section class="dimensions" aria-labelledby="h-dimensions">{_heading("dimensions", _("Dimensions"))}'
+            f'<div class="rows"></div><p class="note bad" role="alert"></p><p class="buttons">'
+            f'<button type="button" data-do="reset">{word(_("Reset"))}</button>'
+            f'<button type="button" data-do="undo" title="Ctrl+Z">{word(_("Undo"))}</button></p></section>'
+        )
+    return (
+        f'<div class="live"><header><h1>{title}</h1><p class="subtitle">{subtitle}</p></header>\n<main>\n'
+        f'<section class="stage" aria-label="{word(_("Player"))}">'
+        f'<div class="moving" role="group" aria-label="{label}">'
+        f'<div class="paper" tabindex="0" role="group" aria-label="{label}"><noscript>{noscript}</noscript></div>'
+        f"{controls_of('', _controls(program))}</div>"
+        f'<div class="strip"></div><div class="statuses" role="status"></div>'
+        f'<p class="hint">{hint}</p></section>\n'
+        f"{dimensions}\n"
+        f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", _("Curves"))}'
+        f'<div class="charts"></div><p class="buttons">'
+        f'<button type="button" data-do="add-curve">{word(_("Add a curve"))}</button></p></section>\n'
+        f'<section class="away" aria-labelledby="h-away">{_heading("away", _("Numbers and link"))}'
+        f'<p class="buttons"><button type="button" data-do="copy-link">{word(_("Copy the link"))}</button>'
+        f'<button type="button" data-do="csv">{word(_("Copy as CSV"))}</button></p>'
+        f'<p id="said" role="status"></p>'
+        f'<details class="table-of-numbers"><summary>{word(_("Numbers at the cursor"))}</summary>'
+        f'<div class="numbers"></div></details></section>\n</main>\n'
+        f'<section class="printed" aria-hidden="true"><p class="caption"><b>{word(_("Dimensions"))}.</b> '
+        f'<span class="place"></span></p><table><tbody></tbody></table></section>\n</div>\n'
+        f'<dialog id="by-hand" aria-label="{word(_("Copy by hand"))}"><form method="dialog">'
+        f"<label>{word(_('The browser does not let the page copy; copy it here:'))}"
+        f'<textarea rows="6" readonly></textarea></label><button>{word(_("Close"))}</button></form></dialog>\n'
+    )
+
+
+def _heading(name: str, text: str) -> str:
+    return f'<h2 id="h-{name}">{_escaped(text)}</h2>'
+
+
+def _controls(program: PageProgram) -> str:
+    """What the player of a page has beside that of reports."""
+    word = _escaped
+
+    def box(name: str, text: str, on: bool = False) -> str:
+        checked = " checked" if on else ""
+        return f'<label><input type="checkbox" data-show="{name}"{checked}> {word(text)}</label>'
+
+    links = "".join(f"<option>{html.escape(name)}</option>" for name in program.data["links"])
+    body = f'<label class="of">{word(_("of link"))} <select data-do="body">{links}</select></label>'
+    return (
+        box("loop", _("loop"), on=True)
+        + (box("handles", _("handles"), on=True) if program.parameters else "")
+        + box("velocities", _("velocities"))
+        + box("accelerations", _("accelerations"))
+        + box("centres", _("instant centres"))
+        + f'<span class="pair">{box("centrodes", _("centrodes"))}{body}</span>'
+        + box("ghosts", _("ghost positions"))
+        + f'<button type="button" data-do="fit">{word(_("Fit"))}</button>'
+    )
+
+
+def _escaped(sentence: str, **holes: str) -> str:
+    return html.escape(sentence.format(**holes) if holes else sentence)
+
+
+@cache
+def _part(name: str) -> str:
+    return (HERE / name).read_text(encoding="utf-8")
