@@ -27,6 +27,8 @@ const WIDE = 12;
 const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
 const WINDOW = 0.04;
+/* beside a change point, in units of the path: how near closed forms lose digits, how far places for a polynomial lie */
+const BESIDE = 4e-3, CIRCLE = 4 * WINDOW, AROUND = 16;
 const AT_THE_START = 1e-9;
 /* the search in cells: half width that is one place, parts of a cell, ways towards a place, and its limits */
 const FINEST = 1e-10, COARSE = 1e-6, PARTS = 4, HALVINGS = 26, MANY = 1000, MOST = 10000;
@@ -528,6 +530,45 @@ function createMechanism(data) {
     }
   }
 
+  /* Beside a change point closed forms lose their digits, though the motion runs on smoothly: there it is the polynomial
+   * through places on both sides. */
+  const nodesAround = Float64Array.from({ length: AROUND }, (_x, q) => Math.cos((Math.PI * (2 * q + 1)) / (2 * AROUND)));
+  const weights = Float64Array.from(nodesAround, (_x, q) => (q % 2 ? -1 : 1) * Math.sin((Math.PI * (2 * q + 1)) / (2 * AROUND)));
+
+  function mend() {
+    for (const change of events) {
+      if (change.kind !== "change point" || !data.smooth) continue;
+      const others = events.map((e) => Math.abs(e.drive - change.drive)).filter((apart) => apart > BESIDE * unit);
+      const reach = Math.min(CIRCLE * unit, 0.5 * Math.min(...others));
+      if (reach < 4 * BESIDE * unit) continue;
+      for (let i = 0; i < n; i++) {
+        if (Math.abs(drive[i] - change.drive) < BESIDE * unit && status[i] === OK) mendSample(i, change.drive, reach);
+      }
+    }
+  }
+
+  function mendSample(i, centre, reach) {
+    const around = Object.fromEntries(Object.entries(given).map(([name, row]) => [name, new Float64Array(AROUND).fill(row[i])]));
+    around.parameter = nodesAround.map((x) => centre + reach * x);
+    const o = run(preparePlaces(printed.motion, around, AROUND)), turning = new Set(data.angles.map(([, place]) => place));
+    const x = (drive[i] - centre) / reach;
+    const mended = rows.map((row, k) => {
+      let above = 0, below = 0;
+      for (let q = 0; q < AROUND; q++) {
+        let value = o[k * AROUND + q];
+        /* angles without turns may jump between two of the places */
+        if (turning.has(k)) value -= TURN * Math.round((value - o[k * AROUND]) / TURN);
+        const share = weights[q] / (x - nodesAround[q]);
+        above += share * value;
+        below += share;
+      }
+      const value = above / below;
+      return turning.has(k) ? value - TURN * Math.round(value / TURN) : value;
+    });
+    if (!mended.every(Number.isFinite)) return;
+    mended.forEach((value, k) => { rows[k][i] = value; });
+  }
+
   function judgeSamples() {
     status.fill(OK);
     atSamples.f.run(v, atSamples.p, n, atSamples.o);
@@ -537,7 +578,8 @@ function createMechanism(data) {
       status.fill(OK);
       if (k === radicands.length) judgeRadicands();
     }
-    const bound = data.residual_bound, opened = new Set();
+    mend();
+    const bound = data.residual_bound;
     for (let i = 0; i < n; i++) {
       let doubtful = status[i] !== OK || !(residual[i] <= bound) || events.length > 0;
       if (doubtful && status[i] === OK && rows.some((row) => !Number.isFinite(row[i]))) status[i] = SINGULAR;
@@ -561,22 +603,12 @@ function createMechanism(data) {
 
   /* angles with their turns: from sample to sample where these lie close, else along the mesh */
   function unwind() {
-    const changed = [];
-    let whole = Math.abs(drive[startSample] - initial) <= 0.05 * unit && status.every((s) => s === OK);
+    const whole = Math.abs(drive[startSample] - initial) <= 0.05 * unit && status.every((each) => each === OK);
     for (const [link, place, start] of data.angles) {
-      const row = rows[place];
+      const row = rows[place], turns = turnRows.get(link), raw = turns === undefined ? row : row.slice();
       if (!(whole && unwindBySamples(row, start))) unwindByMesh(link, row, start);
-      const turns = turnRows.get(link);
-      if (turns !== undefined) {
-        let differs = false;
-        for (let i = 0; i < n; i++) {
-          const now = row[i] === row[i] ? rounded(row[i] / TURN) : 0;
-          if (turns[i] !== now) { turns[i] = now; differs = true; }
-        }
-        if (differs) changed.push(link);
-      }
+      if (turns !== undefined) for (let i = 0; i < n; i++) turns[i] = row[i] === row[i] ? Math.round((row[i] - raw[i]) / TURN) : 0;
     }
-    return changed.length > 0;
   }
 
   function unwindBySamples(row, start) {
@@ -643,15 +675,15 @@ function createMechanism(data) {
     findEvents();
     findReach(reach);
     fillMoving(atSamples, nearSamples);
+    if (data.residual_turns) {
+      /* residuals of what gears turn depend on the turns of angles, so these come first */
+      status.fill(OK);
+      atSamples.f.run(v, atSamples.p, n, atSamples.o);
+      unwind();
+    }
     judgeSamples();
     settle();
-    if (unwind() && data.residual_turns) {
-      /* residuals of what gears turn depend on the turns of angles */
-      fillMoving(atSamples, nearSamples);
-      judgeSamples();
-      settle();
-      for (const [link, place, start] of data.angles) unwindByMesh(link, rows[place], start);
-    }
+    unwind();
     const low = Math.min(initial, drive[0], drive[n - 1]) - 1e-9 * unit;
     const high = Math.max(initial, drive[0], drive[n - 1]) + 1e-9 * unit;
     frame.events = events.filter((event) => low <= event.drive && event.drive <= high);

@@ -40,7 +40,7 @@ from centrode.numerics.graphs import Graph, Unwritten
 from centrode.numerics.javascript import HELPERS, PlaceFunction, once
 from centrode.page.tracing import HALF, PageTrace, near_of, sign_of, trace_page, turns_of
 from centrode.quantities import QUANTITIES
-from centrode.structure.dimensions import Dimensions, dimensions_of
+from centrode.structure.dimensions import dimensions_of
 
 Range: TypeAlias = Sequence[float | str]
 Vary: TypeAlias = Mapping[str, Range]
@@ -286,7 +286,9 @@ def _data(
         "quantities": [_quantity(ready, quantity) for quantity in traced.quantities],
         "rows": [[int(row.derivative), int(row.of_frame)] for row in traced.rows],
         "angles": [[link, row, float(ready.assembled.angles[link])] for link, row in traced.angles.items()],
-        "residual_turns": any(name.startswith(turns_of("")) for name in Graph({"": traced.residual}).variables),
+        "residual_turns": any(
+            name.startswith(turns_of("")) for name in Graph({"": traced.residual}).variables
+        ),
         "guards": [[kind, group] for kind, group in traced.cells],
         "signs": {str(group): float(sign) for group, sign in ready.assembled.signs.items()},
         "radicands": list(traced.at_samples),
@@ -327,7 +329,9 @@ def _parameter_data(ready: Ready) -> dict[str, Any]:
 
 
 def _quantity(ready: Ready, quantity: Any) -> dict[str, Any]:
-    known = QUANTITIES[quantity.name].for_drive("s" if ready.kinematics.path.by_time else ready.parameter.units[0])
+    known = QUANTITIES[quantity.name].for_drive(
+        "s" if ready.kinematics.path.by_time else ready.parameter.units[0]
+    )
     if ready.mechanism.space == "sphere":
         known = known.on_sphere()
     return {

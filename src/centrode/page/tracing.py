@@ -18,7 +18,7 @@ from centrode.errors import NotComputedYet
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import ROOM
 from centrode.kinematics.machine_code.trace import MotionParts, angles_of, columns_of, motion_of_parts
-from centrode.kinematics.machine_code.variables import NODE_JETS, PARAMETER, TURN, Varied, grid_of_variables, whole_turns
+from centrode.kinematics.machine_code.variables import NODE_JETS, PARAMETER, TURN, Varied, whole_turns
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.path import Path, SampleGrid
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics, layout_of
@@ -172,7 +172,7 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied) -> PageTrace:
     angles, turning = angles_of(
         layout, at, columns, ready.assembled.angles, lambda link, _cosine, _sine: variable(turns_of(link))
     )
-    solved = motion_of_parts(MotionParts(ready, kinematics, layout, columns, angles), grid_of_variables(span), varied)
+    solved = motion_of_parts(MotionParts(ready, kinematics, layout, columns, angles), span, varied)
     rows, quantities = _rows(solved, turning)
     guards = _guards(policy)
     return PageTrace(
@@ -198,9 +198,7 @@ FRAME_OF = "point"
 CONTACT = "contact"
 
 
-def _rows(
-    solved: Solved, turning: Mapping[str, Any]
-) -> tuple[tuple[Row, ...], tuple[TracedQuantity, ...]]:
+def _rows(solved: Solved, turning: Mapping[str, Any]) -> tuple[tuple[Row, ...], tuple[TracedQuantity, ...]]:
     """Rows of all quantities, equal ones once, and where each quantity finds its own."""
     places: dict[tuple[Node, bool, bool], int] = {}
     quantities: list[TracedQuantity] = []
@@ -280,7 +278,8 @@ def _bent_drives(path: Path, cells: Cells) -> dict[str, Number]:
         return path.drive_values(NODE_BENDS, NODE_BENDS.variable(place, cells.half))
     # laws are any formulas: their second derivative is looked at in the middle and at the ends of each cell
     looks = [
-        path.drive_values(NODE_JETS, Jet.variable(place + shift * cells.half, 2)) for shift in (0.0, -1.0, 1.0)
+        path.drive_values(NODE_JETS, Jet.variable(place + shift * cells.half, 2))
+        for shift in (0.0, -1.0, 1.0)
     ]
     values: dict[str, Number] = {}
     for drive, here in looks[0].items():
