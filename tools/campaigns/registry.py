@@ -10,6 +10,7 @@ from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.gaps import cases as gaps
+from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
 from tools.campaigns.spheres import cases as spheres
@@ -25,5 +26,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         cams.CAMPAIGN,
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
+        pages.CAMPAIGN,
     )
 }

@@ -28,7 +28,7 @@ const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
 const WINDOW = 0.04;
 /* beside a change point, in units of the path: how near closed forms lose digits, how far places for a polynomial lie */
-const BESIDE = 4e-3, CIRCLE = 4 * WINDOW, AROUND = 16;
+const BESIDE = 0.02, CIRCLE = 8 * WINDOW, AROUND = 20;
 const AT_THE_START = 1e-9;
 /* the search in cells: half width that is one place, parts of a cell, ways towards a place, and its limits */
 const FINEST = 1e-10, COARSE = 1e-6, PARTS = 4, HALVINGS = 26, MANY = 1000, MOST = 10000;
@@ -540,7 +540,7 @@ function createMechanism(data) {
       if (change.kind !== "change point" || !data.smooth) continue;
       const others = events.map((e) => Math.abs(e.drive - change.drive)).filter((apart) => apart > BESIDE * unit);
       const reach = Math.min(CIRCLE * unit, 0.5 * Math.min(...others));
-      if (reach < 4 * BESIDE * unit) continue;
+      if (reach < 2 * BESIDE * unit) continue;
       for (let i = 0; i < n; i++) {
         if (Math.abs(drive[i] - change.drive) < BESIDE * unit && status[i] === OK) mendSample(i, change.drive, reach);
       }
@@ -567,6 +567,8 @@ function createMechanism(data) {
     });
     if (!mended.every(Number.isFinite)) return;
     mended.forEach((value, k) => { rows[k][i] = value; });
+    /* what the formulas say in a place without digits is no residual of the motion: that of the places around is */
+    residual[i] = o.subarray(rows.length * AROUND, (rows.length + 1) * AROUND).reduce((a, b) => Math.max(a, b));
   }
 
   function judgeSamples() {

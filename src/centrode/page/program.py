@@ -283,7 +283,7 @@ def _data(
         "samples": len(span.parameter),
         "statuses": [status.word for status in STATUSES_OF_MOTION],
         "residual_bound": CLOSED,
-        "quantities": [_quantity(ready, quantity) for quantity in traced.quantities],
+        "quantities": [_quantity(ready, quantity) for quantity in traced.quantities if quantity.rows.size],
         "rows": [[int(row.derivative), int(row.of_frame)] for row in traced.rows],
         "angles": [[link, row, float(ready.assembled.angles[link])] for link, row in traced.angles.items()],
         "residual_turns": any(
