@@ -53,6 +53,8 @@ def page(
     description = library.load(mechanism)
     varied = ranges(vary, "--vary", "links.AB.length=3 m:4 m") if vary else None
     with about(mechanism):
-        text = library.mechanism_page(description, varied, language=language, samples=samples)
+        text = library.mechanism_page(
+            description, varied, language=language, samples=samples, source=mechanism
+        )
     output.write_file(path, text, force=force)
     click.echo(_("wrote {file}").format(file=path))

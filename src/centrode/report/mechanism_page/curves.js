@@ -1,5 +1,5 @@
 // Curves over the motion, with a cursor that is the player's place: drawn at the size they are seen at.
-const TALL = 190, LEFT = 62, RIGHT = 14, UPPER = 12, LOWER = 40;
+const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22;
 
 // Round steps of an axis: 1, 2 or 5 times a power of ten, of degrees parts of a turn.
 const stepsOf = (least, most, count, turns) => {
@@ -151,10 +151,12 @@ class Chart {
     const up = (value) => TALL - LOWER - ((TALL - LOWER - UPPER) * (value - least)) / (most - least);
     this.up = up;
     this.bands(svg);
+    const symbol = [parameter.symbol, parameter.label].filter(Boolean).join(", "), named = 9 * symbol.length + 22;
     const vertical = stepsOf(low, high, wide / 70, parameter.label === "°");
     for (const tick of ticksOf(low, high, vertical)) {
       make("line", { class: "grid", x1: across(tick), x2: across(tick), y1: UPPER, y2: TALL - LOWER }, svg);
-      const label = make("text", { x: across(tick), y: TALL - LOWER + 16, "text-anchor": "middle" }, svg);
+      if (wide - RIGHT - across(tick) < named) continue;
+      const label = make("text", { x: across(tick), y: TALL - 6, "text-anchor": "middle" }, svg);
       label.textContent = this.tick(tick, vertical);
     }
     const horizontal = stepsOf(least, most, 5, this.course.unit === "°" && most - least > 20);
@@ -165,8 +167,8 @@ class Chart {
     }
     make("rect", { class: "box", x: LEFT, y: UPPER, width: wide - LEFT - RIGHT, height: TALL - LOWER - UPPER }, svg);
     const name = make("text", { class: "axis", x: wide - RIGHT, y: TALL - 6, "text-anchor": "end" }, svg);
-    name.textContent = [parameter.symbol, parameter.label].filter(Boolean).join(", ");
-    const what = make("text", { class: "axis", x: 4, y: TALL - 6 }, svg);
+    name.textContent = symbol;
+    const what = make("text", { class: "axis", x: LEFT - 6, y: 12, "text-anchor": "end" }, svg);
     what.textContent = this.course.unit;
     this.lines.forEach((line, k) => {
       let d = "", red = "", pen = false;

@@ -44,6 +44,8 @@ class MechanismStage extends Stage {
   centre(body) {
     const group = make("g", { class: "centre" }, this.centres);
     make("path", { d: "M-60 -60L60 60M-60 60L60 -60", stroke: body.colour }, group);
+    // a link that is hinged to the frame turns about its hinge, which has its own name
+    if (body.points.some((point) => point < this.model.data.program.fixed)) return group;
     const name = make("text", { x: 90, y: -70 }, group);
     name.textContent = body.name;
     return group;
@@ -57,6 +59,14 @@ class MechanismStage extends Stage {
       this.toggle(box.dataset.show, box.checked);
     }
     this.body = this.holder.querySelector('[data-do="body"]');
+    const ways = { left: [-1, 0], right: [1, 0], up: [0, 1], down: [0, -1] };
+    for (const button of this.holder.querySelectorAll("[data-turn]")) {
+      const [right, up] = ways[button.dataset.turn];
+      button.addEventListener("click", () => {
+        this.space.turn(0.15 * right * this.data.radius, 0.15 * up * this.data.radius);
+        this.show();
+      });
+    }
     if (this.body) this.body.addEventListener("change", () => this.renewCentrodes());
   }
 
@@ -75,7 +85,7 @@ class MechanismStage extends Stage {
   refit() {
     const { model, data } = this, wide = data.wide;
     if (model.data.program.space === "sphere") {
-      const high = Math.min(wide, 5200), radius = Math.round(0.42 * Math.min(wide, high));
+      const high = Math.min(0.8 * wide, this.tallest), radius = Math.round(0.44 * high);
       data.size = [wide, high];
       data.centre = [wide / 2, high / 2];
       data.radius = radius;
@@ -84,10 +94,16 @@ class MechanismStage extends Stage {
     }
     const [low, high] = this.extent();
     const sides = minus(high, low), room = 0.12 * Math.max(...sides, TINY);
-    const share = within((sides[1] + 2 * room) / (sides[0] + 2 * room), 0.5, 0.8);
-    data.size = [wide, Math.round(wide * share)];
+    const share = within((sides[1] + 2 * room) / (sides[0] + 2 * room), 0.5, 0.85);
+    data.size = [wide, Math.round(Math.min(wide * share, this.tallest))];
     this.sheet = new Paper(minus(low, [room, room]), plus(high, [room, room]), data.size);
     this.box = [low, high];
+  }
+
+  // What leaves room for the controls on the screen, in units of the picture.
+  get tallest() {
+    const units = this.data.wide / Math.max(this.holder.clientWidth, 1);
+    return Math.max(0.55 * this.data.wide, units * (innerHeight - 330));
   }
 
   extent() {

@@ -53,6 +53,8 @@ def _paths(mechanism: Mechanism, flat: float) -> Iterator[tuple[str, bool]]:
                     yield from _coordinates(f"links.{name}.points.{point}", place, flat)
     axes = ("longitude", "latitude") if mechanism.space == "sphere" else ("x", "y")
     for name in mechanism.frame.points:
+        if name not in joints:  # it only tells where angles are measured from
+            continue
         yield from ((f"frame.points.{name}.{axis}", False) for axis in axes)
     if mechanism.space == "plane":
         yield from ((path, False) for path in _lines(mechanism))
@@ -75,7 +77,7 @@ def _lines(mechanism: Mechanism) -> Iterator[str]:
 
 
 def joints_of(mechanism: Mechanism) -> set[str]:
-    """Points where something is hinged or guided."""
+    """Points where something is hinged or guided, and those that lines and circles pass through or turn about."""
     fixed = set(mechanism.frame.points)
     owners: dict[str, int] = {}
     for link in mechanism.links.values():
@@ -84,7 +86,10 @@ def joints_of(mechanism: Mechanism) -> set[str]:
     guided = {guide.point for guide in mechanism.guides}
     guided |= {end for drive in mechanism.drives for end in drive.distance or ()}
     guided |= {wheel.centre for wheel in mechanism.rolling}
-    return {point for point, count in owners.items() if count > 1 or point in fixed or point in guided}
+    named = [place for guide in mechanism.guides for place in (guide.through, guide.pole)]
+    named += [wheel.along.centre for wheel in mechanism.rolling]
+    guided |= {place for place in named if isinstance(place, str)}
+    return guided | {point for point, count in owners.items() if count > 1 or point in fixed}
 
 
 def name_of(mechanism: Mechanism, path: str) -> str:

@@ -39,6 +39,8 @@ SCRIPTS = (
 SHARED_STYLES = ("base.css", "document.css", "motion.css")
 STYLES = ("mechanism_page.css",)
 LAST_STYLES = ("print.css",)
+FILE = "mechanism.toml"
+"""What commands name where a mechanism has no file."""
 Vary = Mapping[str, Sequence[float | str]]
 
 
@@ -48,6 +50,7 @@ def mechanism_page(
     *,
     language: str | None = None,
     samples: int | None = None,
+    source: str = "",
 ) -> str:
     """A mechanism as a page (HTML) on which a reader changes its dimensions and sees its motion.
 
@@ -59,6 +62,7 @@ def mechanism_page(
         of joints in links and in the frame, and the lines of the frame's guides.
     language : "en", "ru" or "uk"; the chosen one if None
     samples : of the motion; the description's own if None
+    source : file or example that commands on the page name; as `described` names it if empty
 
     Returns
     -------
@@ -80,12 +84,13 @@ def mechanism_page(
     (True, True)
     """
     mechanism = mechanism_of(described)
+    source = source or (FILE if isinstance(described, Mechanism) else Path(described).name)
     program = page_program(mechanism, ranges_of(mechanism) if vary is None else vary, samples)
     with speaking(language or chosen_language()):
-        return _page(mechanism, program, _data(mechanism, program))
+        return _page(mechanism, program, _data(mechanism, program, source))
 
 
-def _data(mechanism: Mechanism, program: PageProgram) -> dict[str, Any]:
+def _data(mechanism: Mechanism, program: PageProgram, source: str) -> dict[str, Any]:
     """What the scripts read."""
     data = dict(program.data)
     points, links = list(data["points"]), list(data["links"])
@@ -105,6 +110,7 @@ def _data(mechanism: Mechanism, program: PageProgram) -> dict[str, Any]:
         "reached": [status not in STATUSES_NOT_REACHED for status in STATUSES_OF_MOTION],
         "words": words_of_page(),
         "decimal": decimal_mark(),
+        "source": source,
     }
 
 
@@ -166,7 +172,7 @@ def _body(mechanism: Mechanism, program: PageProgram, title: str) -> str:
         f'<div class="moving" role="group" aria-label="{label}">'
         f'<div class="paper" tabindex="0" role="group" aria-label="{label}"><noscript>{noscript}</noscript></div>'
         f"{controls_of('', _controls(program))}</div>"
-        f'<div class="strip"></div><div class="statuses" role="status"></div>'
+        f'<div class="statuses" role="status"></div>'
         f'<p class="hint">{hint}</p></section>\n'
         f"{dimensions}\n"
         f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", _("Curves"))}'
@@ -198,10 +204,11 @@ def _controls(program: PageProgram) -> str:
         checked = " checked" if on else ""
         return f'<label><input type="checkbox" data-show="{name}"{checked}> {word(text)}</label>'
 
-    links = "".join(f"<option>{html.escape(name)}</option>" for name in program.data["links"])
-    body = f'<label class="of">{word(_("of link"))} <select data-do="body">{links}</select></label>'
+    links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
+    body = f'<label class="of"> {word(_("of link"))} <select data-do="body">{links}</select></label>'
     return (
-        box("loop", _("loop"), on=True)
+        '<div class="strip"></div>'
+        + box("loop", _("loop"), on=True)
         + (box("handles", _("handles"), on=True) if program.parameters else "")
         + box("velocities", _("velocities"))
         + box("accelerations", _("accelerations"))
@@ -209,7 +216,38 @@ def _controls(program: PageProgram) -> str:
         + f'<span class="pair">{box("centrodes", _("centrodes"))}{body}</span>'
         + box("ghosts", _("ghost positions"))
         + f'<button type="button" data-do="fit">{word(_("Fit"))}</button>'
+        + (_turns() if program.mechanism.space == "sphere" else "")
     )
+
+
+def _option(name: str, chosen: bool) -> str:
+    return f"<option{' selected' if chosen else ''}>{html.escape(name)}</option>"
+
+
+def _floating(program: PageProgram) -> str:
+    """The first link that is not hinged to the frame: its centrodes are curves."""
+    links, fixed = program.mechanism.links, set(program.mechanism.frame.points)
+    free = [
+        name
+        for name, link in links.items()
+        if len(link.coordinates) > 1 and not fixed & set(link.coordinates)
+    ]
+    return next(iter(free), "")
+
+
+def _turns() -> str:
+    """Buttons that turn the sphere, as dragging it does."""
+    names = {
+        "left": ("\u2190", _("Turn the sphere to the left")),
+        "right": ("\u2192", _("Turn the sphere to the right")),
+        "up": ("\u2191", _("Turn the sphere up")),
+        "down": ("\u2193", _("Turn the sphere down")),
+    }
+    made = (
+        f'<button type="button" data-turn="{way}" aria-label="{name}" title="{name}">{sign}</button>'
+        for way, (sign, name) in ((way, (sign, _escaped(name))) for way, (sign, name) in names.items())
+    )
+    return f'<span class="turns">{"".join(made)}</span>'
 
 
 def _escaped(sentence: str, **holes: str) -> str:

@@ -98,12 +98,13 @@ class Statuses {
       }
       if (strained) said.push({ kind: "bad", text: fill(words.residual, { worst: model.spelling.number(worst, 2), bound: model.spelling.number(frame.residualBound, 2) }) });
     }
-    const key = JSON.stringify([said, frame.signsChange, frame.command]);
+    const command = frame.signsChange ? commandOf(model) : "";
+    const key = JSON.stringify([said, command]);
     if (key !== this.key) {
       this.key = key;
       const items = said.slice(0, 12).map((one) => element("p", { className: one.kind }, one.text));
       if (!said.length && !frame.signsChange) items.push(element("p", { className: "good" }, words.all_reached));
-      if (frame.signsChange) items.push(this.changePoints(frame.command));
+      if (frame.signsChange) items.push(this.changePoints(command));
       this.holder.replaceChildren(...items);
     }
     this.strip();
@@ -138,6 +139,14 @@ class Statuses {
     band.append(svg);
   }
 }
+
+// The command that computes the mechanism as it is now.
+const commandOf = (model) => {
+  const quoted = (told) => (/^[\w./-]+$/.test(told) ? told : `"${told.replaceAll(/(["$`\\])/g, "\\$1")}"`);
+  const changed = model.parameters.filter((one, k) => model.values[k] !== one.value)
+    .map((one) => `--set "${one.path}=${model.value(one.path)}${one.unit === "1" ? "" : ` ${one.unit}`}"`);
+  return ["centrode run", quoted(model.data.source), ...changed].join(" ");
+};
 
 // Every number of the motion at the cursor, by kind.
 class Numbers {
