@@ -11,6 +11,8 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
+from tools.node import MISSING, NODE  # noqa: E402
+
 from benchmarks import (  # noqa: E402
     animations,
     chains,
@@ -20,6 +22,7 @@ from benchmarks import (  # noqa: E402
     kernels,
     machine,
     motions,
+    pages,
     peer,
     reports,
     simulation,
@@ -55,9 +58,11 @@ SECTIONS: Mapping[str, Section] = {
         f"Machine code, {LANES} mechanisms of {SAMPLES} samples, a position", kernels.kernels,
     ),
     "solver": (f"One mechanism whose numbers change, {solver.SAMPLES} samples", solver.moves),
+    "page": (f"A page in Node: changed numbers to a motion of {pages.SAMPLES} samples", pages.recomputes),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
+NEED_NODE = {"page"}
 NEED_COMPILER = {"kernels", "sweeps", "simulation"}
 
 
@@ -75,6 +80,9 @@ def main(wanted: list[str]) -> int:
             continue
         if name in NEED_COMPILER and not machine_code.PRESENT:
             print(f"\n{title}\n  left out: {kernels.MISSING}")
+            continue
+        if name in NEED_NODE and NODE is None:
+            print(f"\n{title}\n  left out: {MISSING}")
             continue
         rows += print_section(title, measure())
     return 0 if print_promises(rows) else 1

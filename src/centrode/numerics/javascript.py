@@ -33,7 +33,7 @@ FUNCTIONS = {
     # both give NaN where one argument is
     "minimum": "Math.min",
     "maximum": "Math.max",
-    "power": "Math.pow",
+    "power": "power",
     "least": "least",
     "greatest": "greatest",
     # a sign there would bind more strongly than in the table: its argument always stands in brackets
@@ -41,8 +41,12 @@ FUNCTIONS = {
 }
 HELPERS = """const least = (a, b) => a < b || b !== b ? a : b;
 const greatest = (a, b) => a > b || b !== b ? a : b;
+const power = (a, b) => a === 1 || (a === -1 && Math.abs(b) === Infinity) ? 1 : Math.pow(a, b);
 """
-"""What printed functions call beside the functions of JavaScript: of two numbers the one that is a number."""
+"""What printed functions call beside the functions of JavaScript.
+
+Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has not.
+"""
 COSTLY = frozenset({"sin", "cos", "atan2", "exp", "log", "power", "sqrt"})
 """Operations that are worth a row of their own where they depend on the place alone."""
 
@@ -94,15 +98,15 @@ class PlaceFunction:
         rows = [*fixed, *parts.outputs, *moving]
         nodes = [rest.outputs[str(k)] for k in range(len(self.outputs))]
         run = _function(nodes, self.of_mechanism, rows)
-        lists = (
-            f"fixed: {_names(fixed)}, moving: {_names(moving)}, parts: {len(parts.outputs)}, count: {len(nodes)}"
-        )
+        lists = f"fixed: {_names(fixed)}, moving: {_names(moving)}, parts: {len(parts.outputs)}, count: {len(nodes)}"
         return f"{self.name}: {{{lists},\nbefore: {before},\nrun: {run}}}"
 
 
 def once(outputs: Sequence[Node], of_mechanism: Mapping[str, int]) -> str:
     """A function `(v, o)` of the numbers of a mechanism alone. Raises Unwritten."""
-    lines, texts = _lines(topological_order(outputs), {name: f"v[{k}]" for name, k in of_mechanism.items()}, outputs, "c")
+    lines, texts = _lines(
+        topological_order(outputs), {name: f"v[{k}]" for name, k in of_mechanism.items()}, outputs, "c"
+    )
     lines += [f"o[{k}] = {texts[node][0]};" for k, node in enumerate(outputs)]
     return "(v, o) => {\n" + "\n".join(lines) + "\n}"
 
@@ -114,7 +118,9 @@ def _names(names: Sequence[str]) -> str:
 
 
 def _escaped(text: str) -> str:
-    return "".join(c if c.isalnum() and c.isascii() or c in " _-.,:" else f"\\u{{{ord(c):x}}}" for c in text)
+    return "".join(
+        c if (c.isalnum() and c.isascii()) or c in " _-.,:" else f"\\u{{{ord(c):x}}}" for c in text
+    )
 
 
 def _function(outputs: Sequence[Node], of_mechanism: Mapping[str, int], rows: Sequence[str]) -> str:
@@ -139,13 +145,15 @@ def _function(outputs: Sequence[Node], of_mechanism: Mapping[str, int], rows: Se
         "t",
         texts,
     )
-    used = [k for name, k in along.items() if any(x.operation == VARIABLE and x.detail == name for x in order)]
-    read = [f"const x{k} = p[{_row(k)}];" for k in used]
-    written = [
-        f"o[{_row(k)}] = {texts[node][0]};" for k, node in enumerate(outputs) if node in moving
+    used = [
+        k for name, k in along.items() if any(x.operation == VARIABLE and x.detail == name for x in order)
     ]
+    read = [f"const x{k} = p[{_row(k)}];" for k in used]
+    written = [f"o[{_row(k)}] = {texts[node][0]};" for k, node in enumerate(outputs) if node in moving]
     filled = [
-        f"o.fill({texts[node][0]}, {_start(k)}, {_start(k + 1)});" for k, node in enumerate(outputs) if node not in moving
+        f"o.fill({texts[node][0]}, {_start(k)}, {_start(k + 1)});"
+        for k, node in enumerate(outputs)
+        if node not in moving
     ]
     loop = ["for (let i = 0; i < n; i++) {", *read, *inside, *written, "}"] if written else []
     return "(v, p, n, o) => {\n" + "\n".join([*before, *filled, *loop]) + "\n}"

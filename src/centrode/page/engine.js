@@ -28,7 +28,7 @@ const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
 const WINDOW = 0.04;
 /* beside a change point, in units of the path: how near closed forms lose digits, how far places for a polynomial lie */
-const BESIDE = 0.02, CIRCLE = 8 * WINDOW, AROUND = 20;
+const BESIDE = 0.02, CIRCLE = 6 * WINDOW, AROUND = 20;
 const AT_THE_START = 1e-9;
 /* the search in cells: half width that is one place, parts of a cell, ways towards a place, and its limits */
 const FINEST = 1e-10, COARSE = 1e-6, PARTS = 4, HALVINGS = 26, MANY = 1000, MOST = 10000;

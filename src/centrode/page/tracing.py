@@ -206,11 +206,12 @@ def _rows(solved: Solved, turning: Mapping[str, Any]) -> tuple[tuple[Row, ...], 
     # angles stand without turns in their rows: less than nothing is added, so that their bits stay
     unturned = {turns_of(link): -0.0 for link in turning}
 
-    def add(name: str, dimensions: tuple[str, ...], values: Nodes, derivative: bool) -> None:
-        values = np.asarray(values, dtype=object)[0, 0]
-        rows = np.empty(values.shape, dtype=np.intp)
-        for place in np.ndindex(values.shape):
-            node = Graph({"": as_node(values[place])}).substitute(unturned).outputs[""]
+    def add(name: str, dimensions: tuple[str, ...], values: Any, derivative: bool) -> None:
+        nodes: Nodes = np.asarray(values, dtype=object)[0, 0]
+        rows = np.empty(nodes.shape, dtype=np.intp)
+        for place in np.ndindex(nodes.shape):
+            operand: Any = nodes[place]
+            node = Graph({"": as_node(operand)}).substitute(unturned).outputs[""]
             of_frame = dimensions[:1] == (FRAME_OF,) and place[0] < frame
             rows[place] = places.setdefault((node, derivative, of_frame), len(places))
         quantities.append(TracedQuantity(name, dimensions, rows))

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from tools.campaigns.campaign import Campaign, Outcome, random_of
-from tools.node import MISSING, NODE, PageFrame, page_frames
 
 import centrode as ct
 from centrode.errors import NotComputedYet, Status
@@ -20,6 +18,8 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.page.program import PageProgram, page_program
 from centrode.structure.dimensions import dimensions_of
 from centrode.structure.groups import Newton
+from tools.campaigns.campaign import Campaign, Outcome, random_of
+from tools.node import MISSING, NODE, PageFrame, page_frames
 
 SETS = 20
 """Sets of numbers of each linkage."""
@@ -121,7 +121,12 @@ def conditions_of(program: PageProgram, paths: list[str], sets: list[list[float]
 
 
 def compare_frame(
-    outcome: Outcome, program: PageProgram, frame: PageFrame, motion: xr.Dataset, condition: np.ndarray, size: float
+    outcome: Outcome,
+    program: PageProgram,
+    frame: PageFrame,
+    motion: xr.Dataset,
+    condition: np.ndarray,
+    size: float,
 ) -> None:
     """Judge one set of numbers."""
     row, status = outcome.subject, motion.status.values
@@ -139,7 +144,10 @@ def compare_frame(
     for name, order in ORDERS.items():
         if name not in frame.quantities or name not in motion or not frame.quantities[name].size:
             continue
-        ours, theirs = frame.quantities[name].reshape(len(status), -1), motion[name].values.reshape(len(status), -1)
+        ours, theirs = (
+            frame.quantities[name].reshape(len(status), -1),
+            motion[name].values.reshape(len(status), -1),
+        )
         outcome.hold(row, "statuses", int((np.isnan(ours) != np.isnan(theirs)).any(axis=1).sum()), 0.0)
         good = (status == Status.OK) & ~differ & np.isfinite(theirs).all(axis=1)
         if not good.any():
@@ -159,12 +167,16 @@ def _parameter(program: PageProgram) -> Any:
 
 
 def _scale(motion: xr.Dataset, name: str, good: np.ndarray, size: float, program: PageProgram) -> float:
-    """What errors of a quantity are compared with: its greatest value, or what the rate of the drive makes of its rate."""
+    """What errors of a quantity are compared with: its greatest value, or what the drive's rate makes of its rate."""
     greatest = float(np.max(np.abs(motion[name].values[good]), initial=0.0))
     order = ORDERS[name]
     if order == 0:
         return max(greatest, size if name in ("position", "slide") else 1.0)
-    before = [other for other in motion if ORDERS.get(other) == order - 1 and motion[other].dims == motion[name].dims]
+    before = [
+        other
+        for other in motion
+        if ORDERS.get(str(other)) == order - 1 and motion[other].dims == motion[name].dims
+    ]
     if order == 1 or not before:
         return max(greatest, 1e-9)
     rate = float(np.max(np.abs(program.data["places"]["rate"])))
@@ -174,8 +186,9 @@ def _scale(motion: xr.Dataset, name: str, good: np.ndarray, size: float, program
 CAMPAIGN = Campaign(
     "pages",
     "Pages of mechanisms",
-    "What a page computes in Node, from its printed formulas and its own search for events, against motions of the program "
-    "with the same numbers: all built-in linkages, each with 20 sets of lengths and places of fixed points drawn at random.",
+    "What a page computes in Node, from its printed formulas and its own search for events, against motions of the "
+    "program with the same numbers: all built-in linkages, each with 20 sets of lengths and places of fixed points "
+    "that are drawn at random.",
     COLUMNS,
     run,
     len(names()),
