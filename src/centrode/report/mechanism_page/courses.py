@@ -79,7 +79,12 @@ def _of_parts(
     quantity: Mapping[str, Any], data: Mapping[str, Any], numbers: Numbers
 ) -> Iterator[dict[str, Any]]:
     """A quantity of all links, guides or joints together; of vectors one course for each link."""
-    kind, *axes = quantity["dimensions"] or [""]
+    kind, *axes = quantity["dimensions"] or ["whole"]
+    if kind == "whole":
+        own = {"group": _("mechanism"), "size": "", **_unit(quantity, numbers)}
+        part = {"quantity": quantity["name"], "index": [], "label": quantity["symbol"]}
+        yield {**own, "key": quantity["name"], "label": _title(quantity), "parts": [part]}
+        return
     names = {
         "link": data["links"],
         "guide": data["guides"],

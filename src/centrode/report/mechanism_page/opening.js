@@ -82,11 +82,12 @@ new ResizeObserver(() => stage.widen(find(".moving .paper").clientWidth)).observ
 
 // On paper stand the dimensions as they are now.
 const printed = () => {
-  const rows = model.parameters.map((one, k) => {
+  const cells = model.parameters.map((one, k) => {
     const unit = model.unit(one);
-    return element("tr", {}, element("td", {}, page.names[one.path] ?? one.path),
-      element("td", { className: "n" }, withUnit(model.spelling.number(model.values[k] * unit.factor, 6), unit.label)));
+    return [element("td", {}, page.names[one.path] ?? one.path),
+      element("td", { className: "n" }, withUnit(model.spelling.number(model.values[k] * unit.factor, 6), unit.label))];
   });
+  const rows = Array.from({ length: Math.ceil(cells.length / 4) }, (_, k) => element("tr", {}, ...cells.slice(4 * k, 4 * k + 4).flat()));
   find(".printed tbody").replaceChildren(...rows);
   find(".printed .place").textContent = model.place(within(Math.round(stage.place), 0, model.last));
 };

@@ -136,60 +136,95 @@ def _page(mechanism: Mechanism, program: PageProgram, data: Mapping[str, Any]) -
         f'<meta http-equiv="Content-Security-Policy" content="{page_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
-        f"{_body(mechanism, program, title)}"
+        f"{_body(title, bool(program.parameters), _controls(program))}"
         f'<script type="application/json" id="page-data">{page_data(data)}</script>\n'
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
     )
 
 
-def _body(mechanism: Mechanism, program: PageProgram, title: str) -> str:
+def _body(title: str, has_parameters: bool, controls: str) -> str:
     """The elements of the page; scripts fill what is empty."""
-    word = _escaped
-    subtitle = word(
+    dimensions = _dimensions() if has_parameters else ""
+    return (
+        f'<div class="live"><header><h1>{title}</h1><p class="subtitle">{_subtitle()}</p></header>\n<main>\n'
+        f"{_player(controls)}\n{dimensions}\n{_curves()}\n{_away()}\n</main>\n</div>\n{_by_hand()}\n"
+    )
+
+
+def _subtitle() -> str:
+    return _escaped(
         _("Computed on this page by a program that centrode {version} printed"), version=__version__
     )
-    noscript = word(
+
+
+def _player(controls: str) -> str:
+    """The mechanism, what is said of its motion, and on paper the table of its dimensions."""
+    name = _escaped(_("Player"))
+    label = _escaped(_("Mechanism in motion; drag a link, or use the arrow keys"))
+    without = _escaped(
         _("This page computes the motion by its own script; the browser does not run scripts here.")
     )
-    label = word(_("Mechanism in motion; drag a link, or use the arrow keys"))
-    hint = word(
+    hint = _escaped(
         _(
             "Drag a ring to change the dimensions, a link to move the mechanism. By keyboard: Tab reaches every ring, "
             "arrow keys move it, with Shift ten times as far; Space plays."
         )
     )
-    dimensions = ""
-    if program.parameters:
-        dimensions = (
-            f'<section class="dimensions" aria-labelledby="h-dimensions">{_heading("dimensions", _("Dimensions"))}'
-            f'<div class="rows"></div><p class="note bad" role="alert"></p><p class="buttons">'
-            f'<button type="button" data-do="reset">{word(_("Reset"))}</button>'
-            f'<button type="button" data-do="undo" title="Ctrl+Z">{word(_("Undo"))}</button></p></section>'
-        )
+    table = _escaped(_("Dimensions"))
     return (
-        f'<div class="live"><header><h1>{title}</h1><p class="subtitle">{subtitle}</p></header>\n<main>\n'
-        f'<section class="stage" aria-label="{word(_("Player"))}">'
-        f'<div class="moving" role="group" aria-label="{label}">'
-        f'<div class="paper" tabindex="0" role="group" aria-label="{label}"><noscript>{noscript}</noscript></div>'
-        f"{controls_of('', _controls(program))}</div>"
-        f'<div class="statuses" role="status"></div>'
-        f'<p class="hint">{hint}</p></section>\n'
-        f"{dimensions}\n"
-        f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", _("Curves"))}'
-        f'<div class="charts"></div><p class="buttons">'
-        f'<button type="button" data-do="add-curve">{word(_("Add a curve"))}</button></p></section>\n'
-        f'<section class="away" aria-labelledby="h-away">{_heading("away", _("Numbers and link"))}'
-        f'<p class="buttons"><button type="button" data-do="copy-link">{word(_("Copy the link"))}</button>'
-        f'<button type="button" data-do="csv">{word(_("Copy as CSV"))}</button></p>'
-        f'<p id="said" role="status"></p>'
-        f'<details class="table-of-numbers"><summary>{word(_("Numbers at the cursor"))}</summary>'
-        f'<div class="numbers"></div></details></section>\n</main>\n'
-        f'<section class="printed" aria-hidden="true"><p class="caption"><b>{word(_("Dimensions"))}.</b> '
-        f'<span class="place"></span></p><table><tbody></tbody></table></section>\n</div>\n'
-        f'<dialog id="by-hand" aria-label="{word(_("Copy by hand"))}"><form method="dialog">'
-        f"<label>{word(_('The browser does not let the page copy; copy it here:'))}"
-        f'<textarea rows="6" readonly></textarea></label><button>{word(_("Close"))}</button></form></dialog>\n'
+        f'<section class="stage" aria-label="{name}"><div class="moving" role="group" aria-label="{label}">'
+        f'<div class="paper" tabindex="0" role="group" aria-label="{label}"><noscript>{without}</noscript></div>'
+        f'{controls_of("", controls)}</div><div class="statuses" role="status"></div><p class="hint">{hint}</p>'
+        f'<div class="printed" aria-hidden="true"><p class="caption"><b>{table}.</b> <span class="place"></span></p>'
+        "<table><tbody></tbody></table></div></section>"
     )
+
+
+def _dimensions() -> str:
+    """The sliders and what takes changes back."""
+    name, reset, undo = _("Dimensions"), _button("reset", _("Reset")), _button("undo", _("Undo"))
+    return (
+        f'<section class="dimensions" aria-labelledby="h-dimensions">{_heading("dimensions", name)}'
+        '<div class="rows"></div><p class="note bad" role="alert"></p>'
+        f'<p class="buttons">{reset}{undo}</p></section>'
+    )
+
+
+def _curves() -> str:
+    name, add = _("Curves"), _button("add-curve", _("Add a curve"))
+    return (
+        f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", name)}'
+        f'<div class="charts"></div><p class="buttons">{add}</p></section>'
+    )
+
+
+def _away() -> str:
+    """What a reader takes along: the link, the table, the numbers."""
+    name, numbers = _("Numbers and link"), _escaped(_("Numbers at the cursor"))
+    link, table = _button("copy-link", _("Copy the link")), _button("csv", _("Copy as CSV"))
+    return (
+        f'<section class="away" aria-labelledby="h-away">{_heading("away", name)}'
+        f'<p class="buttons">{link}{table}</p>'
+        '<p id="said" role="status"></p>'
+        f'<details class="table-of-numbers"><summary>{numbers}</summary><div class="numbers"></div></details></section>'
+    )
+
+
+def _by_hand() -> str:
+    """What shows a text to copy where the browser does not let the page do it."""
+    name, why, close = (
+        _("Copy by hand"),
+        _("The browser does not let the page copy; copy it here:"),
+        _("Close"),
+    )
+    return (
+        f'<dialog id="by-hand" aria-label="{_escaped(name)}"><form method="dialog"><label>{_escaped(why)}'
+        f'<textarea rows="6" readonly></textarea></label><button>{_escaped(close)}</button></form></dialog>'
+    )
+
+
+def _button(name: str, text: str) -> str:
+    return f'<button type="button" data-do="{name}">{_escaped(text)}</button>'
 
 
 def _heading(name: str, text: str) -> str:
@@ -198,14 +233,15 @@ def _heading(name: str, text: str) -> str:
 
 def _controls(program: PageProgram) -> str:
     """What the player of a page has beside that of reports."""
-    word = _escaped
 
     def box(name: str, text: str, on: bool = False) -> str:
         checked = " checked" if on else ""
-        return f'<label><input type="checkbox" data-show="{name}"{checked}> {word(text)}</label>'
+        return f'<label><input type="checkbox" data-show="{name}"{checked}> {_escaped(text)}</label>'
 
+    of_link = _escaped(_("of link"))
     links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
-    body = f'<label class="of"> {word(_("of link"))} <select data-do="body">{links}</select></label>'
+    body = f'<label class="of"> {of_link} <select data-do="body">{links}</select></label>'
+    centrodes = box("centrodes", _("centrodes"))
     return (
         '<div class="strip"></div>'
         + box("loop", _("loop"), on=True)
@@ -213,9 +249,9 @@ def _controls(program: PageProgram) -> str:
         + box("velocities", _("velocities"))
         + box("accelerations", _("accelerations"))
         + box("centres", _("instant centres"))
-        + f'<span class="pair">{box("centrodes", _("centrodes"))}{body}</span>'
+        + f'<span class="pair">{centrodes}{body}</span>'
         + box("ghosts", _("ghost positions"))
-        + f'<button type="button" data-do="fit">{word(_("Fit"))}</button>'
+        + _button("fit", _("Fit"))
         + (_turns() if program.mechanism.space == "sphere" else "")
     )
 
@@ -256,4 +292,6 @@ def _escaped(sentence: str, **holes: str) -> str:
 
 @cache
 def _part(name: str) -> str:
-    return (HERE / name).read_text(encoding="utf-8")
+    """A script or a style without its indents and the lines that explain it: a page is sent by mail."""
+    lines = (line.strip() for line in (HERE / name).read_text(encoding="utf-8").splitlines())
+    return "".join(f"{line}\n" for line in lines if line and not line.startswith("// "))

@@ -31,8 +31,8 @@ def words_of_page() -> dict[str, object]:
         ),
         "all_reached": _("The mechanism reaches every position."),
         "change_points": _(
-            "At change points ({places}) the mechanism may take another branch. The page keeps the signs of its "
-            "initial position; this command computes the motion through these points:"
+            "At change points ({places}) the signs of groups change, and derivatives near them lose digits. "
+            "This command computes the motion through them:"
         ),
         "copy_command": _("Copy the command"),
         "command_copied": _("The command is copied."),
