@@ -677,8 +677,8 @@ function createMechanism(data) {
     findEvents();
     findReach(reach);
     fillMoving(atSamples, nearSamples);
-    if (data.residual_turns) {
-      /* residuals of what gears turn depend on the turns of angles, so these come first */
+    if (data.turns_matter) {
+      /* residuals of what gears turn and some loads depend on the turns of angles, so these come first */
       status.fill(OK);
       atSamples.f.run(v, atSamples.p, n, atSamples.o);
       unwind();

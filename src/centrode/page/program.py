@@ -129,7 +129,7 @@ def page_program(
     if free is None:
         what = _("numbers that follow from {paths} cannot be printed").format(paths=", ".join(paths))
         raise NotComputedYet("page", what, _("vary other numbers"))
-    traced = trace_page(prepared, span, varied)
+    traced = trace_page(prepared, span, varied, paths)
     try:
         functions = _functions(prepared, traced, free, varied)
     except Unwritten as unwritten:
@@ -211,7 +211,7 @@ PLACE = (PARAMETER, TIME, RATE, SECOND_RATE, HALF)
 
 def _functions(ready: Ready, traced: PageTrace, free: FreeNumbers, varied: Varied) -> str:
     """All functions of a page as members of an object."""
-    of_mechanism = {name: k for k, name in enumerate(_variables(varied))}
+    of_mechanism = {name: k for k, name in enumerate(_variables(varied, free.paths))}
     moving = [sign_of(group) for group in traced.at_samples]
     moving += [near_of(key) for key in traced.counted] + [turns_of(link) for link in traced.rotors]
     fixed = PLACE
@@ -232,20 +232,20 @@ def _functions(ready: Ready, traced: PageTrace, free: FreeNumbers, varied: Varie
     return ",\n".join(members)
 
 
-def _variables(varied: Varied) -> list[str]:
-    """Variables of a mechanism in the order in which a page keeps them."""
+def _variables(varied: Varied, paths: Sequence[str]) -> list[str]:
+    """Variables of a mechanism in the order in which a page keeps them; masses are numbers at paths alone."""
     scale = [] if isinstance(varied.scale, float) else [SCALE]
-    return list(dict.fromkeys([*varied.names, *scale]))
+    return list(dict.fromkeys([*varied.names, *scale, *paths]))
 
 
 def _numbers(free: FreeNumbers, varied: Varied) -> list[Node]:
     """The variables of a mechanism from the numbers at the paths."""
-    known = {name: variable(free.paths[k]) for name, k in free.copied.items()}
+    known = {path: variable(path) for path in free.paths}
     for name, (k, word) in free.turned.items():
         known[name] = as_node(getattr(EXPRESSIONS, word)(variable(free.paths[k])))
     if free.scale is not None:
         known[SCALE] = free.scale.substitute(known).outputs[SCALE]
-    return [known[name] for name in _variables(varied)]
+    return [known[name] for name in _variables(varied, free.paths)]
 
 
 # What a page knows of a mechanism, as plain data.
@@ -267,7 +267,7 @@ def _data(
         "space": mechanism.space,
         "axes": list(layout.space.axes),
         "parameters": [parameter.data for parameter in parameters],
-        "variables": len(_variables(varied)),
+        "variables": len(_variables(varied, [parameter.path for parameter in parameters])),
         "points": [*frame, *layout.points],
         "fixed": len(frame),
         "links": list(layout.links),
@@ -286,9 +286,8 @@ def _data(
         "quantities": [_quantity(ready, quantity) for quantity in traced.quantities if quantity.rows.size],
         "rows": [[int(row.derivative), int(row.of_frame)] for row in traced.rows],
         "angles": [[link, row, float(ready.assembled.angles[link])] for link, row in traced.angles.items()],
-        "residual_turns": any(
-            name.startswith(turns_of("")) for name in Graph({"": traced.residual}).variables
-        ),
+        "turns_matter": _turns_matter(traced),
+        "reduction_missing": traced.missing,
         "guards": [[kind, group] for kind, group in traced.cells],
         "signs": {str(group): float(sign) for group, sign in ready.assembled.signs.items()},
         "radicands": list(traced.at_samples),
@@ -298,6 +297,12 @@ def _data(
         "mesh": _mesh(path, span),
         "places": _places(span),
     }
+
+
+def _turns_matter(traced: PageTrace) -> bool:
+    """Whether residuals or loads depend on the turns of angles, which then have to be known before."""
+    outputs = {"": traced.residual, **{str(k): row.node for k, row in enumerate(traced.rows)}}
+    return any(name.startswith(turns_of("")) for name in Graph(outputs).variables)
 
 
 def _digest(mechanism: Mechanism, parameters: Sequence[PageParameter]) -> str:

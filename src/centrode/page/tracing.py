@@ -7,18 +7,20 @@ node next to it for everything that gears and wheels depend on.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.errors import NotComputedYet
+from centrode.dynamics.masses import masses_of
+from centrode.dynamics.reduction import REDUCED, check_reducible, reduced_number
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import ROOM
-from centrode.kinematics.machine_code.trace import MotionParts, angles_of, columns_of, motion_of_parts
-from centrode.kinematics.machine_code.variables import NODE_JETS, PARAMETER, TURN, Varied, whole_turns
+from centrode.kinematics.machine_code.trace import MotionParts, Untraceable, angles_of, columns_of, motion_of_parts
+from centrode.kinematics.machine_code.variables import NODE_JETS, PARAMETER, TURN, Varied, box_array, whole_turns
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.path import Path, SampleGrid
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics, layout_of
@@ -143,6 +145,7 @@ class PageTrace:
         bound of its rounding error
     rotors : link -> cosine and sine of its angle
     counted : what gears and wheels depend on -> its angle without turns
+    missing : why masses and loads are not reduced; empty where they are, or where there are none
     """
 
     rows: tuple[Row, ...]
@@ -157,10 +160,14 @@ class PageTrace:
     rotors: Mapping[str, tuple[Node, Node]]
     counted: Mapping[str, Node]
     solved: Solved
+    missing: str
 
 
-def trace_page(ready: Ready, span: SampleGrid, varied: Varied) -> PageTrace:
-    """The plan of a mechanism as a page computes it. Raises NotComputedYet for what has no closed form."""
+def trace_page(ready: Ready, span: SampleGrid, varied: Varied, paths: Sequence[str]) -> PageTrace:
+    """The plan of a mechanism as a page computes it; numbers at the paths vary, masses among them.
+
+    Raises NotComputedYet for what has no closed form.
+    """
     refuse_higher_class(ready)
     known = ready.kinematics
     # phases of gears belong to the initial position of the description, as in batches
@@ -173,7 +180,8 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied) -> PageTrace:
         layout, at, columns, ready.assembled.angles, lambda link, _cosine, _sine: variable(turns_of(link))
     )
     solved = motion_of_parts(MotionParts(ready, kinematics, layout, columns, angles), span, varied)
-    rows, quantities = _rows(solved, turning)
+    reduced, missing = _reduced(solved, paths)
+    rows, quantities = _rows(solved, turning, reduced)
     guards = _guards(policy)
     return PageTrace(
         rows,
@@ -188,6 +196,7 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied) -> PageTrace:
         {link: (as_node(cosine), as_node(sine)) for link, (cosine, sine) in turning.items()},
         {key: as_node(x) for key, x in policy.counted.items()},
         solved,
+        missing,
     )
 
 
@@ -196,9 +205,27 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied) -> PageTrace:
 COEFFICIENTS = ("velocity_coefficient", "acceleration_coefficient")
 FRAME_OF = "point"
 CONTACT = "contact"
+ANGLES = ("angle", "joint_angle")
 
 
-def _rows(solved: Solved, turning: Mapping[str, Any]) -> tuple[tuple[Row, ...], tuple[TracedQuantity, ...]]:
+def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]:
+    """Masses and loads reduced to the drive: name -> (1, 1) nodes, or none and why."""
+    mechanism = solved.ready.mechanism
+    values = {path: box_array([variable(path)]) for path in paths}
+    try:
+        if not mechanism.loads and not masses_of(mechanism):
+            return {}, ""
+        check_reducible(solved)
+        return {name: reduced_number(name, solved, values) for name in REDUCED}, ""
+    except Untraceable as why:
+        return {}, _(why.reason)
+    except InputError as failure:
+        return {}, str(failure)
+
+
+def _rows(
+    solved: Solved, turning: Mapping[str, Any], reduced: Mapping[str, Any]
+) -> tuple[tuple[Row, ...], tuple[TracedQuantity, ...]]:
     """Rows of all quantities, equal ones once, and where each quantity finds its own."""
     places: dict[tuple[Node, bool, bool], int] = {}
     quantities: list[TracedQuantity] = []
@@ -207,11 +234,15 @@ def _rows(solved: Solved, turning: Mapping[str, Any]) -> tuple[tuple[Row, ...], 
     unturned = {turns_of(link): -0.0 for link in turning}
 
     def add(name: str, dimensions: tuple[str, ...], values: Any, derivative: bool) -> None:
-        nodes: Nodes = np.asarray(values, dtype=object)[0, 0]
+        whole: Nodes = np.asarray(values, dtype=object)
+        nodes = whole.reshape(whole.shape[2:])
         rows = np.empty(nodes.shape, dtype=np.intp)
         for place in np.ndindex(nodes.shape):
             operand: Any = nodes[place]
-            node = Graph({"": as_node(operand)}).substitute(unturned).outputs[""]
+            # loads may depend on turns; the angles themselves get theirs afterwards
+            node = as_node(operand)
+            if name in ANGLES:
+                node = Graph({"": node}).substitute(unturned).outputs[""]
             of_frame = dimensions[:1] == (FRAME_OF,) and place[0] < frame
             rows[place] = places.setdefault((node, derivative, of_frame), len(places))
         quantities.append(TracedQuantity(name, dimensions, rows))
@@ -226,6 +257,8 @@ def _rows(solved: Solved, turning: Mapping[str, Any]) -> tuple[tuple[Row, ...], 
                 add(f"{kind.prefix}{word}", kind.dimensions, kind.orders[order], True)
     if solved.ready.mechanism.rolling:
         add(CONTACT, ("rolling", "axis"), solved.contacts, False)
+    for name, values in reduced.items():
+        add(name, (), values, True)
     return tuple(Row(*key) for key in places), tuple(quantities)
 
 
@@ -233,7 +266,7 @@ def _angle_rows(
     solved: Solved, quantities: tuple[TracedQuantity, ...], turning: Mapping[str, Any]
 ) -> dict[str, int]:
     """Link -> row of its angle, of those whose turns are counted along the path."""
-    name = "angle" if solved.spins is None else "joint_angle"
+    name = ANGLES[0 if solved.spins is None else 1]
     rows = next(quantity.rows for quantity in quantities if quantity.name == name)
     return {link: int(rows[k]) for k, link in enumerate(solved.layout.angles) if link in turning}
 
