@@ -174,7 +174,7 @@ def _with_numbers(mechanism: Mechanism, texts: tuple[str, ...]) -> Mechanism:
     if not texts:
         return mechanism
     with about("--set"):
-        changed: Mechanism = library.with_values(mechanism, pairs(texts, "", "links.AB.length=3.6 m"))
+        changed: Mechanism = library.with_numbers(mechanism, pairs(texts, "", "links.AB.length=3.6 m"))
     return changed
 
 

@@ -24,6 +24,7 @@ class Curves {
     this.model = model;
     this.charts = [];
     this.list = holder.querySelector(".charts");
+    this.wide = this.list.clientWidth || 560; // asked once: a browser lays the page out to answer
     this.add = holder.querySelector('[data-do="add-curve"]');
     this.add.addEventListener("click", () => {
       this.append(this.next());
@@ -60,7 +61,7 @@ class Curves {
   }
   widen() {
     const wide = this.list.clientWidth;
-    if (!wide || Math.abs(wide - (this.wide ?? 0)) < 8) return;
+    if (!wide || Math.abs(wide - this.wide) < 8) return;
     this.wide = wide;
     this.renew();
   }
@@ -118,7 +119,7 @@ class Chart {
 
   renew() {
     const { model, course } = this, { factor } = course;
-    this.wide = Math.max(260, this.curves.list.clientWidth || 560);
+    this.wide = Math.max(260, this.curves.wide);
     this.lines = course.parts.map((part) => {
       const numbers = model.course(part);
       return { label: part.label, value: (sample) => (numbers && model.reached(sample) ? numbers[sample] * factor : NaN) };

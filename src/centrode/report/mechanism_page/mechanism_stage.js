@@ -131,6 +131,7 @@ class MechanismStage extends Stage {
 
   // Once the hand has let go: a motion that has left its paper, or is lost on it, gets another.
   settle() {
+    this.model.show();
     if (!this.sheet || !this.model.frame.possible) return;
     const [low, high] = this.extent(), size = Math.max(...minus(high, low));
     const corner = this.sheet.place([low[0], high[1]]), end = this.sheet.place([high[0], low[1]]);

@@ -114,8 +114,15 @@ class Model {
     }
     return undefined;
   }
+  // Numbers at once, pictures once for each picture of the screen.
   renew() {
     this.compute();
+    this.waiting = this.waiting ?? requestAnimationFrame(() => this.show());
+  }
+  show() {
+    if (this.waiting === undefined) return;
+    cancelAnimationFrame(this.waiting);
+    this.waiting = undefined;
     for (const watch of this.watchers) watch();
   }
   compute() {

@@ -103,5 +103,5 @@ def name_of(mechanism: Mechanism, path: str) -> str:
     if words[0] == "frame" and len(words) == 4:
         return f"{words[2]}: {axis}"
     if words[0] == "guides" and words[-2] == "through":
-        return _("guide {name}: {axis}").format(name=".".join(words[1:-2]), axis=axis)
+        return f"{'.'.join(words[1:-2])}: {axis}"
     return path

@@ -65,6 +65,7 @@ class StateLink {
     model.values = model.nominal.slice();
     for (const [path, value] of Object.entries(state.v)) model.values[model.places.get(path)] = value;
     model.renew();
+    model.show();
     if (stage.data.view && state.w) stage.space.view = state.w;
     for (const box of this.boxes) {
       const on = state.s.includes(box.dataset.show ?? box.dataset.do);
