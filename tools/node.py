@@ -33,7 +33,9 @@ const numbers = [], told = [];
 for (const values of cases) {
   const frame = mechanism.recompute(values);
   const quantities = data.quantities.map((each) => rows(frame.quantities[each.name]));
-  for (const row of [Float64Array.from(frame.status), frame.residual, ...quantities.flat()]) numbers.push(row.slice());
+  const centres = data.space === "plane" ? data.links.map((_name, k) => mechanism.centre(k)) : [];
+  const all = [...quantities.flat(), ...centres.flatMap(({ fixed, moving }) => [...fixed, ...moving])];
+  for (const row of [Float64Array.from(frame.status), frame.residual, ...all]) numbers.push(row.slice());
   const { events, signsChange, possible } = frame;
   // JSON has no infinite numbers
   told.push({ events, signsChange, possible, reach: Array.from(frame.reach, String) });
@@ -64,12 +66,14 @@ class PageFrame:
     ----------
     status, residual : (samples,)
     quantities : name -> (samples, ...), as a motion has them
+    centres : link of the plane -> fixed and moving centrode (samples, 4)
     events : as the page has them
     """
 
     status: npt.NDArray[np.int8]
     residual: Array
     quantities: dict[str, Array]
+    centres: dict[str, Array]
     events: Sequence[dict[str, Any]]
     signs_change: bool
     possible: bool
@@ -103,9 +107,12 @@ def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame
         count = int(np.prod(shape, dtype=int))
         quantities[each["name"]] = np.moveaxis(rows[first : first + count].reshape(*shape, -1), -1, 0)
         first += count
+    centres = {
+        link: rows[first + 4 * k : first + 4 * k + 4].T for k, link in enumerate(program.data["links"])
+    }
     low, high = (float(end.replace("Infinity", "inf")) for end in told["reach"])
     return PageFrame(
-        rows[0].astype(np.int8), rows[1], quantities, told["events"], told["signsChange"], told["possible"], (low, high)
+        rows[0].astype(np.int8), rows[1], quantities, centres, told["events"], told["signsChange"], told["possible"], (low, high)
     )  # fmt: skip
 
 

@@ -11,6 +11,8 @@ from tools.node import MISSING, NODE, page_frames
 
 import centrode as ct
 from centrode.errors import InputError, NotComputedYet, Status
+from centrode.model.examples import example_text
+from centrode.model.files import parse_mechanism
 from centrode.page.program import page_program
 
 needs_node = pytest.mark.skipif(NODE is None, reason=MISSING)
@@ -120,6 +122,44 @@ def test_a_law_of_time_gives_rates_by_time() -> None:
     (frame,) = page_frames(program, [own])
     motion = ct.motion(program.mechanism)
     assert np.abs(frame.quantities["acceleration"] - motion.acceleration.values).max() < 1e-12
+
+
+@needs_node
+@pytest.mark.parametrize("name", ["six-bar-press", "single-cylinder-engine", "spherical-crank-rocker"])
+def test_masses_and_loads_are_reduced_as_by_arrays(name: str) -> None:
+    program = page_program(name)
+    (frame,) = page_frames(program, [[parameter.value for parameter in program.parameters]])
+    reduced = ct.reduce(program.mechanism)
+    for quantity in ("reduced_inertia", "reduced_inertia_slope", "reduced_moment"):
+        expected = reduced[quantity].values
+        assert np.abs(frame.quantities[quantity] - expected).max() <= 1e-14 * max(1.0, np.abs(expected).max())
+
+
+@needs_node
+def test_centrodes_are_those_of_the_program() -> None:
+    program = page_program("crank-rocker")
+    (frame,) = page_frames(program, [[parameter.value for parameter in program.parameters]])
+    curves = ct.centrodes(ct.motion(program.mechanism), "AB")
+    fixed, moving = curves.fixed_centrode.values, curves.moving_centrode.values
+    # towards infinity rounding grows with the square of the distance
+    scale = 1.0 + (np.hypot(*fixed.T) ** 2)[:, None]
+    assert np.nanmax(np.abs(frame.centres["AB"][:, :2] - fixed) / scale) < 1e-13
+    assert np.nanmax(np.abs(frame.centres["AB"][:, 2:] - moving) / scale) < 1e-13
+
+
+@needs_node
+def test_several_drives_by_tables_have_their_laws() -> None:
+    rows = "[[0.0, 0.0], [1.0, 0.9], [2.5, 2.2], [4.0, 4.5], [6.3, 6.0]]"
+    text = example_text("five-bar-two-drives").replace(
+        "start = 0.0\nspeed = 1.0", f"table = {rows}\nstart = 0.0"
+    )
+    assert rows in text
+    program = page_program(parse_mechanism(text, "tabled.toml"))
+    (frame,) = page_frames(program, [[parameter.value for parameter in program.parameters]])
+    motion = ct.motion(program.mechanism)
+    for quantity in ("position", "velocity", "acceleration"):
+        expected = motion[quantity].values
+        assert np.abs(frame.quantities[quantity] - expected).max() < 1e-14 * max(1.0, np.abs(expected).max())
 
 
 @needs_node

@@ -9,6 +9,7 @@
  * velocity, acceleration [point][axis]; angle, angularVelocity, angularAcceleration [link] (on the sphere rotation
  * vectors [link][axis], and the angles of data.joints in jointAngle); all of them and what else there is by name in
  * `quantities`. Beside these: events [{kind, drive, group}], reach [low, high], signsChange, possible, residualBound.
+ * mechanism.centre(link) gives the instant centre of a link in the last frame: {fixed: [x, y], moving: [x, y]}.
  * Arrays belong to the mechanism and are written anew by the next call; what is absent is NaN.
  */
 const createMechanism = (() => {
@@ -693,7 +694,29 @@ function createMechanism(data) {
     return frame;
   }
 
-  return { data, parameters, recompute, names: { points: data.points, links: data.links, joints: data.joints, guides: data.guides } };
+  /* Instant centre of a link of the plane at every sample of the last frame: where it is (the fixed centrode), and where
+   * in the link, from its first point along its axes (the moving centrode); NaN where the link does not turn. */
+  const held = new Map();
+  function centre(link) {
+    if (data.space !== "plane") return null;
+    if (!held.has(link)) held.set(link, { fixed: [new Float64Array(n), new Float64Array(n)], moving: [new Float64Array(n), new Float64Array(n)] });
+    const { fixed, moving } = held.get(link);
+    const point = data.points.indexOf(data.link_points[data.links[link]][0]);
+    const [x, y] = frame.position[point], [u, w] = (frame.velocityByDrive ?? frame.velocity)[point];
+    const turn = (frame.rateByDrive ?? frame.rate)[link], angle = frame.angle[link];
+    for (let i = 0; i < n; i++) {
+      const there = turn[i] !== 0 && status[i] !== OPEN;
+      const dx = there ? -w[i] / turn[i] : NaN, dy = there ? u[i] / turn[i] : NaN;
+      const c = Math.cos(angle[i]), s = Math.sin(angle[i]);
+      fixed[0][i] = x[i] + dx;
+      fixed[1][i] = y[i] + dy;
+      moving[0][i] = c * dx + s * dy;
+      moving[1][i] = c * dy - s * dx;
+    }
+    return { fixed, moving };
+  }
+
+  return { data, parameters, recompute, centre, names: { points: data.points, links: data.links, joints: data.joints, guides: data.guides } };
 }
 
 return createMechanism;

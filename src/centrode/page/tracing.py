@@ -19,14 +19,28 @@ from centrode.dynamics.reduction import REDUCED, check_reducible, reduced_number
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import ROOM
-from centrode.kinematics.machine_code.trace import MotionParts, Untraceable, angles_of, columns_of, motion_of_parts
-from centrode.kinematics.machine_code.variables import NODE_JETS, PARAMETER, TURN, Varied, box_array, whole_turns
+from centrode.kinematics.machine_code.trace import (
+    MotionParts,
+    Untraceable,
+    angles_of,
+    columns_of,
+    motion_of_parts,
+)
+from centrode.kinematics.machine_code.variables import (
+    NODE_JETS,
+    PARAMETER,
+    TURN,
+    Varied,
+    box_array,
+    whole_turns,
+)
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.path import Path, SampleGrid
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics, layout_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import ORDERS
 from centrode.kinematics.solve import Solved
+from centrode.laws import TableLaw, TextLaw, Uniform
 from centrode.locale import _
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
@@ -69,6 +83,17 @@ def refuse_higher_class(ready: Ready) -> None:
         if isinstance(group, Newton):
             what = _("a page computes closed forms, and the {group} has none").format(group=name_of(group))
             raise NotComputedYet("page", what, _("show it by: {command}").format(command="centrode report"))
+
+
+def refuse_laws(ready: Ready) -> None:
+    """Raise NotComputedYet, with the drive's name, for a law of several drives that is not traced."""
+    path = ready.kinematics.path
+    for driven in path.driven if path.by_time else ():
+        if not isinstance(driven.law, Uniform | TextLaw | TableLaw):
+            what = _("a page with several drives knows no law of a cam, and drive {drive} has one")
+            raise NotComputedYet(
+                "page", what.format(drive=driven.drive.id), _("drive it by a formula or a table")
+            )
 
 
 @dataclass
@@ -169,6 +194,7 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied, paths: Sequence[s
     Raises NotComputedYet for what has no closed form.
     """
     refuse_higher_class(ready)
+    refuse_laws(ready)
     known = ready.kinematics
     # phases of gears belong to the initial position of the description, as in batches
     kinematics = with_phases(replace(known, numbers=varied.numbers), known.numbers.gearing.phase)
