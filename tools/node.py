@@ -111,9 +111,9 @@ def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame
         link: rows[first + 4 * k : first + 4 * k + 4].T for k, link in enumerate(program.data["links"])
     }
     low, high = (float(end.replace("Infinity", "inf")) for end in told["reach"])
-    return PageFrame(
-        rows[0].astype(np.int8), rows[1], quantities, centres, told["events"], told["signsChange"], told["possible"], (low, high)
-    )  # fmt: skip
+    signs_change, possible, events = told["signsChange"], told["possible"], told["events"]
+    status = rows[0].astype(np.int8)
+    return PageFrame(status, rows[1], quantities, centres, events, signs_change, possible, (low, high))
 
 
 def recompute_times(program: PageProgram, cases: Sequence[Sequence[float]], rounds: int) -> Array:
