@@ -24,7 +24,7 @@ def test_the_assembly_stays(name: str, values: dict[str, float]) -> None:
     batch = ct.motion(name, vary={path: [value] for path, value in values.items()})
     np.testing.assert_allclose(
         alone["position"].values,
-        batch["position"].isel(batch=0).transpose("sample", "point", "axis").values,
+        batch["position"].isel(mechanism=0).transpose("sample", "point", "axis").values,
         rtol=0,
         atol=1e-14,
     )

@@ -13,6 +13,7 @@ const stepsOf = (least, most, count, turns) => {
 };
 const ticksOf = (least, most, step) => {
   const found = [];
+  if (!(step > 1e-12 * Math.max(Math.abs(least), Math.abs(most)))) return found; // no two numbers lie so close
   for (let k = Math.ceil(least / step - 1e-9); k * step <= most + 1e-9 * step; k += 1) found.push(k * step);
   return found;
 };
@@ -250,7 +251,7 @@ const piecesOf = (model) => {
 };
 // Where between the samples a value of the drive lies; null beyond them.
 const sampleOf = (model, value) => {
-  const along = model.abscissa, last = model.last;
+  const along = model.frame.drive, last = model.last;
   for (let k = 0; k < last; k += 1) {
     const [a, b] = [along[k], along[k + 1]];
     if ((a <= value && value <= b) || (b <= value && value <= a)) return k + (b === a ? 0 : (value - a) / (b - a));

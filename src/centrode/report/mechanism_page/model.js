@@ -139,7 +139,7 @@ class Model {
     return this.parameter.byTime ? this.frame.time : this.frame.drive;
   }
   nearest(value) {
-    const along = this.abscissa;
+    const along = this.frame.drive;
     let best = 0;
     for (let k = 1; k < along.length; k += 1) if (Math.abs(along[k] - value) < Math.abs(along[best] - value)) best = k;
     return best;
@@ -149,8 +149,9 @@ class Model {
     const most = Math.max(greatestOf(along) * factor, TINY);
     return `${symbol} = ${withUnit(this.spelling.fixed(along[sample] * factor, most, 4), label)}`;
   }
+  // A value of the drive, as events have it.
   placeOf(value) {
-    const { factor, label } = this.parameter;
+    const { factor, label } = this.data.drive;
     return withUnit(this.spelling.number(value * factor, 5), label);
   }
   status(sample) {

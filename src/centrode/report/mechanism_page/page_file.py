@@ -13,6 +13,7 @@ from centrode.kinematics.motion import motion
 from centrode.locale import _, chosen_language, decimal_mark, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
+from centrode.model.motion_parameter import MotionVariable
 from centrode.page.program import PageProgram, page_program
 from centrode.render.document.numbers import Numbers
 from centrode.report.html.parts import page_data, page_part, page_policy, page_script
@@ -104,7 +105,8 @@ def _data(mechanism: Mechanism, program: PageProgram, source: str) -> dict[str, 
         "handles": handles_of(mechanism, points, links, paths),
         "names": {path: name_of(mechanism, path) for path in paths},
         "units": {unit: _unit(unit, numbers) for unit in units},
-        "parameter": _parameter(mechanism, numbers),
+        "parameter": _variable(mechanism.motion_parameter.instant, numbers),
+        "drive": _variable(mechanism.motion_parameter.variable, numbers),
         "courses": courses,
         "chosen": chosen_courses(mechanism, courses, data),
         "reached": [status not in STATUSES_NOT_REACHED for status in STATUSES_OF_MOTION],
@@ -119,11 +121,9 @@ def _unit(unit: str, numbers: Numbers) -> dict[str, Any]:
     return {"factor": factor, "label": label}
 
 
-def _parameter(mechanism: Mechanism, numbers: Numbers) -> dict[str, Any]:
-    """What the motion is a function of."""
-    parameter = mechanism.motion_parameter
-    variable = parameter.variable
-    return {"symbol": variable.symbol, "byTime": parameter.by_time, **_unit(variable.unit, numbers)}
+def _variable(variable: MotionVariable, numbers: Numbers) -> dict[str, Any]:
+    """What the motion is a function of, or what states a position: where a law may pass a value twice, the time."""
+    return {"symbol": variable.symbol, "byTime": variable.unit == "s", **_unit(variable.unit, numbers)}
 
 
 def _page(mechanism: Mechanism, program: PageProgram, data: Mapping[str, Any]) -> str:
