@@ -498,7 +498,7 @@ function createMechanism(data) {
   /* whether a sample lies so near a change point of a group that its radicand says nothing */
   function besideChange(group, x) {
     const places = crossings.get(group);
-    return places !== undefined && places.some((at) => Math.abs(x - at) < WINDOW * unit);
+    return data.smooth && places !== undefined && places.some((at) => Math.abs(x - at) < WINDOW * unit);
   }
 
   /* statuses by the radicands; whether a root of rounding has to be taken as zero */
