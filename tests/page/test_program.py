@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -133,6 +134,26 @@ def test_masses_and_loads_are_reduced_as_by_arrays(name: str) -> None:
     for quantity in ("reduced_inertia", "reduced_inertia_slope", "reduced_moment"):
         expected = reduced[quantity].values
         assert np.abs(frame.quantities[quantity] - expected).max() <= 1e-14 * max(1.0, np.abs(expected).max())
+
+
+@needs_node
+@pytest.mark.parametrize("name", ["six-bar-press", "single-cylinder-engine", "in-line-four-bar"])
+def test_the_balancing_moment_is_that_of_all_reactions(name: str) -> None:
+    program = page_program(name)
+    (frame,) = page_frames(program, [[parameter.value for parameter in program.parameters]])
+    # reactions come from the equations of every link, the page's from those of energy
+    expected = ct.reactions(program.mechanism).balancing.values[:, 0]
+    assert np.abs(frame.quantities["balancing"] - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+@needs_node
+def test_a_kept_assembly_passes_its_change_points() -> None:
+    text = re.sub("continuation = .*", 'continuation = "keep"', example_text("parallelogram"))
+    program = page_program(parse_mechanism(text, "kept.toml"))
+    (frame,) = page_frames(program, [[parameter.value for parameter in program.parameters]])
+    motion = ct.motion(program.mechanism)
+    assert (frame.status == motion.status.values).all() and not frame.signs_change
+    assert np.abs(frame.quantities["position"] - motion.position.values).max() < 1e-13
 
 
 @needs_node

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.masses import masses_of
-from centrode.dynamics.reduction import REDUCED, check_reducible, reduced_number
+from centrode.dynamics.reduction import REDUCED, balancing_number, check_reducible, reduced_number
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import ROOM
@@ -232,6 +232,7 @@ COEFFICIENTS = ("velocity_coefficient", "acceleration_coefficient")
 FRAME_OF = "point"
 CONTACT = "contact"
 ANGLES = ("angle", "joint_angle")
+BALANCING = "balancing"
 
 
 def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]:
@@ -242,7 +243,8 @@ def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]
         if not mechanism.loads and not masses_of(mechanism):
             return {}, ""
         check_reducible(solved)
-        return {name: reduced_number(name, solved, values) for name in REDUCED}, ""
+        found = {name: reduced_number(name, solved, values) for name in REDUCED}
+        return found | {BALANCING: balancing_number(solved, values)}, ""
     except Untraceable as why:
         return {}, _(why.reason)
     except InputError as failure:
