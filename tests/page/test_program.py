@@ -52,6 +52,7 @@ def test_a_digest_tells_structures_and_not_numbers() -> None:
         ("crank-rocker", {"links.AB.length": "3"}, InputError, "two ends"),
         ("crank-rocker", {"links.XY.length": (1, 2)}, InputError, "XY"),
         ("crank-rocker", {"links.AB.length": ("3 kg", "4 kg")}, InputError, "kg"),
+        ("crank-rocker", {"drives.OA.speed": (1, 2)}, InputError, "no dimension"),
     ],
 )
 def test_what_cannot_be_printed_is_refused_by_name(name: str, vary: object, error: type, told: str) -> None:

@@ -187,11 +187,11 @@ def _given_range(mechanism: Mechanism, path: str, ends: Range) -> PageParameter:
 
 
 def _parameter(mechanism: Mechanism, path: str, least: float, most: float) -> PageParameter:
-    kind = kind_at(mechanism, path)
+    kind, own = kind_at(mechanism, path), float(value_at(mechanism, path))
     unit = KINDS[kind].unit if kind in KINDS else "1"
-    return PageParameter(
-        path, kind, unit, float(value_at(mechanism, path)), least, most, _is_positive(mechanism, path)
-    )
+    # a path that is no dimension is refused as such
+    dimensions_of(mechanism, {path: np.array([own])}, ARRAYS)
+    return PageParameter(path, kind, unit, own, least, most, _is_positive(mechanism, path))
 
 
 def _is_positive(mechanism: Mechanism, path: str) -> bool:
