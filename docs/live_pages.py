@@ -13,6 +13,7 @@ from sphinx.util.docutils import SphinxDirective
 import centrode as ct
 from centrode.errors import NotComputedYet
 from centrode.locale import LANGUAGES, _, speaking
+from centrode.report.mechanism_page import mechanism_page
 
 FOLDER = "pages"
 """Of the built site, where the pages of mechanisms lie."""
@@ -37,7 +38,7 @@ class LivePages(SphinxDirective):
         """
         folder = Path(self.env.app.outdir) / FOLDER
         folder.mkdir(parents=True, exist_ok=True)
-        text = ct.mechanism_page(name, language=self.language)
+        text = mechanism_page(name, language=self.language)
         (folder / f"{name}.{self.language}.html").write_text(text, encoding="utf-8")
         return f"{'../' * self.env.docname.count('/')}{FOLDER}/{name}.{self.language}.html"
 
@@ -85,7 +86,9 @@ class PageGallery(LivePages):
                 f'<img src="{above}{FOLDER}/{picture.name}" alt="" loading="lazy" style="width: 100%; background: #fff; '
                 f'border-radius: 6px"><br>{self.title(name)}</a>'
             )
-        grid = f'<div style="display: flex; flex-wrap: wrap; gap: 1.2rem 1rem; margin: 1.5rem 0">{cards}</div>'
+        grid = (
+            f'<div style="display: flex; flex-wrap: wrap; gap: 1.2rem 1rem; margin: 1.5rem 0">{cards}</div>'
+        )
         listed = ", ".join(f"<code>{name}</code>" for name in without)
         return [nodes.raw("", f"{grid}<p>{listed}</p>", format="html")]
 

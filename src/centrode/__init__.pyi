@@ -93,7 +93,6 @@ from .report.variants.folders import write_variants as write_variants
 from .report import report as report
 from .report import write_report as write_report
 from .report import ReportOptions as ReportOptions
-from .report.mechanism_page.page_file import mechanism_page as mechanism_page
 
 # Failures, statuses, language
 from .errors import CentrodeError as CentrodeError

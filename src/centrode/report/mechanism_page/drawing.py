@@ -55,7 +55,12 @@ def _point(mechanism: Mechanism, name: str, joints: set[str]) -> dict[str, Any]:
     slope = None
     if rails and mechanism.space == "plane":
         slope = round(-float(np.degrees(rails[0].direction_angle)), 3)
-    return {"name": name, "fixed": name in mechanism.frame.points, "dot": name not in joints, "slider": slope}
+    own = {"name": name, "fixed": name in mechanism.frame.points, "dot": name not in joints, "slider": slope}
+    if not own["fixed"]:
+        return own
+    axes = ("x", "y") if mechanism.space == "plane" else ("longitude", "latitude")
+    paths = [f"frame.points.{name}.{axis}" for axis in axes]
+    return {**own, "frame": list(mechanism.frame.coordinates[name]), "paths": paths}
 
 
 def _bodies(mechanism: Mechanism, points: list[str], links: list[str]) -> list[dict[str, Any]]:

@@ -72,10 +72,10 @@ class MechanismStage extends Stage {
 
   toggle(name, on) {
     this.on[name] = on;
-    const groups = { ghosts: this.ghosts, centres: this.centres, centrodes: this.centrodes, handles: this.handles.group };
+    const groups = { ghosts: this.ghosts, "instant-centres": this.centres, "rolling-centrodes": this.centrodes, handles: this.handles.group };
     if (groups[name]) this.switch(groups[name], on);
     if (name === "ghosts") this.renewGhosts();
-    if (name === "centrodes") this.renewCentrodes();
+    if (name === "rolling-centrodes") this.renewCentrodes();
     if (name === "velocities" || name === "accelerations") this.renewVectors();
     this.show();
   }
@@ -113,6 +113,7 @@ class MechanismStage extends Stage {
       high[axis] = Math.max(high[axis], most);
     };
     const { frame } = model;
+    this.points.filter((point) => point.fixed).forEach((point, number) => this.model.at(number, 0).forEach((value, axis) => take(axis, value, value)));
     frame.position.forEach((axes) => axes.forEach((numbers, axis) => {
       for (const value of numbers) if (Number.isFinite(value)) take(axis, value, value);
     }));
@@ -126,6 +127,8 @@ class MechanismStage extends Stage {
         take(axis, wheel.track.centre[axis] - wheel.track.radius, wheel.track.centre[axis] + wheel.track.radius));
     }
     for (const axis of [0, 1]) if (!(low[axis] <= high[axis])) [low[axis], high[axis]] = [-1, 1];
+    // a motion that is not reached anywhere leaves its fixed hinges, which are no size
+    if (!(Math.max(...minus(high, low)) > 0)) return [minus(low, [1, 1]), plus(high, [1, 1])];
     return [low, high];
   }
 
@@ -231,8 +234,8 @@ class MechanismStage extends Stage {
     const now = this.points.map((point) => point.series.at(this.place));
     const flat = now.map((place) => place && this.space.flat(place));
     this.showVectors(flat, now);
-    if (this.on.centres) this.showCentres();
-    if (this.on.centrodes) this.showCentrodes();
+    if (this.on["instant-centres"]) this.showCentres();
+    if (this.on["rolling-centrodes"]) this.showCentrodes();
     if (this.on.ghosts && this.data.view) this.renewGhosts();
     this.handles.show(flat, now);
     this.data.moved();
@@ -339,7 +342,7 @@ class MechanismStage extends Stage {
 
   // The fixed centrode of one link, and its moving one as the link carries it.
   renewCentrodes() {
-    if (!this.centrodes || !this.on.centrodes) return;
+    if (!this.centrodes || !this.on["rolling-centrodes"]) return;
     const chosen = this.bodies.find((body) => body.name === this.body?.value) ?? this.bodies[0];
     const axes = this.sheet && new Axes(this.model, this.sheet, chosen.link), reach = FAR * (this.sheet ? Math.max(...minus(this.box[1], this.box[0])) : 1);
     const fixed = [], moving = [];

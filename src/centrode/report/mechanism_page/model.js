@@ -179,8 +179,16 @@ class Model {
   }
   // Places in SI at a sample; null where there is none.
   at(point, sample) {
+    const fixed = this.data.drawing.points[point].frame;
+    if (fixed) return this.fixedAt(point, fixed);
     const found = this.frame.position[point].map((axis) => axis[sample]);
     return found.every(Number.isFinite) ? found : null;
+  }
+  // Points of the frame have their places where nothing else has one.
+  fixedAt(point, otherwise) {
+    const [x, y] = this.data.drawing.points[point].paths.map((path, k) => this.value(path, otherwise[k]));
+    if (this.data.program.space === "plane") return [x, y];
+    return [Math.cos(y) * Math.cos(x), Math.cos(y) * Math.sin(x), Math.sin(y)];
   }
   course(part) {
     let found = this.frame.quantities[part.quantity];

@@ -79,8 +79,7 @@ def mechanism_page(
 
     Examples
     --------
-    >>> import centrode as ct
-    >>> page = ct.mechanism_page("crank-rocker", {"links.AB.length": ("3 m", "4 m")})
+    >>> page = mechanism_page("crank-rocker", {"links.AB.length": ("3 m", "4 m")})
     >>> page.startswith("<!DOCTYPE html>"), len(page) < 250_000
     (True, True)
     """
@@ -241,14 +240,14 @@ def _controls(program: PageProgram) -> str:
     of_link = _escaped(_("of link"))
     links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
     body = f'<label class="of"> {of_link} <select data-do="body">{links}</select></label>'
-    centrodes = box("centrodes", _("centrodes"))
+    centrodes = box("rolling-centrodes", _("centrodes"))
     return (
         '<div class="strip"></div>'
         + box("loop", _("loop"), on=True)
         + (box("handles", _("handles"), on=True) if program.parameters else "")
         + box("velocities", _("velocities"))
         + box("accelerations", _("accelerations"))
-        + box("centres", _("instant centres"))
+        + box("instant-centres", _("instant centres"))
         + f'<span class="pair">{centrodes}{body}</span>'
         + box("ghosts", _("ghost positions"))
         + _button("fit", _("Fit"))

@@ -89,7 +89,7 @@ class Statuses {
       }
       const limits = frame.events.filter((event) => markOf(event) === "limit");
       const places = [...new Set(limits.map((event) => model.placeOf(event.drive)))];
-      if (places.length) said.push({ kind: "limit", text: fill(words.limits, { places: places.join("; ") }) });
+      if (places.length) said.push({ kind: "limit", text: fill(words.limits_at, { places: places.join("; ") }) });
       let strained = 0, worst = 0;
       for (let k = 0; k <= model.last; k += 1) {
         if (!model.strained(k) || !model.reached(k)) continue;

@@ -25,7 +25,7 @@ def words_of_page() -> dict[str, object]:
         "impossible": _("These dimensions are not possible: a length is zero or less."),
         "at_one": _("At {from}: {status}."),
         "between": _("From {from} to {to}: {status}."),
-        "limits": _("Limits: {places}."),
+        "limits_at": _("Limits: {places}."),
         "residual": _(
             "The closure residual reaches {worst}, above its bound of {bound}; such samples are marked in red."
         ),
