@@ -83,8 +83,8 @@ class PageGallery(LivePages):
             target.write_bytes(picture.read_bytes())
             cards += (
                 f'<a href="{address}" style="width: 11.5rem; text-align: center; text-decoration: none">'
-                f'<img src="{above}{FOLDER}/{picture.name}" alt="" loading="lazy" style="width: 100%; background: #fff; '
-                f'border-radius: 6px"><br>{self.title(name)}</a>'
+                f'<img src="{above}{FOLDER}/{picture.name}" alt="" loading="lazy" '
+                f'style="width: 100%; background: #fff; border-radius: 6px"><br>{self.title(name)}</a>'
             )
         grid = (
             f'<div style="display: flex; flex-wrap: wrap; gap: 1.2rem 1rem; margin: 1.5rem 0">{cards}</div>'

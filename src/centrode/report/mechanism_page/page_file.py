@@ -240,7 +240,7 @@ def _controls(program: PageProgram) -> str:
     of_link = _escaped(_("of link"))
     links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
     body = f'<label class="of"> {of_link} <select data-do="body">{links}</select></label>'
-    centrodes = box("rolling-centrodes", _("centrodes"))
+    centrodes = box("rolling-centrodes", _("both centrodes"))
     return (
         '<div class="strip"></div>'
         + box("loop", _("loop"), on=True)
