@@ -645,6 +645,8 @@ function createMechanism(data) {
     const cosine = rotorsKnown.slice(2 * which * size, (2 * which + 1) * size);
     const sine = rotorsKnown.slice((2 * which + 1) * size, (2 * which + 2) * size);
     fillGaps(cosine, sine);
+    /* rotors of hinges are longer or shorter than 1 */
+    for (let j = 0; j < size; j++) cosine[j] = Math.cos(Math.atan2(sine[j], cosine[j]));
     const turns = new Int32Array(size);
     for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + passed(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
     const shift = rounded((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];

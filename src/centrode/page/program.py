@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet
+from centrode.kinematics.hinge_angles import moving_hinges
 from centrode.kinematics.machine_code.frame_kernels import FreeNumbers
 from centrode.kinematics.machine_code.variables import (
     PARAMETER,
@@ -261,6 +262,7 @@ def _data(
 ) -> dict[str, Any]:
     path, layout = ready.kinematics.path, traced.solved.layout
     frame = list(ready.structure.dimensions.frame)
+    started = {name: float(angle) for name, angle in ready.assembled.angles.items()} | dict(traced.hinges)
     return {
         "digest": _digest(mechanism, parameters),
         "title": mechanism.title,
@@ -285,7 +287,8 @@ def _data(
         "residual_bound": CLOSED,
         "quantities": [_quantity(ready, quantity) for quantity in traced.quantities if quantity.rows.size],
         "rows": [[int(row.derivative), int(row.of_frame)] for row in traced.rows],
-        "angles": [[link, row, float(ready.assembled.angles[link])] for link, row in traced.angles.items()],
+        "hinges": [hinge.label for hinge in moving_hinges(mechanism)] if traced.hinges else [],
+        "angles": [[name, row, started[name]] for name, row in traced.angles.items()],
         "turns_matter": _turns_matter(traced),
         "reduction_missing": traced.missing,
         "guards": [[kind, group] for kind, group in traced.cells],

@@ -7,6 +7,9 @@ node next to it for everything that gears and wheels depend on.
 
 from __future__ import annotations
 
+import functools
+import math
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
@@ -19,6 +22,7 @@ from centrode.dynamics.reduction import REDUCED, balancing_number, check_reducib
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import ROOM
+from centrode.kinematics.hinge_angles import HINGE_ANGLES, moving_hinges, rotor_of_hinge
 from centrode.kinematics.machine_code.trace import (
     MotionParts,
     Untraceable,
@@ -162,14 +166,15 @@ class PageTrace:
     Attributes
     ----------
     rows, quantities : of the motion at a sample
-    angles : link -> row of its angle without turns, which are counted along the path
+    angles : link, or key of a hinge -> row of its angle without turns, which are counted along the path
     residual : the greatest residual at a sample
     guards : (radicand or divisor, group), in the order of the plan
     at_samples : values of the radicands at a sample
     cells, curves, bounds : of every guard value, slope and bend over a cell; value and two derivatives; value and the
         bound of its rounding error
-    rotors : link -> cosine and sine of its angle
+    rotors : link, or key of a hinge -> cosine and sine of its angle
     counted : what gears and wheels depend on -> its angle without turns
+    hinges : key of a hinge -> its angle [rad] in the initial position
     missing : why masses and loads are not reduced; empty where they are, or where there are none
     """
 
@@ -184,6 +189,7 @@ class PageTrace:
     bounds: Mapping[tuple[str, int], tuple[Node, Node]]
     rotors: Mapping[str, tuple[Node, Node]]
     counted: Mapping[str, Node]
+    hinges: Mapping[str, float]
     solved: Solved
     missing: str
 
@@ -207,20 +213,23 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied, paths: Sequence[s
     )
     solved = motion_of_parts(MotionParts(ready, kinematics, layout, columns, angles), span, varied)
     reduced, missing = _reduced(solved, paths)
-    rows, quantities = _rows(solved, turning, reduced)
+    hinges = _hinges(solved)
+    rows, quantities = _rows(solved, turning, reduced, hinges)
+    rotors = turning | {hinge_key(hinge): hinge.rotor for hinge in hinges}
     guards = _guards(policy)
     return PageTrace(
         rows,
         quantities,
-        _angle_rows(solved, quantities, turning),
+        _angle_rows(solved, quantities, turning, hinges),
         as_node(np.asarray(solved.residual, dtype=object).ravel()[0]),
         guards,
         {group: as_node(_value(x)) for group, x in policy.radicands.items()},
         _cells(kinematics, guards),
         _curves(kinematics, guards),
         _bounds(kinematics, guards),
-        {link: (as_node(cosine), as_node(sine)) for link, (cosine, sine) in turning.items()},
+        {link: (as_node(cosine), as_node(sine)) for link, (cosine, sine) in rotors.items()},
         {key: as_node(x) for key, x in policy.counted.items()},
+        {hinge_key(hinge): hinge.start for hinge in hinges},
         solved,
         missing,
     )
@@ -233,6 +242,42 @@ FRAME_OF = "point"
 CONTACT = "contact"
 ANGLES = ("angle", "joint_angle")
 BALANCING = "balancing"
+
+
+@dataclass(frozen=True)
+class TracedHinge:
+    """A moving hinge on the sphere: cosine and sine of its angle, and two derivatives by the path's parameter."""
+
+    label: str
+    rotor: tuple[Operand, Operand]
+    rates: tuple[Operand, Operand]
+    start: float
+
+
+def hinge_key(hinge: TracedHinge) -> str:
+    """Name under which the turns of its angle are counted: no link has a blank in front of its name."""
+    return f"hinge {hinge.label}"
+
+
+def _hinges(solved: Solved) -> list[TracedHinge]:
+    """The moving hinges of a linkage on the sphere; none in the plane."""
+    if solved.spins is None:
+        return []
+    ready, found = solved.ready, []
+    names = (*ready.structure.dimensions.frame, *solved.layout.points)
+    places = {name: solved.all_points[0, 0, 0, k] for k, name in enumerate(names)}
+    at, start = Positions(places, {}, {}), ready.assembled.positions
+    for hinge in moving_hinges(ready.mechanism):
+        first, second = (solved.layout.links.index(link) for link in hinge.links)
+        axis = places[hinge.point]
+        one, two = (
+            functools.reduce(operator.add, [a * (x - y) for a, x, y in zip(axis, later, former, strict=True)])
+            for later, former in ((spin[0, 0, second], spin[0, 0, first]) for spin in solved.spins)
+        )
+        cosine, sine = rotor_of_hinge(hinge, ready.kinematics.numbers, start)
+        rotor = rotor_of_hinge(hinge, ready.kinematics.numbers, at)
+        found.append(TracedHinge(hinge.label, rotor, (one, two), math.atan2(float(sine), float(cosine))))
+    return found
 
 
 def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]:
@@ -252,7 +297,7 @@ def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]
 
 
 def _rows(
-    solved: Solved, turning: Mapping[str, Any], reduced: Mapping[str, Any]
+    solved: Solved, turning: Mapping[str, Any], reduced: Mapping[str, Any], hinges: Sequence[TracedHinge]
 ) -> tuple[tuple[Row, ...], tuple[TracedQuantity, ...]]:
     """Rows of all quantities, equal ones once, and where each quantity finds its own."""
     places: dict[tuple[Node, bool, bool], int] = {}
@@ -285,18 +330,29 @@ def _rows(
                 add(f"{kind.prefix}{word}", kind.dimensions, kind.orders[order], True)
     if solved.ready.mechanism.rolling:
         add(CONTACT, ("rolling", "axis"), solved.contacts, False)
+    if hinges:
+        angles = [m.atan2(sine, cosine) for cosine, sine in (hinge.rotor for hinge in hinges)]
+        values = [angles, *([hinge.rates[k] for hinge in hinges] for k in (0, 1))]
+        one, two, three = (box_array(row).reshape(1, 1, -1) for row in values)
+        for order, name in enumerate(HINGE_ANGLES):
+            add(name, ("hinge",), by_time((one, two, three), order, solved.span), order > 0)
     for name, values in reduced.items():
         add(name, (), values, True)
     return tuple(Row(*key) for key in places), tuple(quantities)
 
 
 def _angle_rows(
-    solved: Solved, quantities: tuple[TracedQuantity, ...], turning: Mapping[str, Any]
+    solved: Solved,
+    quantities: tuple[TracedQuantity, ...],
+    turning: Mapping[str, Any],
+    hinges: Sequence[TracedHinge],
 ) -> dict[str, int]:
-    """Link -> row of its angle, of those whose turns are counted along the path."""
+    """Link, or key of a hinge -> row of its angle, of those whose turns are counted along the path."""
     name = ANGLES[0 if solved.spins is None else 1]
     rows = next(quantity.rows for quantity in quantities if quantity.name == name)
-    return {link: int(rows[k]) for k, link in enumerate(solved.layout.angles) if link in turning}
+    found = {link: int(rows[k]) for k, link in enumerate(solved.layout.angles) if link in turning}
+    at_hinges = [quantity.rows for quantity in quantities if quantity.name == HINGE_ANGLES[0]]
+    return found | {hinge_key(hinge): int(at_hinges[0][k]) for k, hinge in enumerate(hinges)}
 
 
 # What tells where events are: radicands and divisors of the groups, at single places and over cells.

@@ -33,6 +33,7 @@ SMOOTH = 1e-9
 """Error of rates there, in units of the greatest one."""
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2, "angle": 0, "angular_velocity": 1,
           "angular_acceleration": 2, "joint_angle": 0, "joint_velocity": 1, "joint_acceleration": 2,
+          "hinge_angle": 0, "hinge_velocity": 1, "hinge_acceleration": 2,
           "slide": 0, "slide_velocity": 1, "slide_acceleration": 2}  # fmt: skip
 WORDS = ("position", "velocity", "acceleration")
 COLUMNS = {
