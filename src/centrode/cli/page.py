@@ -14,7 +14,7 @@ from centrode.errors import InputError
 from centrode.locale import LANGUAGES, _, mark
 
 
-@click.command(help=mark("Write a mechanism as one page on which its dimensions can be changed."))
+@click.command(help=mark("Write a mechanism as a page whose reader changes its dimensions."))
 @mechanism_argument
 @click.option(
     "--out",

@@ -40,6 +40,7 @@ def chosen_courses(
     last = (guided or moving)[-1:]
     wished = [f"{name}.{point}" for point in last for name in ("position", "velocity", "acceleration")]
     wished.append("angular_velocity" if "angular_velocity" in keys else "joint_velocity")
+    wished.append("reduced_moment")
     return [key for key in wished if key in keys]
 
 

@@ -85,8 +85,11 @@ def mechanism_page(
     """
     mechanism = mechanism_of(described)
     source = source or (FILE if isinstance(described, Mechanism) else Path(described).name)
-    program = page_program(mechanism, ranges_of(mechanism) if vary is None else vary, samples)
+    ranges = ranges_of(mechanism) if vary is None else vary
+    program = page_program(mechanism, ranges, samples)  # what is refused is said in the language of messages
     with speaking(language or chosen_language()):
+        if program.data["reduction_missing"]:
+            program = page_program(mechanism, ranges, samples)
         return _page(mechanism, program, _data(mechanism, program, source))
 
 
@@ -135,18 +138,19 @@ def _page(mechanism: Mechanism, program: PageProgram, data: Mapping[str, Any]) -
         f'<meta http-equiv="Content-Security-Policy" content="{page_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
-        f"{_body(title, bool(program.parameters), _controls(program))}"
+        f"{_body(title, program)}"
         f'<script type="application/json" id="page-data">{page_data(data)}</script>\n'
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
     )
 
 
-def _body(title: str, has_parameters: bool, controls: str) -> str:
+def _body(title: str, program: PageProgram) -> str:
     """The elements of the page; scripts fill what is empty."""
-    dimensions = _dimensions() if has_parameters else ""
+    dimensions = _dimensions() if program.parameters else ""
+    curves = _curves(str(program.data["reduction_missing"]))
     return (
         f'<div class="live"><header><h1>{title}</h1><p class="subtitle">{_subtitle()}</p></header>\n<main>\n'
-        f"{_player(controls)}\n{dimensions}\n{_curves()}\n{_away()}\n</main>\n</div>\n{_by_hand()}\n"
+        f"{_player(_controls(program))}\n{dimensions}\n{curves}\n{_away()}\n</main>\n</div>\n{_by_hand()}\n"
     )
 
 
@@ -189,11 +193,13 @@ def _dimensions() -> str:
     )
 
 
-def _curves() -> str:
+def _curves(missing: str) -> str:
+    """The curves; `missing` says why masses and loads are not among them."""
+    note = f'<p class="hint">{_escaped(missing)}</p>' if missing else ""
     name, add = _("Curves"), _button("add-curve", _("Add a curve"))
     return (
         f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", name)}'
-        f'<div class="charts"></div><p class="buttons">{add}</p></section>'
+        f'<div class="charts"></div><p class="buttons">{add}</p>{note}</section>'
     )
 
 
