@@ -14,7 +14,7 @@ from centrode.errors import InputError
 from centrode.locale import LANGUAGES, _, mark
 
 
-@click.command(help=mark("Write a mechanism as a page whose reader changes its dimensions."))
+@click.command(help=mark("Write a mechanism as a page to change dimensions on."))
 @mechanism_argument
 @click.option(
     "--out",
