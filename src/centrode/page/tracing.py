@@ -332,8 +332,8 @@ def _rows(
         add(CONTACT, ("rolling", "axis"), solved.contacts, False)
     if hinges:
         angles = [m.atan2(sine, cosine) for cosine, sine in (hinge.rotor for hinge in hinges)]
-        values = [angles, *([hinge.rates[k] for hinge in hinges] for k in (0, 1))]
-        one, two, three = (box_array(row).reshape(1, 1, -1) for row in values)
+        orders = [angles, *([hinge.rates[k] for hinge in hinges] for k in (0, 1))]
+        one, two, three = (box_array(row).reshape(1, 1, -1) for row in orders)
         for order, name in enumerate(HINGE_ANGLES):
             add(name, ("hinge",), by_time((one, two, three), order, solved.span), order > 0)
     for name, values in reduced.items():

@@ -91,10 +91,12 @@ def _of_parts(
         "guide": data["guides"],
         "joint": data["joints"],
         "rolling": data["rolling"],
+        "hinge": data["hinges"],
     }.get(kind)
     if not names:
         return
-    groups = {"link": _("links"), "guide": _("guides"), "joint": _("links"), "rolling": _("wheels")}
+    links, wheels = _("links"), _("wheels")
+    groups = {"link": links, "hinge": links, "joint": links, "guide": _("guides"), "rolling": wheels}
     own = {"group": groups[kind], "size": "", **_unit(quantity, numbers)}
     name, symbol = quantity["name"], quantity["symbol"]
     if not axes:
