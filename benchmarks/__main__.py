@@ -11,6 +11,8 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
+from tools.node import MISSING, NODE  # noqa: E402
+
 from benchmarks import (  # noqa: E402
     animations,
     chains,
@@ -21,6 +23,7 @@ from benchmarks import (  # noqa: E402
     kernels,
     machine,
     motions,
+    pages,
     peer,
     reports,
     simulation,
@@ -57,9 +60,11 @@ SECTIONS: Mapping[str, Section] = {
     ),
     "solver": (f"One mechanism whose numbers change, {solver.SAMPLES} samples", solver.moves),
     "cluster": ("A sweep on two workers of this machine, by the clock", cluster.clusters),
+    "page": (f"A page in Node: changed numbers to a motion of {pages.SAMPLES} samples", pages.recomputes),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
+NEED_NODE = {"page"}
 NEED_COMPILER = {"kernels", "sweeps", "simulation", "cluster"}
 
 
@@ -77,6 +82,9 @@ def main(wanted: list[str]) -> int:
             continue
         if name in NEED_COMPILER and not machine_code.PRESENT:
             print(f"\n{title}\n  left out: {kernels.MISSING}")
+            continue
+        if name in NEED_NODE and NODE is None:
+            print(f"\n{title}\n  left out: {MISSING}")
             continue
         rows += print_section(title, measure())
     return 0 if print_promises(rows) else 1

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Any
 
 from docutils.nodes import SkipNode
@@ -14,7 +16,9 @@ author = "centrode contributors"
 copyright = "centrode contributors"
 version = release = centrode.__version__
 
-extensions = ["myst_nb"]
+sys.path.insert(0, str(Path(__file__).parent))  # the directives beside this file
+
+extensions = ["myst_nb", "live_pages"]
 nb_execution_mode = "off"  # tools/notebook.py runs it
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4  # links to headings work as on code hosts

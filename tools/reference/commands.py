@@ -15,7 +15,7 @@ PAGES: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
     {
         "commands-first": (
             "Commands for files and documents",
-            ("run", "report", "animate", "draw", "export", "check", "describe", "examples", "schema"),
+            ("run", "report", "page", "animate", "draw", "export", "check", "describe", "examples", "schema"),
         ),
         "commands-kinematics": (
             "Commands of kinematics",

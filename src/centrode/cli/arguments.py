@@ -55,6 +55,15 @@ range_option = click.option(
 )
 """In place of what the description says of its range; `--from` and `--to` go before it."""
 
+numbers_option = click.option(
+    "--set",
+    "numbers",
+    multiple=True,
+    metavar=mark("PATH=VALUE"),
+    help=mark('Another value of a number of the description ("links.AB.length=3.6 m"); may be repeated.'),
+)
+"""Numbers in place of the description's own."""
+
 no_figures_option = click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
 
 dark_option = click.option(

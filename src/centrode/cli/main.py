@@ -27,6 +27,7 @@ from centrode.cli.chains import chains
 from centrode.cli.draw import draw
 from centrode.cli.examples import examples
 from centrode.cli.export import export
+from centrode.cli.page import page
 from centrode.cli.report import report
 from centrode.cli.schema import schema
 from centrode.cli.sheets import sheets
@@ -45,6 +46,7 @@ COLLECTION = (50_000, 50, 100)
 """Objects after which cycles among them are looked for, in each generation; Python's 700 cost a command a twentieth."""
 OWN: tuple[click.Command, ...] = (
     report,
+    page,
     animate,
     variants,
     cam,

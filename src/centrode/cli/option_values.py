@@ -35,16 +35,16 @@ def pairs(texts: Iterable[str], where: str, sample: str = "EC=30 deg") -> dict[s
     return found
 
 
-def ranges(texts: Iterable[str], where: str) -> dict[str, tuple[str, str]]:
-    """Name -> first and last value of texts NAME=FIRST:LAST."""
+def ranges(texts: Iterable[str], where: str, sample: str = "EC=-30 deg:90 deg") -> dict[str, tuple[str, str]]:
+    """Name -> first and last value of texts NAME=FIRST:LAST; `sample` is what a refusal shows as right."""
     found = {}
-    for name, value in pairs(texts, where).items():
+    for name, value in pairs(texts, where, sample).items():
         first, sign, last = (part.strip() for part in value.partition(":"))
         if not sign or not first or not last:
             raise InputError(
                 where,
                 _("expected NAME=FIRST:LAST, got {text}").format(text=f'"{name}={value}"'),
-                _('write "EC=-30 deg:90 deg"'),
+                _("write {sample}").format(sample=f'"{sample}"'),
             )
         found[name] = (first, last)
     return found

@@ -16,6 +16,7 @@ from centrode.cli.arguments import (
     dark_option,
     mechanism_argument,
     no_figures_option,
+    numbers_option,
     range_option,
     results_option,
     samples_option,
@@ -24,6 +25,7 @@ from centrode.cli.arguments import (
     written_option,
 )
 from centrode.cli.instants import default_instants, echo_values
+from centrode.cli.option_values import pairs
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
@@ -34,6 +36,7 @@ from centrode.topics.topic import (
     Command,
     FlagOption,
     InstantsOption,
+    NumbersOption,
     Option,
     RangeOptions,
     ValueOption,
@@ -51,7 +54,7 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
     """The command of a topic: `centrode TOPIC MECHANISM [options] [--out DIR]`."""
 
     def run(mechanism: str, out: Path | None = None, **given: Any) -> None:
-        description = library.load(mechanism)
+        description = _with_numbers(library.load(mechanism), given.pop("numbers", ()))
         samples = given.pop("samples") if command.samples else None
         if command.samples and command.extent is None:
             announce_size(description, samples)
@@ -143,6 +146,8 @@ def option_parameters(option: Option) -> Iterator[click.Parameter]:
             yield click.Option(["--at"], multiple=True, metavar=mark("VALUE"), help=text)
         case RangeOptions():
             yield from parameters_of([start_option, stop_option, range_option])
+        case NumbersOption():
+            yield from parameters_of([numbers_option])
         case _:
             assert_never(option)
 
@@ -162,6 +167,15 @@ def parameters_of(decorators: list[Any]) -> list[click.Parameter]:
 def option_name(name: str) -> str:
     """An option as it is written."""
     return "--" + name.replace("_", "-")
+
+
+def _with_numbers(mechanism: Mechanism, texts: tuple[str, ...]) -> Mechanism:
+    """The mechanism with the numbers of `--set`."""
+    if not texts:
+        return mechanism
+    with about("--set"):
+        changed: Mechanism = library.with_numbers(mechanism, pairs(texts, "", "links.AB.length=3.6 m"))
+    return changed
 
 
 def _in_range(command: Command, mechanism: Mechanism, given: dict[str, Any]) -> Mechanism:

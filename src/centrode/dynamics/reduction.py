@@ -537,6 +537,20 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
     return np.asarray(np.broadcast_to(total, solved.status.shape) + known)
 
 
+def balancing_number(solved: Solved, values: Values) -> AnyArray:
+    """What the drive gives so that the motion is as it is, for every mechanism and sample, as `reduced_number` has it.
+
+    J q'' + J' q'^2 / 2 less the reduced moment, at the speed that loads see.
+    """
+    inertia, slope, moment = (reduced_number(name, solved, values) for name in REDUCED)
+    rate = motion_of_batch(solved, MassesAndLoads.of(solved.ready.mechanism)).rate
+    balancing = 0.5 * slope * (rate * rate) - moment
+    # at the mean speed of a machine the drive has no acceleration
+    if _by_drive(solved) and solved.span.accelerates:
+        balancing = balancing + inertia * solved.span.second_rate
+    return np.asarray(balancing)
+
+
 def motion_of_batch(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
     """The speed that loads see, as `reduction_of` has it."""
     span, ready = solved.span, solved.ready

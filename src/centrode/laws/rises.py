@@ -180,16 +180,29 @@ def plain(t: Number) -> Number:
 
 
 def row_at(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:
-    """The row of the stretch that a plain t lies in; of an array a row of arrays.
+    """The row of the stretch that a plain t lies in; of an array a row of arrays, of an expression one of choices.
 
     Rows are one more than breaks. At a break the right one is taken, at the last break the left one.
     """
+    if hasattr(t, "is_condition"):
+        return _chosen_row(breaks, rows, t)
     places = places_at(breaks, t)
     if isinstance(places, int):
         return rows[places]
     # The array says itself which library it belongs to: this room imports none.
     xp = t.__array_namespace__()
     return tuple(xp.moveaxis(xp.asarray(rows)[places], -1, 0))
+
+
+def _chosen_row(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:
+    """The row as an expression: numbers that conditions on t choose."""
+    m = t.__array_namespace__()
+    row = tuple(rows[0])
+    for place, later in enumerate(rows[1:]):
+        last = place == len(breaks) - 1
+        before = m.less_equal(t, breaks[place]) if last else m.less(t, breaks[place])
+        row = tuple(m.where(before, x, y) for x, y in zip(row, later, strict=True))
+    return row
 
 
 def places_at(breaks: Sequence[float], t: Number) -> Any:

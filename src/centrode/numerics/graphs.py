@@ -326,13 +326,64 @@ _RULES: Mapping[str, Rule] = {
 """For each operation its partial derivative by each argument; a condition stands for 1 where it holds, else 0."""
 
 
-# Graphs as text that a person reads: one line for every intermediate result that is used more than once.
+# Graphs as text: one line for every intermediate result that is used more than once. How each operation is written
+# stands in the one table of operations, and what a language writes otherwise in its notation.
 
 LONGEST = 70
 """Characters above which an expression gets a line of its own even if it is used once."""
 
 Text = tuple[str, int]
 """An expression as text and how strongly its outermost sign binds."""
+ALONE = 9
+"""How strongly a name, a number or a call binds: it needs no brackets anywhere."""
+
+
+class Unwritten(Exception):
+    """An operation that a notation has no words for; `operation` is its name."""
+
+    def __init__(self, operation: str) -> None:
+        self.operation = operation
+        super().__init__(operation)
+
+
+@dataclass(frozen=True)
+class Notation:
+    """How a language writes operations.
+
+    Attributes
+    ----------
+    functions : operation -> name of the function that carries it out
+    number : a constant as text
+    signs : operation -> its sign where it is not that of the table of operations
+    selection : pattern of a choice between two values by a condition; empty where that is a function too
+    """
+
+    functions: Mapping[str, str]
+    number: Callable[[float], Text]
+    signs: Mapping[str, str]
+    selection: str = ""
+
+    def text(self, node: Node, inside: Sequence[Text]) -> Text:
+        """An operation on arguments that are texts. Raises Unwritten for one that the language does not have."""
+        operation = OPERATIONS[node.operation]
+        strength, sign = operation.strength, self.signs.get(node.operation, operation.sign)
+        if node.operation == "where" and self.selection:
+            return self.selection.format(*(text for text, _strength in inside)), ALONE
+        if not sign or node.operation in self.functions:
+            if node.operation not in self.functions:
+                raise Unwritten(node.operation)
+            return f"{self.functions[node.operation]}({', '.join(text for text, _strength in inside)})", ALONE
+        if operation.arguments == 1:
+            return sign + _in_brackets(inside[0], strength), strength
+        # of equal strength only the left argument goes without brackets; + and * too, as they are not reassociated
+        left, right = _in_brackets(inside[0], strength), _in_brackets(inside[1], strength + 1)
+        return f"{left} {sign} {right}", strength
+
+
+def is_worth_a_line(node: Node, text: Text, uses: int, is_output: bool) -> bool:
+    """Whether an expression gets a line of its own: what is used more than once, and what is long."""
+    long = len(text[0]) > LONGEST and uses
+    return bool(node.arguments) and bool(uses > 1 or long or (is_output and uses))
 
 
 def graph_listing(graph: Graph) -> str:
@@ -346,11 +397,10 @@ def graph_listing(graph: Graph) -> str:
     lines: list[str] = []
     for node in graph.order:
         text = _text(node, texts)
-        long = len(text[0]) > LONGEST and uses[node]
-        if node.arguments and (uses[node] > 1 or long or (node in outputs and uses[node])):
+        if is_worth_a_line(node, text, uses[node], node in outputs):
             name = f"t{len(lines) + 1}"
             lines.append(f"{name} = {text[0]}")
-            text = name, 9
+            text = name, ALONE
         texts[node] = text
     lines += [f"{name} = {texts[node][0]}" for name, node in graph.outputs.items()]
     return "\n".join(lines)
@@ -363,26 +413,21 @@ def operation_counts(graph: Graph) -> str:
 
 def _text(node: Node, texts: dict[Node, Text]) -> Text:
     if node.operation == VARIABLE:
-        return str(node.detail), 9
+        return str(node.detail), ALONE
     if node.operation == CONSTANT:
-        return _number(float(node.detail))
-    operation = OPERATIONS[node.operation]
-    inside = [texts[x] for x in node.arguments]
-    strength = operation.strength
-    if not operation.sign:
-        return f"{node.operation}({', '.join(text for text, _strength in inside)})", 9
-    if operation.arguments == 1:
-        return operation.sign + _in_brackets(inside[0], strength), strength
-    # of equal strength only the left argument goes without brackets; + and * too, as they are not reassociated
-    left, right = _in_brackets(inside[0], strength), _in_brackets(inside[1], strength + 1)
-    return f"{left} {operation.sign} {right}", strength
+        return number_text(float(node.detail))
+    return _LISTED.text(node, [texts[x] for x in node.arguments])
 
 
 def _in_brackets(text: Text, strength: int) -> str:
     return text[0] if text[1] >= strength else f"({text[0]})"
 
 
-def _number(x: float) -> Text:
-    # repr of a whole number would lose the sign of -0; a leading minus binds as a sign before a product does
+def number_text(x: float) -> Text:
+    """A constant with all its digits; a leading minus binds as a sign before a product does."""
+    # repr of a whole number would lose the sign of -0
     text = repr(int(x)) if x.is_integer() and abs(x) < 1e6 and (x or math.copysign(1, x) > 0) else repr(x)
-    return text, 9 if text[0].isdigit() else 7
+    return text, ALONE if text[0].isdigit() else OPERATIONS["negate"].strength
+
+
+_LISTED = Notation({name: name for name, each in OPERATIONS.items() if not each.sign}, number_text, {})

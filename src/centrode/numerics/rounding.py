@@ -10,6 +10,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.numerics.arrays import ARRAYS
+
 Number: TypeAlias = Any
 UNIT_ROUNDOFF = 2.0**-53
 SAFETY = 16.0
@@ -30,7 +32,7 @@ class Rounded:
     @staticmethod
     def of(x: Number) -> Rounded:
         """A plain number as data known to half a unit of its last place."""
-        return x if isinstance(x, Rounded) else Rounded(x, UNIT_ROUNDOFF * np.abs(x))
+        return x if isinstance(x, Rounded) else Rounded(x, UNIT_ROUNDOFF * abs(x))
 
     def __repr__(self) -> str:
         return f"Rounded({self.value!r}, {self.bound!r})"
@@ -40,7 +42,7 @@ class Rounded:
         value = self.value + b.value
         # what both carry along, and the rounding of this sum: at most half a unit of the last place of its
         # value
-        return Rounded(value, self.bound + b.bound + UNIT_ROUNDOFF * np.abs(value))
+        return Rounded(value, self.bound + b.bound + UNIT_ROUNDOFF * abs(value))
 
     __radd__ = __add__
 
@@ -57,78 +59,79 @@ class Rounded:
         b = Rounded.of(other)
         value = self.value * b.value
         # the product of both bounds is of second order and left to `SAFETY`
-        carried = np.abs(self.value) * b.bound + np.abs(b.value) * self.bound
-        return Rounded(value, carried + UNIT_ROUNDOFF * np.abs(value))
+        carried = abs(self.value) * b.bound + abs(b.value) * self.bound
+        return Rounded(value, carried + UNIT_ROUNDOFF * abs(value))
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Number) -> Rounded:
         b = Rounded.of(other)
         value = self.value / b.value
-        carried = (self.bound + np.abs(value) * b.bound) / np.abs(b.value)
-        return Rounded(value, carried + UNIT_ROUNDOFF * np.abs(value))
+        carried = (self.bound + abs(value) * b.bound) / abs(b.value)
+        return Rounded(value, carried + UNIT_ROUNDOFF * abs(value))
 
     def __rtruediv__(self, other: Number) -> Rounded:
         return Rounded.of(other) / self
 
 
 class RoundedFunctions:
-    """Namespace `m` for bounded numbers over NumPy arrays."""
+    """Namespace `m` for bounded numbers over the numbers of another namespace: arrays, or expressions."""
+
+    def __init__(self, base: Number = ARRAYS) -> None:
+        self.base = base
 
     def sin(self, x: Number) -> Rounded:
-        x = Rounded.of(x)
+        x, base = Rounded.of(x), self.base
         # a root, a sine or a cosine is known to half a unit of the last place of 1 at the worst
-        return Rounded(np.sin(x.value), np.abs(np.cos(x.value)) * x.bound + UNIT_ROUNDOFF)
+        return Rounded(base.sin(x.value), abs(base.cos(x.value)) * x.bound + UNIT_ROUNDOFF)
 
     def cos(self, x: Number) -> Rounded:
-        x = Rounded.of(x)
-        return Rounded(np.cos(x.value), np.abs(np.sin(x.value)) * x.bound + UNIT_ROUNDOFF)
+        x, base = Rounded.of(x), self.base
+        return Rounded(base.cos(x.value), abs(base.sin(x.value)) * x.bound + UNIT_ROUNDOFF)
 
     def sign(self, x: Number) -> Number:
         """Sign of the value, a plain number."""
-        return np.sign(Rounded.of(x).value)
+        return self.base.sign(Rounded.of(x).value)
 
     def abs(self, x: Number) -> Rounded:
         x = Rounded.of(x)
-        return Rounded(np.abs(x.value), x.bound)
+        return Rounded(abs(x.value), x.bound)
 
     def min(self, x: Number, y: Number) -> Rounded:
         x, y = Rounded.of(x), Rounded.of(y)
         # the lesser of two numbers moves no further than the one that moves more
-        return Rounded(np.minimum(x.value, y.value), np.maximum(x.bound, y.bound))
+        return Rounded(self.base.min(x.value, y.value), self.base.max(x.bound, y.bound))
 
     def max(self, x: Number, y: Number) -> Rounded:
         x, y = Rounded.of(x), Rounded.of(y)
-        return Rounded(np.maximum(x.value, y.value), np.maximum(x.bound, y.bound))
+        return Rounded(self.base.max(x.value, y.value), self.base.max(x.bound, y.bound))
 
     def exp(self, x: Number) -> Rounded:
         x = Rounded.of(x)
-        value = np.exp(x.value)
+        value = self.base.exp(x.value)
         return Rounded(value, value * x.bound + UNIT_ROUNDOFF * value)
 
     def log(self, x: Number) -> Rounded:
         x = Rounded.of(x)
-        value = np.log(x.value)
-        return Rounded(value, x.bound / np.abs(x.value) + UNIT_ROUNDOFF * np.abs(value))
+        value = self.base.log(x.value)
+        return Rounded(value, x.bound / abs(x.value) + UNIT_ROUNDOFF * abs(value))
 
     def sqrt(self, x: Number) -> Rounded:
-        x = Rounded.of(x)
-        value = np.sqrt(x.value)
+        x, base = Rounded.of(x), self.base
+        value = base.sqrt(x.value)
         # near zero the slope says nothing: there the root of the bound itself bounds the error
-        near = np.sqrt(np.abs(x.value) + 2.0 * x.bound)
+        near = base.sqrt(abs(x.value) + 2.0 * x.bound)
         with np.errstate(divide="ignore", invalid="ignore"):
             # from four bounds on, the slope is right within the same share anywhere between value and truth
-            bound = np.where(x.value > 4.0 * x.bound, x.bound / (2.0 * value), near)
+            bound = base.where(base.less(4.0 * x.bound, x.value), x.bound / (2.0 * value), near)
         return Rounded(value, bound + UNIT_ROUNDOFF * value)
 
     def atan2(self, y: Number, x: Number) -> Rounded:
         y, x = Rounded.of(y), Rounded.of(x)
-        value = np.arctan2(y.value, x.value)
+        value = self.base.atan2(y.value, x.value)
         # the differential (x dy - y dx) / (x^2 + y^2), of sizes
-        carried = (np.abs(x.value) * y.bound + np.abs(y.value) * x.bound) / (
-            x.value * x.value + y.value * y.value
-        )
-        return Rounded(value, carried + UNIT_ROUNDOFF * np.abs(value))
+        carried = (abs(x.value) * y.bound + abs(y.value) * x.bound) / (x.value * x.value + y.value * y.value)
+        return Rounded(value, carried + UNIT_ROUNDOFF * abs(value))
 
 
 ROUNDED = RoundedFunctions()

@@ -12,6 +12,7 @@ Entry = TypeVar("Entry")
 COMMANDS = (
     "run",
     "report",
+    "page",
     "animate",
     "check",
     "describe",

@@ -11,6 +11,7 @@ from centrode.topics.topic import (
     InDocuments,
     InstantsOption,
     Lazily,
+    NumbersOption,
     RangeOptions,
     Topic,
     ValueOption,
@@ -663,7 +664,7 @@ RUN = Topic(
     view=Lazily("centrode.views.motion", "sheet"),
     command=Command(
         help=mark("Compute the motion of a mechanism: tables and pictures."),
-        options=(RangeOptions(echoed=False), MOTION),
+        options=(RangeOptions(echoed=False), NumbersOption(), MOTION),
         folder="result",
         animation=Lazily("centrode.animation.animate", "animate_results"),
         animation_help=mark("Also write an animation of the motion."),

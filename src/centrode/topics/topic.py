@@ -106,7 +106,12 @@ class InstantsOption:
     most: int = 100
 
 
-Option: TypeAlias = ChoiceOption | ValueOption | FlagOption | RangeOptions | InstantsOption
+@dataclass(frozen=True)
+class NumbersOption:
+    """Numbers in place of the description's own: `--set PATH=VALUE`, any number of times."""
+
+
+Option: TypeAlias = ChoiceOption | ValueOption | FlagOption | RangeOptions | InstantsOption | NumbersOption
 
 
 @dataclass(frozen=True)

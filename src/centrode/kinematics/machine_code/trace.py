@@ -229,10 +229,10 @@ def trace_motion(
     hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
-    columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
+    columns = columns_of(layout.numbers(NODE_JETS, kinematics.numbers, at))
     winders = winders_of(path)
-    angles, turning = _angles(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
-    solved = _motion_of_parts(_Parts(ready, kinematics, layout, columns, angles), span, varied)
+    angles, turning = angles_of(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
+    solved = motion_of_parts(MotionParts(ready, kinematics, layout, columns, angles), span, varied)
     bent = BentPlan(ready, span, varied, signs)
     places = at.map_numbers(plain)
     return Traced(
@@ -246,7 +246,9 @@ def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:
 
 
 @dataclass(frozen=True)
-class _Parts:
+class MotionParts:
+    """Columns and angles at one place of the path, each with its derivatives: (3, numbers) of nodes."""
+
     ready: Ready
     kinematics: Kinematics
     layout: PlanLayout
@@ -254,7 +256,7 @@ class _Parts:
     angles: Nodes
 
 
-def _columns(numbers: Sequence[Number]) -> Nodes:
+def columns_of(numbers: Sequence[Number]) -> Nodes:
     """Value, first and second derivative of numbers: (3, numbers)."""
     return np.stack([box_array([_derivative(x, order) for x in numbers]) for order in range(ORDERS)])
 
@@ -264,7 +266,7 @@ def _derivative(x: Number, order: int) -> Operand:
     return value
 
 
-def _angles(
+def angles_of(
     layout: PlanLayout,
     at: Positions,
     columns: Nodes,
@@ -298,7 +300,8 @@ def _constant_angle(cosine: float, sine: float, start: float) -> float:
     return angle + TURN * round((start - angle) / TURN)
 
 
-def _motion_of_parts(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
+def motion_of_parts(parts: MotionParts, span: SampleGrid, varied: Varied) -> Solved:
+    """The motion at one place, as arrays of one lane and one sample, from what the plan gives there."""
     layout, kinematics = parts.layout, parts.kinematics
     fixed = Positions.of_frame(kinematics.numbers, {}, EXPRESSIONS).points
     # derivatives of the frame are plain zeros, which cost no operation

@@ -26,10 +26,12 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
 
-# Okabe and Ito, Color Universal Design (2008), without its yellow, which is lost on white paper.
-PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-MARKERS = ("", "o", "s", "^", "D", "v")
-"""Markers of the things that share a colour, the first seven, the next seven and so on."""
+from centrode.render.drawing.colours import GROUND as GROUND
+from centrode.render.drawing.colours import INK as INK
+from centrode.render.drawing.colours import MARKERS as MARKERS
+from centrode.render.drawing.colours import MUTED as MUTED
+from centrode.render.drawing.colours import PALETTE as PALETTE
+
 APPROXIMATE: Any = (0, (5, 1.2))
 CUT: Any = (0, (3, 2))
 JUMP: Any = (0, (2, 1.5))
@@ -38,9 +40,6 @@ DOTS: Any = (0, (1, 1.5))
 HIDDEN: Any = (0, (4, 3))
 """Dashes, each of one meaning: what another curve is compared with, what is cut off, a jump, limits and axes, change
 points, what lies behind."""
-MUTED = "#8A8A8A"
-GROUND = "#404040"
-INK = "#202020"
 MATHTEXT = logging.getLogger("matplotlib.mathtext")
 BACKEND = ("backend", "backend_fallback")
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

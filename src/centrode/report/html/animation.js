@@ -1,7 +1,7 @@
 // Plays the motions of a page: by time, step by step, and by dragging what the drive moves.
 class Stage extends Picture {
-  constructor(holder) {
-    super(holder);
+  constructor(holder, ...data) {
+    super(holder, ...data);
     this.forward = 1;
     this.playing = false;
     this.speed = 1;
@@ -193,5 +193,3 @@ class Stage extends Picture {
     return here + Math.max(-0.5, Math.min(0.5, (a - c) / (2 * bend)));
   }
 }
-
-for (const holder of document.querySelectorAll(".moving")) new Stage(holder);

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import html
 from collections.abc import Iterable, Sequence
 from functools import cache
-from pathlib import Path
 
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import Moving, Report
@@ -16,12 +13,12 @@ from centrode.render.document.outline import Heading, OutlinedChapter, outline_o
 from centrode.report.html.elements import Elements, formulas_in
 from centrode.report.html.fonts import embedded_font, font_letters
 from centrode.report.html.mathematics import formulas_of
+from centrode.report.html.parts import page_part, page_policy, page_script
 from centrode.report.page_styles import page_style
 from centrode.report.texts import blocks_of
 
-HERE = Path(__file__).parent
-SCRIPTS = (("page.js",), ("space.js", "picture.js", "animation.js"))
-STYLE = "page.css"
+SCRIPTS = (("page.js",), ("space.js", "picture.js", "animation.js", "motions.js"))
+STYLES = ("font.css", "base.css", "document.css", "motion.css", "print.css")
 NOTE_STYLE = """
 h4 { font-size: 1.05rem; margin: 1.6rem 0 0.5rem; }
 h4 .number { color: var(--muted); margin-right: 0.5em; }
@@ -68,11 +65,12 @@ def _page(report: Report) -> str:
     moving = (one for one in blocks_of(report) if isinstance(one, Moving))
     names = (name for one in moving for name in one.places)
     font = embedded_font(font_letters(formulas.letters, names, f"{report.title}{contents}{main}"))
-    style = f"{_data(STYLE).replace('@FONT@', font)}{note_style}{formulas.style}{elements.drawings.style()}"
+    styles = "".join(map(page_part, STYLES))
+    style = f"{styles.replace('@FONT@', font)}{note_style}{formulas.style}{elements.drawings.style()}"
     title, heading = html.escape(report.title), html.escape(_("Contents"))
     return (
         f'<!DOCTYPE html>\n<html lang="{html.escape(report.language)}">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{page_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
         f'{elements.drawings.shared()}\n<div class="sheet">\n'
@@ -166,21 +164,7 @@ def _entry_text(heading: Heading) -> str:
     return f"{_number(heading)}<span>{html.escape(heading.title)}</span>"
 
 
-def _policy(scripts: list[str]) -> str:
-    """What the page may do: run its own scripts, nothing else, and load nothing."""
-    sums = " ".join(
-        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
-        for script in scripts
-    )
-    return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; font-src data:; img-src data:"
-
-
 @cache
 def _script(names: tuple[str, ...]) -> str:
-    """One script of several files, whose names nothing else on the page sees."""
-    return "".join(['(() => {\n"use strict";\n', *(_data(name) for name in names), "})();"])
-
-
-@cache
-def _data(name: str) -> str:
-    return (HERE / name).read_text(encoding="utf-8")
+    """One script of several files."""
+    return page_script(map(page_part, names))

@@ -1,8 +1,8 @@
 // What is drawn of a motion, in an SVG of its own; names are only ever set as text.
 class Picture {
-  constructor(holder) {
+  constructor(holder, data = JSON.parse(holder.querySelector("script").textContent)) {
     this.holder = holder;
-    this.data = JSON.parse(holder.querySelector("script").textContent);
+    this.data = data;
     this.last = this.data.samples - 1;
     this.place = this.data.start;
     const { view, centre, radius } = this.data;

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,7 +11,8 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.render.document.blocks import Moving, Outline, RingBlock
-from centrode.render.drawing.style import GROUND, MARKERS, PALETTE
+from centrode.render.drawing.colours import GROUND, MARKERS, PALETTE
+from centrode.report.html.parts import page_data
 
 Array = NDArray[np.float64]
 WIDE, TALLEST = 6400, 5200
@@ -70,14 +70,13 @@ class PictureMap:
 
 def stage_of(moving: Moving, still: str) -> str:
     """The element of a motion: its first picture, its controls, and its data, which the page's script reads."""
-    data = json.dumps(_data(moving), ensure_ascii=False, separators=(",", ":"))
-    for sign in "<>&\u2028\u2029":
-        data = data.replace(sign, f"\\u{ord(sign):04x}")
+    data = page_data(_data(moving))
     label = html.escape(_("Mechanism in motion; drag a point, or use the arrow keys"))
+    first = moving.drive_texts[moving.start] if moving.drive_texts else ""
     return (
         f'<div class="moving" role="group" aria-label="{label}">'
         f'<div class="paper" tabindex="0" aria-label="{label}">{still}</div>'
-        f'{_controls(moving)}<script type="application/json">{data}</script></div>'
+        f'{controls_of(first)}<script type="application/json">{data}</script></div>'
     )
 
 
@@ -97,7 +96,9 @@ _MARKERS = {
 """Outlines of the markers of links that share a colour, in thousandths of an inch as the picture is."""
 
 
-def _controls(moving: Moving) -> str:
+def controls_of(first: str, more: str = "") -> str:
+    """The controls of a player; `first` says where it begins, `more` are elements behind its own."""
+
     def word(text: str) -> str:
         return html.escape(text)
 
@@ -109,10 +110,10 @@ def _controls(moving: Moving) -> str:
         f'<button type="button" data-do="back" title="{back}" aria-label="{back}">\u2039</button>'
         f'<button type="button" data-do="on" title="{on}" aria-label="{on}">\u203a</button>'
         f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{position}">'
-        f"<output>{word(moving.drive_texts[moving.start] if moving.drive_texts else '')}</output>"
+        f"<output>{word(first)}</output>"
         f'<label>{speed} <input type="range" data-do="speed" min="-3" max="2" step="0.5" value="0"></label>'
         f'<label><input type="checkbox" data-do="paths" checked> {paths}</label>'
-        f'<label><input type="checkbox" data-do="names" checked> {names}</label></div>'
+        f'<label><input type="checkbox" data-do="names" checked> {names}</label>{more}</div>'
     )
 
 
@@ -134,8 +135,7 @@ def _data(moving: Moving) -> dict[str, Any]:
             {
                 "name": name,
                 "points": [names.index(one) for one in points if one in moving.places],
-                "colour": PALETTE[number % len(PALETTE)],
-                "marker": _MARKERS[MARKERS[number // len(PALETTE) % len(MARKERS)]],
+                **look_of_link(number),
             }
             for number, (name, points) in enumerate(moving.bodies.items())
         ],
@@ -160,7 +160,7 @@ def _data(moving: Moving) -> dict[str, Any]:
         ],
         "tracks": [names.index(one) for one in moving.tracks],
         "texts": list(moving.drive_texts),
-        "support": _support(),
+        "support": support_sign(),
         "words": {"play": _("Play"), "pause": _("Pause")},
         "view": None,
     }
@@ -169,6 +169,14 @@ def _data(moving: Moving) -> dict[str, Any]:
         found["centre"] = [round(value) for value in sheet.place(np.zeros(2))]
         found["radius"] = round(sheet.scale)
     return found
+
+
+def look_of_link(number: int) -> dict[str, str]:
+    """Colour and marker of the link that is the `number`-th in the description."""
+    return {
+        "colour": PALETTE[number % len(PALETTE)],
+        "marker": _MARKERS[MARKERS[number // len(PALETTE) % len(MARKERS)]],
+    }
 
 
 def _point(moving: Moving, sheet: PictureMap, name: str) -> dict[str, Any]:
@@ -201,7 +209,7 @@ def _ground(sheet: PictureMap, line: Array) -> str:
     return _hatch(start, end, away)
 
 
-def _support() -> str:
+def support_sign() -> str:
     """The triangle of a fixed hinge on its ground."""
     left, right = np.array([-2.0, 3.2]) * SIGN, np.array([2.0, 3.2]) * SIGN
     over = np.array([0.8 * SIGN, 0.0])

@@ -1,0 +1,1 @@
+"""The page of a mechanism: what it computes in a browser."""

@@ -1,0 +1,725 @@
+/* The motion of one mechanism whose numbers change: what the program prints of it is walked over its samples, and
+ * limits and change points are looked for on its mesh of events, with the rules of `kinematics.events` and
+ * `kinematics.samples`.
+ *
+ * const mechanism = createMechanism(data);      data: what the program says of the mechanism, see `page.program`
+ * const frame = mechanism.recompute(values);    values: numbers [SI] in the order of mechanism.parameters
+ *
+ * A frame has, at every sample: drive (rad, m or s), time, status (index into data.statuses), residual; position,
+ * velocity, acceleration [point][axis]; angle, angularVelocity, angularAcceleration [link] (on the sphere rotation
+ * vectors [link][axis], and the angles of data.joints in jointAngle); all of them and what else there is by name in
+ * `quantities`. Beside these: events [{kind, drive, group}], reach [low, high], signsChange, possible, residualBound.
+ * mechanism.centre(link) gives the instant centre of a link in the last frame: {fixed: [x, y], moving: [x, y]}.
+ * Arrays belong to the mechanism and are written anew by the next call; what is absent is NaN.
+ */
+const createMechanism = (() => {
+"use strict";
+/* printed */
+
+const TURN = 2 * Math.PI;
+const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];
+/* a radicand below this share of its greatest value is compared with its rounding error, so many times over */
+const SUSPECT = 1e-8, SAFETY = 16;
+/* how much more than their bounds numbers may stray */
+const ROOM = 1 + 1e-6;
+/* nodes of the mesh that a wide cell stands for */
+const WIDE = 12;
+/* greatest change of an angle from one sample to the next at which its turns are counted there */
+const MOST_TURN = 0.8;
+/* half width about a change point in which a group is not judged, in units of the path */
+const WINDOW = 0.04;
+/* beside a change point, in units of the path: how near closed forms lose digits, how far places for a polynomial lie */
+const BESIDE = 0.02, CIRCLE = 6 * WINDOW, AROUND = 20;
+const AT_THE_START = 1e-9;
+/* the search in cells: half width that is one place, parts of a cell, ways towards a place, and its limits */
+const FINEST = 1e-10, COARSE = 1e-6, PARTS = 4, HALVINGS = 26, MANY = 1000, MOST = 10000;
+const LOW = 0.25, DOUBTFUL = 1e-8, SLACK = 8, STEPS = 100;
+
+const bits = new Float64Array(1), words = new Uint32Array(bits.buffer);
+
+/* distance of a number from the next greater one */
+function spacing(x) {
+  bits[0] = Math.abs(x);
+  if (!(bits[0] < Infinity)) return NaN;
+  const here = bits[0];
+  words[0] += 1;
+  if (words[0] === 0) words[1] += 1;
+  return bits[0] - here;
+}
+
+const sign = (x) => (x > 0 ? 1 : x < 0 ? -1 : x === 0 ? 0 : NaN);
+
+/* whole numbers as NumPy rounds halves: to even */
+function rounded(x) {
+  const down = Math.floor(x), rest = x - down;
+  if (rest !== 0.5) return rest < 0.5 ? down : down + 1;
+  return down % 2 === 0 ? down : down + 1;
+}
+
+/* zero of a function [value, slope] between two places of opposite signs: Newton's steps, bisection outside */
+function root(at, low, high) {
+  const first = sign(at(low)[0]);
+  let x = 0.5 * (low + high);
+  for (let k = 0; k < STEPS; k++) {
+    const [value, slope] = at(x);
+    if (sign(value) === first) low = x; else high = x;
+    const step = x - value / slope;
+    const following = step > low && step < high ? step : 0.5 * (low + high);
+    const bit = 2 * spacing(x);
+    if (value === 0 || Math.abs(step - x) <= bit || high - low <= bit) return x;
+    x = following;
+  }
+  return x;
+}
+
+function createMechanism(data) {
+  const n = data.samples, parameters = data.parameters;
+  const v = new Float64Array(Math.max(1, data.variables));
+  const { initial, forward, scale: unit } = data.parameter;
+  const signs = new Map(Object.entries(data.signs).map(([group, each]) => [Number(group), each]));
+  const guards = data.guards.map(([kind, group], k) => ({ kind, group, k, ofRadicand: kind === "radicand" }));
+  const byTime = data.mesh.nodes !== undefined;
+
+  /* the mesh of events */
+  const mesh = byTime ? Float64Array.from(data.mesh.nodes) : new Float64Array(data.mesh.count);
+  const { first, off, step } = data.mesh;
+  if (!byTime) for (let k = 0; k < mesh.length; k++) mesh[k] = initial + (first + k + off) * step;
+  const halves = new Float64Array(mesh.length);
+  for (let k = 0; k < mesh.length; k++) {
+    const before = k > 0 ? mesh[k] - mesh[k - 1] : 0, after = k + 1 < mesh.length ? mesh[k + 1] - mesh[k] : 0;
+    halves[k] = byTime ? 0.5 * Math.max(before, after) : 0.5 * step;
+  }
+  function nearestNode(x) {
+    if (!byTime) return Math.min(mesh.length - 1, Math.max(0, Math.round((x - initial) / step - off - first)));
+    let low = 0, high = mesh.length - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (0.5 * (mesh[middle] + mesh[middle + 1]) < x) low = middle + 1; else high = middle;
+    }
+    return low;
+  }
+  /* number of nodes below a place */
+  function nodesBelow(x) {
+    let k = nearestNode(x);
+    while (k < mesh.length && mesh[k] < x) k++;
+    while (k > 0 && mesh[k - 1] >= x) k--;
+    return k;
+  }
+
+  /* variables of the samples */
+  const given = {};
+  for (const [name, row] of Object.entries(data.places)) {
+    given[name] = Array.isArray(row) ? Float64Array.from(row) : new Float64Array(n).fill(row);
+  }
+  const drive = given.parameter;
+  const nearSamples = Int32Array.from(drive, nearestNode);
+  const startSample = drive.reduce((best, x, k) => (Math.abs(x - initial) < Math.abs(drive[best] - initial) ? k : best), 0);
+  const margins = Float64Array.from(drive, (x) => 4 * spacing(x));
+
+  /* ---- functions at places: rows that stay are filled once, those that move with the numbers at each call ---- */
+
+  let crossings = new Map();   // group -> change points at which its sign flips
+  let events = [];
+  const unwound = new Map();   // what gears depend on -> its angle with its turns at the nodes
+  for (const [key] of data.counted) unwound.set(key, new Float64Array(mesh.length));
+
+  function signAt(group, x) {
+    let side = signs.get(group);
+    const places = crossings.get(group);
+    if (places !== undefined && data.smooth) {
+      const low = Math.min(x, initial), high = Math.max(x, initial);
+      for (const at of places) if (low < at && at < high) side = -side;
+    }
+    return side;
+  }
+
+  function preparePlaces(f, rows, count) {
+    const p = new Float64Array((f.fixed.length + f.parts + f.moving.length) * count);
+    f.fixed.forEach((name, k) => p.set(rows[name], k * count));
+    f.before(v, p, count, p.subarray(f.fixed.length * count));
+    const start = (f.fixed.length + f.parts) * count;
+    const moving = f.moving.map((name, k) => {
+      const row = p.subarray(start + k * count, start + (k + 1) * count);
+      const word = name.slice(0, name.indexOf(" ")), of = name.slice(name.indexOf(" ") + 1);
+      return { word, of: word === "sign" ? Number(of) : of, row };
+    });
+    return { f, p, count, moving, at: rows.parameter, o: new Float64Array(f.count * count) };
+  }
+
+  function fillMoving(places, nodes) {
+    for (const { word, of, row } of places.moving) {
+      if (word === "sign") {
+        if (crossings.has(of) && data.smooth) for (let i = 0; i < row.length; i++) row[i] = signAt(of, places.at[i]);
+        else row.fill(signs.get(of));
+      } else if (word === "near") {
+        const angle = unwound.get(of);
+        for (let i = 0; i < row.length; i++) row[i] = angle[nodes === undefined ? nearestNode(places.at[i]) : nodes[i]];
+      }
+    }
+  }
+
+  function run(places, nodes) {
+    fillMoving(places, nodes);
+    places.f.run(v, places.p, places.count, places.o);
+    return places.o;
+  }
+
+  /* a function at any places: numbers (outputs, places) in one row */
+  function evaluate(f, at, half) {
+    return run(preparePlaces(f, { parameter: at, half: half }, at.length));
+  }
+
+  const single = {};
+  for (const name of ["curves", "bounds"]) {
+    single[name] = preparePlaces(printed[name], { parameter: new Float64Array(1) }, 1);
+  }
+  /* the same at one place, without new arrays; curves give value, slope and second derivative of each guard */
+  function evaluateAt(name, x) {
+    const places = single[name], f = places.f;
+    places.at[0] = x;
+    if (f.fixed.length) places.p[0] = x;
+    f.before(v, places.p, 1, places.p.subarray(f.fixed.length));
+    return run(places);
+  }
+
+  const atSamples = preparePlaces(printed.motion, given, n);
+  const atNodes = { rotors: null, counted: null };
+  function onMesh(name) {
+    if (atNodes[name] === null) atNodes[name] = preparePlaces(printed[name], { parameter: mesh }, mesh.length);
+    return run(atNodes[name], allNodes);
+  }
+  const allNodes = Int32Array.from(mesh, (_x, k) => k);
+  const startNode = nearestNode(initial);
+
+  /* wide cells that together cover those of the mesh */
+  const wide = (() => {
+    if (byTime || data.counted.length || mesh.length < 2 * WIDE || !guards.length) return null;
+    const low = mesh[0] - 0.5 * step, high = mesh[mesh.length - 1] + 0.5 * step;
+    const count = Math.ceil((high - low) / (WIDE * step)), half = (0.5 * (high - low)) / count;
+    const at = Float64Array.from({ length: count }, (_x, k) => low + half * (2 * k + 1));
+    const places = preparePlaces(printed.cells, { parameter: at, half: new Float64Array(count).fill(half) }, count);
+    return { low, half, count, places };
+  })();
+  const cellsOnMesh = (() => {
+    let places = null;
+    return () => (places ??= preparePlaces(printed.cells, { parameter: mesh, half: halves }, mesh.length));
+  })();
+
+  /* ---- the search for events ---- */
+
+  const largest = new Map();
+
+  /* nodes at which something may happen, by bounds over wide cells; null where nothing does, all of them without these */
+  function nodesToSearch() {
+    for (const { group, ofRadicand } of guards) if (ofRadicand) largest.set(group, 0);
+    if (wide === null) return guards.length ? allNodes : null;
+    const { count, half } = wide, o = run(wide.places);
+    const rough = new Uint8Array(count);
+    let some = false;
+    for (let i = 0; i < count; i++) {
+      let closed = true;
+      for (let k = 0; k < guards.length; k++) {
+        const value = o[3 * k * count + i], slope = o[(3 * k + 1) * count + i], bend = o[(3 * k + 2) * count + i];
+        const strays = Math.abs(slope) * half + bend * (0.5 * half * half), size = Math.abs(value);
+        const { group, ofRadicand } = guards[k];
+        if (ofRadicand && size + strays > largest.get(group)) largest.set(group, size + strays < Infinity ? size + strays : size);
+        if (closed && !(size > ROOM * strays)) { rough[i] = 1; some = true; }
+        /* where a group is open all over a cell, those behind it have no value there */
+        if (ofRadicand && value < 0 && size > ROOM * strays) closed = false;
+      }
+    }
+    if (!some) return null;
+    const chosen = new Uint8Array(mesh.length), each = (2 * half) / step;
+    for (let i = 0; i < count; i++) {
+      if (!rough[i]) continue;
+      const from = Math.max(0, Math.floor(i * each) - 2), to = Math.min(mesh.length, Math.ceil((i + 1) * each) + 2);
+      chosen.fill(1, from, to);
+    }
+    return allNodes.filter((k) => chosen[k]);
+  }
+
+  /* all guards at some nodes of the mesh: a row each of value, slope and bend */
+  function guardsAt(nodes) {
+    if (nodes.length === mesh.length) return run(cellsOnMesh(), allNodes);
+    const at = Float64Array.from(nodes, (k) => mesh[k]), half = Float64Array.from(nodes, (k) => halves[k]);
+    return evaluate(printed.cells, at, half);
+  }
+
+  function guardCurve(k) {
+    return (x) => { const o = evaluateAt("curves", x); return [o[3 * k], o[3 * k + 1], o[3 * k + 2]]; };
+  }
+  function guardBound(k, x) {
+    const o = evaluateAt("bounds", x);
+    return [o[2 * k], o[2 * k + 1]];
+  }
+
+  /* places where a guard passes zero, and where it touches zero */
+  function zerosOf(guard, nodes, o) {
+    const count = nodes.length, { k, group } = guard;
+    const value = o.subarray(3 * k * count, (3 * k + 1) * count);
+    const slope = o.subarray((3 * k + 1) * count, (3 * k + 2) * count);
+    const bend = o.subarray((3 * k + 2) * count, (3 * k + 3) * count);
+    const none = { roots: [], touches: [] }, curve = guardCurve(k);
+    const known = new Uint8Array(count);
+    let allClear = true, greatest = guard.ofRadicand ? largest.get(group) : 0;
+    for (let j = 0; j < count; j++) {
+      const half = halves[nodes[j]];
+      const clear = (Math.abs(slope[j]) + 0.5 * half * bend[j]) * half < Math.abs(value[j]);
+      known[j] = clear || Math.abs(slope[j]) > bend[j] * half ? 1 : 0;
+      allClear = allClear && clear;
+      if (Math.abs(value[j]) < Infinity) greatest = Math.max(greatest, Math.abs(value[j]));
+    }
+    if (guard.ofRadicand) largest.set(group, greatest);
+    if (allClear) return none;
+    const at = new Map(nodes.length === mesh.length ? [] : Array.from(nodes, (node, j) => [node, j]));
+    const indexOf = (node) => (nodes.length === mesh.length ? node : at.get(node));
+    /* where groups before this one stop: nothing passes limits, and nodes beside stops foretell nothing */
+    const stops = events
+      .filter((e) => e.group < group && (e.kind === "limit" || !data.smooth) && mesh[0] <= e.drive && e.drive <= mesh[mesh.length - 1])
+      .map((e) => ({ at: e.drive, node: nearestNode(e.drive), wall: e.kind === "limit" }));
+    const rough = new Uint8Array(count);
+    let anyRough = false;
+    for (let j = 0; j < count; j++) rough[j] = Number.isFinite(value[j]) && !known[j] ? 1 : 0;
+    for (const stop of stops) {
+      const j = indexOf(stop.node);
+      if (j !== undefined && !known[j]) rough[j] = 1;
+    }
+    const brackets = [], abut = (j) => nodes[j + 1] === nodes[j] + 1;
+    for (let j = 0; j < count; j++) {
+      anyRough = anyRough || rough[j] === 1;
+      if (j + 1 < count && abut(j) && value[j] * value[j + 1] < 0 && !rough[j] && !rough[j + 1]) {
+        if (Number.isFinite(value[j]) && Number.isFinite(value[j + 1])) brackets.push([mesh[nodes[j]], mesh[nodes[j + 1]]]);
+      }
+    }
+    const solved = () => brackets.map(([low, high]) => root(curve, low, high));
+    if (!anyRough) return { roots: solved(), touches: [] };
+    const finest = FINEST * unit;
+
+    /* the least size of a guard between two places, zero where that is rounding */
+    const touching = (low, high, side) => {
+      const x = root((y) => { const [, falls, turns] = curve(y); return [falls, turns]; }, low, high);
+      const [least, bound] = guardBound(k, x), near = Math.abs(least) <= SAFETY * bound;
+      return { at: x, node: nearestNode(x), least: near ? 0 : least, touches: near && (side > 0 || !signs.has(group)) };
+    };
+    const blind = new Set(stops.map((stop) => nodesBelow(stop.at) - 1));
+    const minima = [];
+    for (let j = 0; j + 1 < count; j++) {
+      const side = sign(value[j]);
+      if (!abut(j) || !(rough[j] || rough[j + 1]) || blind.has(nodes[j]) || side !== sign(value[j + 1])) continue;
+      const left = side * value[j], right = side * value[j + 1], falls = side * slope[j], rises = side * slope[j + 1];
+      if (!(falls < 0 && rises >= 0)) continue;
+      const way = mesh[nodes[j + 1]] - mesh[nodes[j]], meeting = (right - left - rises * way) / (falls - rises);
+      if (left + falls * meeting <= LOW * Math.min(left, right)) minima.push(touching(mesh[nodes[j]], mesh[nodes[j + 1]], side));
+    }
+
+    /* rough cells in parts that are known: shorter and shorter towards places where something happens */
+    let pieces = [];
+    const inside = new Map();
+    for (const place of [...stops, ...minima]) {
+      const j = indexOf(place.node);
+      if (j !== undefined && rough[j] && Number.isFinite(place.at)) inside.set(j, [...(inside.get(j) ?? []), place.at]);
+    }
+    let rest = [];
+    for (let j = 0; j < count; j++) {
+      if (!rough[j]) continue;
+      const centre = mesh[nodes[j]], half = halves[nodes[j]], places = inside.get(j);
+      if (places === undefined) { rest.push(...partsOf(centre, half)); continue; }
+      places.sort((a, b) => a - b);
+      places.forEach((place, q) => {
+        const low = q > 0 ? 0.5 * (places[q - 1] + place) : centre - half;
+        const high = q + 1 < places.length ? 0.5 * (place + places[q + 1]) : centre + half;
+        for (const end of [low - place, high - place]) {
+          for (let h = 0, share = 1; h <= HALVINGS; h++, share /= 2) {
+            const way = end * share, wide = 0.25 * Math.abs(way);
+            if (wide > 0) rest.push({ centre: place + 0.75 * way, half: wide });
+          }
+        }
+      });
+    }
+    while (rest.length) {
+      const cells = evaluate(printed.cells, Float64Array.from(rest, (c) => c.centre), Float64Array.from(rest, (c) => c.half));
+      const size = rest.length, judged = rest.map((cell, q) => {
+        const x = cells[3 * k * size + q], falls = cells[(3 * k + 1) * size + q], bent = cells[(3 * k + 2) * size + q];
+        const sure = (Math.abs(falls) + 0.5 * cell.half * bent) * cell.half < Math.abs(x) || Math.abs(falls) > bent * cell.half;
+        return { centre: cell.centre, half: cell.half, value: x, known: sure, node: -1, ends: sure || !Number.isFinite(falls) };
+      }).filter((cell) => Number.isFinite(cell.value));
+      const unknown = judged.filter((cell) => !cell.known).length;
+      const least = unit * (unknown <= MANY ? FINEST : unknown <= MOST ? COARSE : Infinity);
+      rest = [];
+      for (const cell of judged) {
+        if (cell.ends || cell.half <= least) pieces.push(cell); else rest.push(...partsOf(cell.centre, cell.half));
+      }
+    }
+    /* a sign within the rounding error of the formulas is none */
+    let most = greatest;
+    for (const piece of pieces) most = Math.max(most, Math.abs(piece.value));
+    for (const piece of pieces) {
+      if (piece.known && Math.abs(piece.value) > DOUBTFUL * most) continue;
+      const [, bound] = guardBound(k, piece.centre);
+      if (!(Math.abs(piece.value) > SAFETY * bound)) piece.value = 0;
+    }
+    for (let j = 0; j < count; j++) {
+      const beside = (j > 0 && abut(j - 1) && rough[j - 1]) || (j + 1 < count && abut(j) && rough[j + 1]);
+      if (beside && !rough[j] && Number.isFinite(value[j])) {
+        pieces.push({ centre: mesh[nodes[j]], half: halves[nodes[j]], value: value[j], known: true, node: nodes[j] });
+      }
+    }
+    for (const place of minima) {
+      if (Number.isFinite(place.least)) pieces.push({ centre: place.at, half: finest, value: place.least, known: false, node: -1 });
+    }
+    for (const stop of stops) {
+      if (stop.wall) pieces.push({ centre: stop.at, half: finest, value: Infinity, known: false, node: -1 });
+    }
+    pieces = pieces.map((piece, q) => [piece, q]).sort((a, b) => a[0].centre - b[0].centre || a[1] - b[1]).map(([piece]) => piece);
+
+    /* pairs of neighbours with a sign, between which only cells without one lie, and nothing that parts them */
+    const others = [];
+    let before = -1, whole = true;
+    for (let q = 0; q < pieces.length; q++) {
+      const piece = pieces[q];
+      if (q > 0) {
+        const apart = piece.centre - pieces[q - 1].centre - piece.half - pieces[q - 1].half;
+        if (apart > SLACK * finest || piece.value === Infinity || pieces[q - 1].value === Infinity) whole = false;
+      }
+      if (!Number.isFinite(piece.value) || piece.value === 0) continue;
+      if (before >= 0 && whole) {
+        const one = pieces[before], side = sign(one.value), next = q === before + 1;
+        if (side !== sign(piece.value)) {
+          if (!(next && one.node >= 0 && piece.node >= 0)) brackets.push([one.centre, piece.centre]);
+        } else if (!next || !(one.known && piece.known)) {
+          const foretold = minima.some((place) => place.at > one.centre && place.at < piece.centre);
+          if (!foretold && side * curve(one.centre)[1] < 0 && side * curve(piece.centre)[1] >= 0) {
+            others.push(touching(one.centre, piece.centre, side));
+          }
+        }
+      }
+      before = q;
+      whole = true;
+    }
+    return { roots: solved(), touches: [...minima, ...others].filter((place) => place.touches).map((place) => place.at) };
+  }
+
+  function partsOf(centre, half) {
+    return Array.from({ length: PARTS }, (_x, q) => ({ centre: centre + half * ((2 * q + 1) / PARTS - 1), half: half / PARTS }));
+  }
+
+  /* angles that gears and wheels depend on, counted along the mesh outwards from the initial position */
+  function countAngles() {
+    data.counted.forEach(([key, start], c) => {
+      const o = onMesh("counted"), raw = o.slice(c * mesh.length, (c + 1) * mesh.length), angle = unwound.get(key);
+      fillGaps(raw);
+      angle[startNode] = raw[startNode] + TURN * rounded((start - raw[startNode]) / TURN);
+      for (let j = startNode + 1; j < mesh.length; j++) angle[j] = raw[j] + TURN * rounded((angle[j - 1] - raw[j]) / TURN);
+      for (let j = startNode - 1; j >= 0; j--) angle[j] = raw[j] + TURN * rounded((angle[j + 1] - raw[j]) / TURN);
+    });
+  }
+
+  /* gaps filled by the last known value on the way from the start */
+  function fillGaps(...rows) {
+    const there = (j) => rows.every((row) => Number.isFinite(row[j]));
+    const known = allNodes.find(there);
+    for (const from of [1, -1]) {
+      let last = -1;
+      for (let j = startNode; j >= 0 && j < mesh.length; j += from) {
+        if (there(j)) last = j;
+        else for (const row of rows) row[j] = last >= 0 ? row[last] : known === undefined ? 0 : row[known];
+      }
+    }
+  }
+
+  function findEvents() {
+    crossings = new Map();
+    events = [];
+    if (data.counted.length) countAngles();
+    const nodes = nodesToSearch();
+    if (nodes === null) return;
+    let o = guardsAt(nodes), stale = false;
+    for (const guard of guards) {
+      /* a change point of a group changes the sign on which the groups behind it stand */
+      if (stale) { if (data.counted.length) countAngles(); o = guardsAt(nodes); stale = false; }
+      const { roots, touches } = zerosOf(guard, nodes, o), { group } = guard;
+      for (const at of roots) events.push({ kind: "limit", group, drive: at, closesAbove: guardCurve(guard.k)(at)[1] > 0 });
+      for (const at of touches) {
+        if (!guard.ofRadicand) { events.push({ kind: "limit", group, drive: at, closesAbove: guardCurve(guard.k)(at)[1] > 0 }); continue; }
+        events.push({ kind: "change point", group, drive: at });
+        const margin = AT_THE_START * unit, behind = Math.abs(at - initial) <= margin ? initial - forward * margin : at;
+        crossings.set(group, [...(crossings.get(group) ?? []), behind]);
+        stale = data.smooth;
+      }
+    }
+    events.sort((a, b) => a.drive - b.drive);
+  }
+
+  /* the nearest limits on both sides of the initial position */
+  function findReach(reach) {
+    reach[0] = -Infinity;
+    reach[1] = Infinity;
+    for (const event of events) {
+      if (event.kind !== "limit") continue;
+      const atStart = Math.abs(event.drive - initial) <= AT_THE_START * unit;
+      const below = atStart ? event.closesAbove : event.drive <= initial;
+      if (below) reach[0] = Math.max(reach[0], event.drive); else reach[1] = Math.min(reach[1], event.drive);
+    }
+  }
+
+  /* ---- the samples ---- */
+
+  const rows = data.rows.map((_row, k) => atSamples.o.subarray(k * n, (k + 1) * n));
+  const residual = atSamples.o.subarray(rows.length * n, (rows.length + 1) * n);
+  const radicands = data.radicands.map((group, k) => {
+    const first = (rows.length + 1 + k) * n;
+    return { group, row: atSamples.o.subarray(first, first + n), guard: guards.findIndex((g) => g.ofRadicand && g.group === group) };
+  });
+  const signRows = new Map(atSamples.moving.filter((each) => each.word === "sign").map((each) => [each.of, each.row]));
+  const turnRows = new Map(atSamples.moving.filter((each) => each.word === "turns").map((each) => [each.of, each.row]));
+  const status = new Uint8Array(n);
+  const impossible = new Set(data.impossible);
+
+  const nested = (places) => (Array.isArray(places) ? places.map(nested) : rows[places]);
+  const quantities = Object.fromEntries(data.quantities.map((each) => [each.name, nested(each.rows)]));
+  const only = (name) => quantities[name] ?? null;
+  const reach = [-Infinity, Infinity];
+  const frame = {
+    samples: n, drive, time: given.time,
+    position: only("position"), velocity: only("velocity"), acceleration: only("acceleration"),
+    velocityByDrive: only("velocity_coefficient"), accelerationByDrive: only("acceleration_coefficient"),
+    angle: only("angle") ?? only("joint_angle"), jointAngle: only("joint_angle"),
+    rate: only("angular_velocity"), angularAcceleration: only("angular_acceleration"),
+    rateByDrive: only("angular_velocity_coefficient"), angularAccelerationByDrive: only("angular_acceleration_coefficient"),
+    quantities, status, residual, residualBound: data.residual_bound, reach,
+    events: [], possible: true, signsChange: false, outputs: {},
+  };
+
+  function isPossible(values) {
+    return values.length === parameters.length
+      && parameters.every((each, k) => Number.isFinite(values[k]) && (!each.positive || values[k] > 0));
+  }
+
+  /* whether a sample lies so near a change point of a group that its radicand says nothing */
+  function besideChange(group, x) {
+    const places = crossings.get(group);
+    return data.smooth && places !== undefined && places.some((at) => Math.abs(x - at) < WINDOW * unit);
+  }
+
+  /* statuses by the radicands; whether a root of rounding has to be taken as zero */
+  function judgeRadicands() {
+    let again = false;
+    for (const { group, row, guard } of radicands) {
+      const little = SUSPECT * (largest.get(group) ?? 0), signRow = signRows.get(group);
+      for (let i = 0; i < n; i++) {
+        const value = row[i];
+        if (value > little || value !== value) continue;
+        const mended = besideChange(group, drive[i]);
+        if (Math.abs(value) <= little && guard >= 0) {
+          const [, bound] = guardBound(guard, drive[i]);
+          if (Math.abs(value) <= SAFETY * bound) {
+            if (signRow !== undefined && signRow[i] !== 0) { signRow[i] = 0; again = true; }
+            if (!mended && status[i] !== OPEN) status[i] = SINGULAR;
+            continue;
+          }
+        }
+        if (value < 0 && !mended) status[i] = OPEN;
+      }
+    }
+    return again;
+  }
+
+  function absent(i, of) {
+    for (let k = 0; k < rows.length; k++) {
+      const [derivative, ofFrame] = data.rows[k];
+      if (of(derivative, ofFrame, rows[k][i])) rows[k][i] = NaN;
+    }
+  }
+
+  /* Beside a change point closed forms lose their digits, though the motion runs on smoothly: there it is the polynomial
+   * through places on both sides. */
+  const nodesAround = Float64Array.from({ length: AROUND }, (_x, q) => Math.cos((Math.PI * (2 * q + 1)) / (2 * AROUND)));
+  const weights = Float64Array.from(nodesAround, (_x, q) => (q % 2 ? -1 : 1) * Math.sin((Math.PI * (2 * q + 1)) / (2 * AROUND)));
+
+  function mend() {
+    for (const change of events) {
+      if (change.kind !== "change point" || !data.smooth) continue;
+      const others = events.map((e) => Math.abs(e.drive - change.drive)).filter((apart) => apart > BESIDE * unit);
+      const reach = Math.min(CIRCLE * unit, 0.5 * Math.min(...others));
+      if (reach < 2 * BESIDE * unit) continue;
+      for (let i = 0; i < n; i++) {
+        if (Math.abs(drive[i] - change.drive) < BESIDE * unit && status[i] === OK) mendSample(i, change.drive, reach);
+      }
+    }
+  }
+
+  function mendSample(i, centre, reach) {
+    const around = Object.fromEntries(Object.entries(given).map(([name, row]) => [name, new Float64Array(AROUND).fill(row[i])]));
+    around.parameter = nodesAround.map((x) => centre + reach * x);
+    const o = run(preparePlaces(printed.motion, around, AROUND)), turning = new Set(data.angles.map(([, place]) => place));
+    const x = (drive[i] - centre) / reach;
+    const mended = rows.map((row, k) => {
+      let above = 0, below = 0;
+      for (let q = 0; q < AROUND; q++) {
+        let value = o[k * AROUND + q];
+        /* angles without turns may jump between two of the places */
+        if (turning.has(k)) value -= TURN * Math.round((value - o[k * AROUND]) / TURN);
+        const share = weights[q] / (x - nodesAround[q]);
+        above += share * value;
+        below += share;
+      }
+      const value = above / below;
+      return turning.has(k) ? value - TURN * Math.round(value / TURN) : value;
+    });
+    if (!mended.every(Number.isFinite)) return;
+    mended.forEach((value, k) => { rows[k][i] = value; });
+    /* what the formulas say in a place without digits is no residual of the motion: that of the places around is */
+    residual[i] = o.subarray(rows.length * AROUND, (rows.length + 1) * AROUND).reduce((a, b) => Math.max(a, b));
+  }
+
+  function judgeSamples() {
+    status.fill(OK);
+    atSamples.f.run(v, atSamples.p, n, atSamples.o);
+    /* without a sign the root is zero exactly: statuses of groups behind are judged with it */
+    for (let k = 0; k <= radicands.length && judgeRadicands(); k++) {
+      atSamples.f.run(v, atSamples.p, n, atSamples.o);
+      status.fill(OK);
+      if (k === radicands.length) judgeRadicands();
+    }
+    mend();
+    const bound = data.residual_bound;
+    for (let i = 0; i < n; i++) {
+      let doubtful = status[i] !== OK || !(residual[i] <= bound) || events.length > 0;
+      if (doubtful && status[i] === OK && rows.some((row) => !Number.isFinite(row[i]))) status[i] = SINGULAR;
+      if (status[i] !== OPEN && (drive[i] < reach[0] - margins[i] || drive[i] > reach[1] + margins[i])) status[i] = CUT_OFF;
+      if (impossible.has(i)) status[i] = OPEN;
+      if (status[i] !== OPEN && residual[i] > bound) { status[i] = OPEN; residual[i] = NaN; }
+    }
+  }
+
+  /* absence is NaN: nothing stands in open samples, and no derivatives in singular ones */
+  function settle() {
+    for (let i = 0; i < n; i++) {
+      if (status[i] === OK) continue;
+      if (status[i] === OPEN) { absent(i, () => true); residual[i] = NaN; }
+      else {
+        const withoutSlopes = status[i] === SINGULAR;
+        absent(i, (derivative, ofFrame, x) => !ofFrame && ((withoutSlopes && derivative) || !Number.isFinite(x)));
+      }
+    }
+  }
+
+  /* angles with their turns: from sample to sample where these lie close, else along the mesh */
+  function unwind() {
+    const whole = Math.abs(drive[startSample] - initial) <= 0.05 * unit && status.every((each) => each === OK);
+    for (const [link, place, start] of data.angles) {
+      const row = rows[place], turns = turnRows.get(link), raw = turns === undefined ? row : row.slice();
+      if (!(whole && unwindBySamples(row, start))) unwindByMesh(link, row, start);
+      if (turns !== undefined) for (let i = 0; i < n; i++) turns[i] = row[i] === row[i] ? Math.round((row[i] - raw[i]) / TURN) : 0;
+    }
+  }
+
+  function unwindBySamples(row, start) {
+    for (const from of [1, -1]) {
+      for (let i = startSample + from; i >= 0 && i < n; i += from) {
+        const change = row[i] - row[i - from];
+        const jump = change - TURN * Math.round(change / TURN);
+        if (!(Math.abs(jump) < MOST_TURN)) return false;
+      }
+    }
+    let shift = TURN * rounded((start - row[startSample]) / TURN), moves = shift !== 0;
+    const first = row[startSample];
+    for (const from of [1, -1]) {
+      let before = first, turns = 0;
+      for (let i = startSample + from; i >= 0 && i < n; i += from) {
+        const raw = row[i];
+        const change = raw - before;
+        if (change > Math.PI) turns -= 1; else if (change < -Math.PI) turns += 1;
+        before = raw;
+        if (turns !== 0 || moves) row[i] = raw + (shift + TURN * turns);
+      }
+    }
+    if (moves) row[startSample] = first + shift;
+    return true;
+  }
+
+  let rotorsKnown = null;
+  function unwindByMesh(link, row, start) {
+    rotorsKnown ??= onMesh("rotors");
+    const which = data.angles.findIndex(([name]) => name === link), size = mesh.length;
+    const cosine = rotorsKnown.slice(2 * which * size, (2 * which + 1) * size);
+    const sine = rotorsKnown.slice((2 * which + 1) * size, (2 * which + 2) * size);
+    fillGaps(cosine, sine);
+    /* rotors of hinges are longer or shorter than 1 */
+    for (let j = 0; j < size; j++) cosine[j] = Math.cos(Math.atan2(sine[j], cosine[j]));
+    const turns = new Int32Array(size);
+    for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + passed(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
+    const shift = rounded((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];
+    for (let i = 0; i < n; i++) {
+      const node = nearSamples[i], angle = row[i];
+      const whole = turns[node] + shift + passed(cosine[node], sine[node], Math.cos(angle), angle);
+      if (whole !== 0) row[i] = angle + TURN * whole;
+    }
+  }
+
+  /* change of the number of turns from one direction to the next: 1 past half a turn, -1 back */
+  function passed(cosine, sine, nextCosine, nextSine) {
+    const below = (x) => (x < 0 || Object.is(x, -0) ? 1 : 0);
+    return cosine + nextCosine < 0 ? below(nextSine) - below(sine) : 0;
+  }
+
+  function recompute(values) {
+    frame.possible = isPossible(values);
+    frame.signsChange = false;
+    frame.events = events = [];
+    reach[0] = -Infinity;
+    reach[1] = Infinity;
+    if (!frame.possible) {
+      for (const row of rows) row.fill(NaN);
+      residual.fill(NaN);
+      status.fill(OPEN);
+      return frame;
+    }
+    printed.numbers(values, v);
+    rotorsKnown = null;
+    findEvents();
+    findReach(reach);
+    fillMoving(atSamples, nearSamples);
+    if (data.turns_matter) {
+      /* residuals of what gears turn and some loads depend on the turns of angles, so these come first */
+      status.fill(OK);
+      atSamples.f.run(v, atSamples.p, n, atSamples.o);
+      unwind();
+    }
+    judgeSamples();
+    settle();
+    unwind();
+    const low = Math.min(initial, drive[0], drive[n - 1]) - 1e-9 * unit;
+    const high = Math.max(initial, drive[0], drive[n - 1]) + 1e-9 * unit;
+    frame.events = events.filter((event) => low <= event.drive && event.drive <= high);
+    frame.signsChange = data.smooth && frame.events.some((event) => event.kind === "change point");
+    return frame;
+  }
+
+  /* Instant centre of a link of the plane at every sample of the last frame: where it is (the fixed centrode), and where
+   * in the link, from its first point along its axes (the moving centrode); NaN where the link does not turn. */
+  const held = new Map();
+  function centre(link) {
+    if (data.space !== "plane") return null;
+    if (!held.has(link)) held.set(link, { fixed: [new Float64Array(n), new Float64Array(n)], moving: [new Float64Array(n), new Float64Array(n)] });
+    const { fixed, moving } = held.get(link);
+    const point = data.points.indexOf(data.link_points[data.links[link]][0]);
+    const [x, y] = frame.position[point], [u, w] = (frame.velocityByDrive ?? frame.velocity)[point];
+    const turn = (frame.rateByDrive ?? frame.rate)[link], angle = frame.angle[link];
+    for (let i = 0; i < n; i++) {
+      const there = turn[i] !== 0 && status[i] !== OPEN;
+      const dx = there ? -w[i] / turn[i] : NaN, dy = there ? u[i] / turn[i] : NaN;
+      const c = Math.cos(angle[i]), s = Math.sin(angle[i]);
+      fixed[0][i] = x[i] + dx;
+      fixed[1][i] = y[i] + dy;
+      moving[0][i] = c * dx + s * dy;
+      moving[1][i] = c * dy - s * dx;
+    }
+    return { fixed, moving };
+  }
+
+  return { data, parameters, recompute, centre, names: { points: data.points, links: data.links, joints: data.joints, guides: data.guides } };
+}
+
+return createMechanism;
+})();

@@ -1,0 +1,2 @@
+
+for (const holder of document.querySelectorAll(".moving")) new Stage(holder);

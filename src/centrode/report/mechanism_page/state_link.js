@@ -1,0 +1,86 @@
+// What a link keeps behind `#s=`: the digest of the structure, changed dimensions, place and view, and a sum over them,
+// so that a link that lost letters is known from one of another mechanism.
+const sumOf = (told) => {
+  let sum = 0x811c9dc5;
+  for (let k = 0; k < told.length; k += 1) sum = Math.imul(sum ^ told.charCodeAt(k), 0x01000193) >>> 0;
+  return sum.toString(36);
+};
+const packed = (told) => btoa(String.fromCharCode(...new TextEncoder().encode(told))).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+const unpacked = (text) => new TextDecoder("utf-8", { fatal: true }).decode(
+  Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0)));
+
+class StateLink {
+  constructor(model, stage, curves, boxes) {
+    Object.assign(this, { model, stage, curves, boxes });
+  }
+
+  get digest() {
+    return this.model.data.program.digest;
+  }
+
+  get text() {
+    const { model, stage } = this, changed = {};
+    model.parameters.forEach((one, k) => {
+      if (model.values[k] !== one.value) changed[one.path] = model.values[k];
+    });
+    const state = {
+      v: changed, p: Number(stage.place.toFixed(3)), c: this.curves.keys,
+      s: [...this.boxes].filter((box) => box.checked).map((box) => box.dataset.show ?? box.dataset.do),
+      r: Math.log2(stage.speed), w: stage.data.view ? stage.space.view : undefined,
+      k: stage.body ? stage.body.value : undefined,
+    };
+    const told = packed(JSON.stringify(state));
+    return `${this.digest}.${told}.${sumOf(this.digest + told)}`;
+  }
+
+  // What is wrong with a link, in words; nothing where it has been taken over.
+  take(text) {
+    const { words } = this.model, parts = text.split(".");
+    if (parts.length !== 3 || sumOf(parts[0] + parts[1]) !== parts[2]) return words.damaged;
+    if (parts[0] !== this.digest) return words.foreign;
+    let state;
+    try {
+      state = JSON.parse(unpacked(parts[1]));
+    } catch {
+      return words.damaged;
+    }
+    return this.right(state) ? this.put(state) : words.damaged;
+  }
+
+  right(state) {
+    const { model } = this, number = Number.isFinite;
+    const values = state && state.v && typeof state.v === "object" ? Object.entries(state.v) : null;
+    return values !== null && number(state.p) && number(state.r) && Array.isArray(state.c) && Array.isArray(state.s)
+      && values.every(([path, value]) => {
+        const one = model.parameters[model.places.get(path)];
+        return one && number(value) && value >= one.least && value <= one.most;
+      })
+      && (state.w === undefined || (Array.isArray(state.w) && state.w.length === 3
+        && state.w.every((row) => Array.isArray(row) && row.length === 3 && row.every(number))));
+  }
+
+  put(state) {
+    const { model, stage } = this;
+    model.keep();
+    model.values = model.nominal.slice();
+    for (const [path, value] of Object.entries(state.v)) model.values[model.places.get(path)] = value;
+    model.renew();
+    model.show();
+    if (stage.data.view && state.w) stage.space.view = state.w;
+    for (const box of this.boxes) {
+      const on = state.s.includes(box.dataset.show ?? box.dataset.do);
+      if (box.checked !== on) box.click();
+    }
+    const speed = stage.holder.querySelector('[data-do="speed"]');
+    speed.value = String(within(state.r, Number(speed.min), Number(speed.max)));
+    speed.dispatchEvent(new Event("input"));
+    if (stage.body && state.k) {
+      stage.body.value = state.k;
+      stage.renewCentrodes();
+    }
+    this.curves.choose(state.c.filter((key) => typeof key === "string"));
+    stage.fit();
+    stage.go(state.p);
+    return "";
+  }
+}

@@ -1,0 +1,406 @@
+"""Pages on which a reader changes a mechanism: what they hold and refuse, and that hands and keys get the motion."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import re
+import shlex
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.cli.main import main
+from centrode.locale import choose_language, speaking
+from centrode.model.files import value_at, with_values
+from centrode.report.mechanism_page.handles import handles_of
+from centrode.report.mechanism_page.numbers_that_vary import joints_of, ranges_of
+from centrode.report.mechanism_page.page_file import mechanism_page
+
+from .browser import Seen, browser, frames, opened, until
+from .made import HOSTILE
+
+PLANE, SPHERE, LOCKED, BRANCHED = (
+    "crank-rocker",
+    "spherical-four-bar",
+    "slider-between-cranks-locked",
+    "antiparallelogram",
+)
+LARGE = ("excavator-arm", "jansen-leg", "five-bar-two-drives")
+BYTES = 250_000
+AXE = Path(__file__).with_name("axe") / "axe.min.js"
+AXE_SUM = "880970c081707360e64f34cea25ff91892f5bc95675b0776925b9709dd8a68bb"
+CLIPBOARD = ["clipboard-read", "clipboard-write"]
+DATA = re.compile(r'<script type="application/json" id="page-data">(.*?)</script>', re.DOTALL)
+
+
+@pytest.fixture(autouse=True)
+def english_again() -> Iterator[None]:
+    yield
+    choose_language("en")
+
+
+# What the reader changes, and what follows a hand.
+
+
+@pytest.mark.parametrize("name", ["six-bar-press", "whitworth-quick-return", SPHERE, "excavator-arm"])
+def test_every_number_has_a_range_around_it(name: str) -> None:
+    mechanism = ct.example(name)
+    for path, (least, most) in ranges_of(mechanism).items():
+        assert least < value_at(mechanism, path) < most
+
+
+def test_joints_on_the_axis_of_a_link_stay_on_it() -> None:
+    """The press: lengths of links given by coordinates, the frame, the line of the slider; centres of mass stay."""
+    assert list(ranges_of(ct.example("six-bar-press"))) == [
+        "links.OA.length",
+        "links.AB.points.B.x",
+        "links.CD.points.B.x",
+        "links.CD.points.D.x",
+        "links.DH.points.H.x",
+        *(f"frame.points.{point}.{axis}" for point in "OC" for axis in "xy"),
+        "guides.H.through.y",
+    ]
+    assert joints_of(ct.example("six-bar-press")) == set("OABCDH")
+    assert not any("Z" in path for path in ranges_of(ct.example(SPHERE)))  # it only tells where angles begin
+
+
+def ways(name: str, paths: list[str] | None = None) -> dict[str, list[dict[str, Any]]]:
+    """Name of a joint -> what follows its handle."""
+    mechanism = ct.example(name)
+    points, links = list(mechanism.points), list(mechanism.links)
+    chosen = list(ranges_of(mechanism)) if paths is None else paths
+    return {points[one["point"]]: one["ways"] for one in handles_of(mechanism, points, links, chosen)}
+
+
+def test_a_handle_moves_the_lengths_of_its_links() -> None:
+    found = ways("six-bar-press")
+    assert {way["path"] for way in found["B"]} == {"links.AB.points.B.x", "links.CD.points.B.x"}
+    assert [way["kind"] for way in found["O"]] == ["frame"]
+    assert {way["kind"] for way in found["H"]} == {"guide", "length"}
+    assert found["A"][0] == {
+        "kind": "length",
+        "path": "links.OA.length",
+        "other": 0,
+        "sign": 1,
+        "driven": True,
+    }
+
+
+def test_what_does_not_vary_has_no_handle() -> None:
+    assert list(ways(PLANE, ["links.AB.length"])) == ["A", "B"]
+    assert ways(PLANE, []) == {}
+
+
+# The file and the command.
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_a_page_is_small_and_the_same_each_time(name: str) -> None:
+    page = mechanism_page(name)
+    assert len(page.encode()) <= BYTES
+    assert mechanism_page(name) == page
+
+
+def test_a_page_loads_nothing_and_runs_its_own_scripts() -> None:
+    page = mechanism_page(PLANE)
+    assert "default-src 'none'" in page
+    assert not re.search(r'(?:src|href)="', page)
+    assert "eval(" not in page and "new Function" not in page
+
+
+def test_names_of_users_end_no_script() -> None:
+    hostile = ct.example(PLANE).model_copy(update={"title": f"</script>{HOSTILE}"})
+    page = mechanism_page(hostile)
+    assert page.count("</script>") == 3  # the data and two scripts
+    data = json.loads(DATA.findall(page)[0])
+    assert data["program"]["title"] == f"</script>{HOSTILE}"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["third-class-triad"], "third-class-triad"),
+        ([PLANE, "--vary", "links.AB.length"], 'write "links.AB.length=3 m:4 m"'),
+        ([PLANE, "--vary", "links.AB.length=4 m:3 m"], "give the lesser end first"),
+        ([PLANE, "--vary", "links.AC.length=1 m:3 m"], "AC"),
+        ([PLANE, "--out", "page.pdf"], ".html"),
+        (["walking-wheel-four-legs"], "centrode cam"),
+    ],
+)
+def test_what_cannot_be_a_page_is_refused(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["--lang", "en", "page", *arguments]) == 2
+    assert said in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_writes_a_page_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    command = ["--lang", "en", "page", PLANE, "--language", "uk", "--vary", "links.AB.length=3 m:4 m"]
+    assert main(command) == 0
+    page = Path(f"{PLANE}.html").read_text(encoding="utf-8")
+    assert '<html lang="uk">' in page
+    assert [one["path"] for one in json.loads(DATA.findall(page)[0])["program"]["parameters"]] == [
+        "links.AB.length"
+    ]
+    assert main(command) == 2
+    assert "--force" in capsys.readouterr().err
+
+
+# In a browser.
+
+
+@pytest.fixture(scope="module")
+def running() -> Iterator[Any]:
+    with browser() as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """File of a mechanism's page in a language."""
+    folder = tmp_path_factory.mktemp("pages")
+
+    def page(name: str, language: str = "en") -> Path:
+        file = folder / f"{name}-{language}.html"
+        if not file.exists():
+            file.write_text(mechanism_page(name, language=language), encoding="utf-8")
+        return file
+
+    return page
+
+
+class Hand:
+    """What a reader does on a page."""
+
+    def __init__(self, seen: Seen) -> None:
+        self.page = seen.page
+        self.page.context.grant_permissions(CLIPBOARD)
+
+    def joint(self, name: str) -> np.ndarray:
+        """Where a joint's handle is on the screen."""
+        box = self.page.query_selector(f'[data-handle="{name}"] .collar').bounding_box()
+        return np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
+
+    def drag(self, name: str, way: tuple[float, float]) -> None:
+        start = self.joint(name)
+        self.page.mouse.move(*start)
+        self.page.mouse.down()
+        self.page.mouse.move(*(start + way), steps=4)
+        frames(self.page)
+        self.end = self.joint(name)
+        self.page.mouse.up()
+        frames(self.page)
+
+    def copied(self, what: str) -> str:
+        """The text that a button copies."""
+        self.page.evaluate("navigator.clipboard.writeText('')")
+        self.page.click(f'[data-do="{what}"]')
+        until(self.page, lambda: bool(self.page.evaluate("navigator.clipboard.readText()")))
+        return str(self.page.evaluate("navigator.clipboard.readText()"))
+
+    def values(self) -> dict[str, float]:
+        """Path -> value [SI] of every dimension, as the link keeps them."""
+        link = self.copied("copy-link").partition("#s=")[2].split(".")[1]
+        told = self.page.evaluate("(told) => atob(told.replaceAll('-', '+').replaceAll('_', '/'))", link)
+        return dict(json.loads(told)["v"])
+
+    def table(self, separator: str = ",") -> list[list[str]]:
+        return list(csv.reader(io.StringIO(self.copied("csv")), delimiter=separator))
+
+    @property
+    def statuses(self) -> str:
+        return str(self.page.inner_text(".statuses"))
+
+    @property
+    def said(self) -> str:
+        return str(self.page.inner_text("#said"))
+
+
+def test_hands_and_keys_change_the_motion(running: Any, pages: Callable[..., Path]) -> None:
+    """A joint goes where the hand takes it, and the motion is that of the mechanism with these lengths."""
+    mechanism = ct.example(PLANE)
+    file = pages(PLANE)
+    with opened(running, file) as seen:
+        hand = Hand(seen)
+        start = hand.joint("B")
+        hand.drag("B", (40.0, -25.0))
+        np.testing.assert_allclose(
+            hand.end, start + np.array([40.0, -25.0]), atol=0.2
+        )  # of a tenth of a pixel
+        hand.drag("D", (-30.0, 20.0))
+        seen.page.focus('[data-handle="A"]')
+        seen.page.keyboard.press("Shift+ArrowRight")
+        assert re.match(r"OA = 1\.\d+ m; AB = \d\.\d+ m", hand.said)
+        seen.page.focus(".rows input[type=range]")
+        seen.page.keyboard.press("ArrowRight")
+        seen.page.fill(".rows input[type=text] >> nth=2", "3,1")
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        values = hand.values()
+        assert values["links.DB.length"] == 3.1
+        assert {"links.OA.length", "links.AB.length", "frame.points.D.x", "frame.points.D.y"} <= set(values)
+        head, *rows = hand.table()
+        motion = ct.motion(with_values(mechanism, values))
+        for name, column in (("position", "{axis}(B) [m]"), ("acceleration", "a_{axis}(B) [m/s²]")):
+            for axis in "xy":
+                place = head.index(column.format(axis=axis))
+                found = [float(row[place]) for row in rows]
+                wanted = motion[name].sel(point="B", axis=axis).values
+                # printed with 15 digits; accelerations within 1e-13 times the square of the condition, here some 20
+                np.testing.assert_allclose(
+                    found, wanted, rtol=0, atol=5e-11 if name == "acceleration" else 1e-13 * 4
+                )
+        for _ in range(5):
+            seen.page.keyboard.press("Escape")
+            seen.page.click('[data-do="undo"]')
+            frames(seen.page)
+        assert seen.page.is_disabled('[data-do="reset"]')
+        assert seen.messages == []
+        assert [one for one in seen.requests if not one.startswith("data:")] == [file.as_uri()]
+
+
+def test_links_keep_dimensions_and_are_refused_in_words(running: Any, pages: Callable[..., Path]) -> None:
+    with opened(running, pages(PLANE)) as seen:
+        hand = Hand(seen)
+        seen.page.fill(".rows input[type=text] >> nth=0", "1.2")
+        seen.page.keyboard.press("Tab")
+        seen.page.click('[data-show="velocities"]')
+        seen.page.click('[data-do="on"]')
+        link = hand.copied("copy-link").partition("#")[2]
+
+        def told(fragment: str, name: str = PLANE) -> tuple[str, str]:
+            seen.page.goto("about:blank")
+            seen.page.goto(f"{pages(name).as_uri()}#{fragment}")
+            return hand.said, seen.page.input_value(".rows input[type=text] >> nth=0")
+
+        assert told(link) == ("The dimensions, the position and the view of the link are shown.", "1.2")
+        assert seen.page.is_checked('[data-show="velocities"]')
+        assert seen.page.get_attribute(".moving", "data-place") == "1.000"
+        for damaged in (link[:40] + link[41:], "s=%00.%.x", "s="):
+            said, value = told(damaged)
+            assert said.startswith("The link is damaged") and value == "1"
+        said, _value = told(link, SPHERE)
+        assert said.startswith("The link belongs to another mechanism")
+        assert seen.messages == []
+
+
+def test_statuses_are_said_and_change_points_give_a_command(
+    running: Any, pages: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with opened(running, pages(LOCKED)) as seen:
+        hand = Hand(seen)
+        motion = ct.motion(LOCKED)
+        assert re.findall(r"From .*: ([\w ]+)\.", hand.statuses) == ["open", "cut off"]
+        assert "Limits: 1.7999 rad; 5.4749 rad." in hand.statuses
+        _head, *rows = hand.table()
+        words = [ct.Status(one).word for one in motion["status"].values.tolist()]
+        assert [row[1] for row in rows] == words
+        seen.page.evaluate(
+            "(place) => { const one = document.querySelector('[data-do=seek]'); one.value = place;"
+            " one.dispatchEvent(new Event('input')); }",
+            "60",
+        )
+        assert "open" in seen.page.inner_text(".controls output")
+        seen.page.fill(".rows input[type=text] >> nth=0", "0,25")  # short enough to turn
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        assert hand.statuses != ""
+    with opened(running, pages(BRANCHED)) as seen:
+        hand = Hand(seen)
+        seen.page.click(".statuses button")
+        command = str(seen.page.inner_text(".command code"))
+        assert command == f"centrode run {BRANCHED}"
+        seen.page.fill(".rows input[type=text] >> nth=0", "1.5")
+        seen.page.fill(".rows input[type=text] >> nth=2", "1.5")
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        command = str(seen.page.inner_text(".command code"))
+        assert command.endswith('--set "links.OA.length=1.5 m" --set "links.DB.length=1.5 m"')
+    assert main(["--lang", "en", *shlex.split(command)[1:], "--no-figures", "--out", "run"]) == 0
+
+
+@pytest.mark.parametrize(("name", "wide", "scheme"), [(BRANCHED, 400, "light"), (SPHERE, 1440, "dark")])
+def test_pages_are_accessible(
+    running: Any, pages: Callable[..., Path], name: str, wide: int, scheme: str
+) -> None:
+    """axe-core finds nothing, with everything shown; texts are large enough; nothing is wider than the screen."""
+    with opened(running, pages(name), wide, color_scheme=scheme, bypass_csp=True) as seen:
+        for box in seen.page.query_selector_all("[data-show]:not(:checked)"):
+            box.click()
+        seen.page.click("summary")
+        seen.page.evaluate(AXE.read_text(encoding="utf-8"))
+        found = seen.page.evaluate("axe.run()")
+        assert [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]] == []
+        assert len(found["passes"]) > 20
+        sizes = seen.page.evaluate(
+            "[...document.querySelectorAll('body *')].filter((one) => [...one.childNodes].some((node) =>"
+            " node.nodeType === 3 && node.textContent.trim()) && one.getClientRects().length).map((one) =>"
+            " parseFloat(getComputedStyle(one).fontSize) * (one.ownerSVGElement ?"
+            " one.getScreenCTM().a : 1))"
+        )
+        assert min(sizes) >= 11
+        assert seen.page.evaluate("document.documentElement.scrollWidth") <= wide
+
+
+def test_axe_is_the_file_that_is_named() -> None:
+    assert hashlib.sha256(AXE.read_bytes()).hexdigest() == AXE_SUM
+
+
+@pytest.mark.parametrize("wide", [640, 900, 2560])
+def test_nothing_is_wider_than_the_screen(running: Any, pages: Callable[..., Path], wide: int) -> None:
+    with opened(running, pages("six-bar-press", "ru"), wide) as seen:
+        assert seen.page.evaluate("document.documentElement.scrollWidth") <= wide
+
+
+def test_numbers_are_spelled_for_the_reader(running: Any, pages: Callable[..., Path]) -> None:
+    with opened(running, pages("six-bar-press", "ru")) as seen:
+        hand = Hand(seen)
+        assert seen.page.input_value(".rows input[type=text] >> nth=0") == "0,347"
+        assert seen.page.inner_text(".controls output") == "φ = 219,1°"
+        head, first, *_rows = hand.table(";")
+        assert head[0] == "φ [°]" and first[0].startswith("219,1") and "v_x(A) [м/с]" in head
+        with speaking("ru"):
+            assert seen.page.inner_text(".statuses") == "Механизм проходит все положения."
+
+
+def test_a_sphere_follows_the_hand_and_paper_shows_no_controls(
+    running: Any, pages: Callable[..., Path]
+) -> None:
+    with opened(running, pages(SPHERE)) as seen:
+        hand = Hand(seen)
+        start = hand.joint("C")
+        hand.drag("C", (15.0, 10.0))
+        np.testing.assert_allclose(hand.end, start + np.array([15.0, 10.0]), atol=0.5)
+        values = hand.values()
+        assert set(values) == {"links.BC.length", "links.DC.length"}
+        head, *rows = hand.table()
+        motion = ct.motion(with_values(ct.example(SPHERE), values))
+        found = [[float(row[head.index(f"{axis}(C)")]) for axis in "xyz"] for row in rows]
+        np.testing.assert_allclose(found, motion["position"].sel(point="C").values, rtol=0, atol=1e-13 * 4)
+        before = hand.joint("A")
+        seen.page.click('[data-turn="right"]')
+        assert np.hypot(*(hand.joint("A") - before)) > 5
+        seen.page.emulate_media(media="print")
+        seen.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+        shown = {
+            name: seen.page.is_visible(name) for name in (".controls", ".dimensions", ".handles", ".printed")
+        }
+        assert shown == {".controls": False, ".dimensions": False, ".handles": False, ".printed": True}
+        assert len(seen.page.query_selector_all(".printed td.n")) == len(ranges_of(ct.example(SPHERE)))

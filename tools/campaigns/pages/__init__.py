@@ -1,0 +1,1 @@
+"""Pages: what they compute in a browser's language against motions of the program."""
