@@ -15,16 +15,8 @@ from dataclasses import dataclass
 # lines of the source of a document, see `style.typ`
 FLOATING = "#floating-picture("
 CHAPTER_END = "#chapter-end"
-BOUNDS = (
-    "#heading(level: 1,",
-    "#element(level: 1,",
-    "#appendix(",
-    "#show",
-    "#sentences[",
-    CHAPTER_END,
-    FLOATING,
-)
-"""How lines begin that no figure goes before: it stays in its chapter and behind the figures before it."""
+ENDS = ("#heading(level: 1,", "#element(level: 1,", "#appendix(", "#show", "#sentences[", CHAPTER_END)
+"""How lines begin that no figure goes before, as it stays in its chapter."""
 STEPS = (1, 2, 3, 5, 8, 13, 21, 34)
 """Lines of the source by which figures go earlier, tried one after another."""
 HALF = 0.5
