@@ -176,7 +176,7 @@ def test_figures_go_earlier_within_their_chapter_and_keep_their_order() -> None:
         place = text.split("\n").index("#floating-picture(2)")
         # from two lines earlier on the second figure stands above the text
         seconds = ((3, 300.0), (2, 350.0))[place <= 6]
-        return Layout(((1, 500.0), (2, 400.0)), ((1, 50.0), (2, 50.0)), ((1, 300.0), seconds, (4, 400.0)))
+        return Layout(((1, 500.0), (2, 400.0)), ((1, 300.0), seconds, (4, 400.0)))
 
     placed = well_placed(lines.replace("|", "\n"), layout_of, 50.0, 700.0).split("\n")
     assert len(texts) == 3
@@ -184,7 +184,7 @@ def test_figures_go_earlier_within_their_chapter_and_keep_their_order() -> None:
 
     def hopeless(text: str) -> Layout:
         texts.append(text)
-        return Layout(((1, 500.0), (2, 400.0)), (), ((1, 300.0), (3, 300.0), (4, 400.0)))
+        return Layout(((1, 500.0), (2, 400.0)), ((1, 300.0), (3, 300.0), (4, 400.0)))
 
     texts.clear()
     assert well_placed(lines.replace("|", "\n"), hopeless, 50.0, 700.0) == lines.replace("|", "\n")

@@ -24,11 +24,11 @@ HALF = 0.5
 Place = tuple[int, float]
 """A page, from 1, and how far below its upper edge [points]."""
 
-EXPRESSION = """(<chapter-end>, heading.where(level: 1), <figure-end>).map(which => query(which).map(it => {
+EXPRESSION = """(<chapter-end>, <figure-end>).map(which => query(which).map(it => {
   let place = it.location().position()
   (place.page, place.y / 1pt)
 }))"""
-"""What typst tells of a document: ends of chapters, headings of chapters, lower ends of figures, each as places."""
+"""What typst tells of a document: ends of chapters and lower ends of figures, each as places."""
 
 
 @dataclass(frozen=True)
@@ -38,19 +38,17 @@ class Layout:
     Attributes
     ----------
     ends : of the text of chapters
-    headings : of chapters, and others as high
     figures : lower ends of figures that float
     """
 
     ends: tuple[Place, ...]
-    headings: tuple[Place, ...]
     figures: tuple[Place, ...]
 
     @classmethod
     def read(cls, told: str) -> Layout:
         """What typst tells by `EXPRESSION`."""
-        ends, headings, figures = (tuple((page, y) for page, y in places) for places in json.loads(told))
-        return cls(ends, headings, figures)
+        ends, figures = (tuple((page, y) for page, y in places) for places in json.loads(told))
+        return cls(ends, figures)
 
 
 def well_placed(text: str, layout_of: Callable[[str], Layout], top: float, height: float) -> str:
