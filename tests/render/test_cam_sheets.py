@@ -17,8 +17,10 @@ from matplotlib.figure import Figure
 import centrode as ct
 from centrode.cams.followers.closed_forms import ClosedForms
 from centrode.locale import speaking
+from centrode.render.drafting.scales import read_scale
 from centrode.render.drafting.sheets import drawing_figures, write_drawing_set
 from centrode.report.drawing_sheets import drawing_sheets
+from centrode.scenes.driving_cams import driving_cams
 from sheet_fields import EXACT, boxes_of_texts, check_fields
 
 Array = np.ndarray
@@ -324,6 +326,102 @@ def test_sheets_of_cams_speak() -> None:
         texts = " ".join(text for _layer, text, _box in boxes_of_texts(figure)).replace("\n", " ")
         assert words in texts
         check_fields(figure, [])
+
+
+@pytest.fixture(scope="module", params=[True, False], ids=["lowers", "raises"])
+def driving(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Drawn]:
+    """A linkage that a cam drives, and the sheet of its cam; the lift lowers its lever, or raises it."""
+    text = ct.mechanism_text(ct.example("cam-driven-linkage"))
+    assert "lowers = true" in text
+    linkage = ct.parse_mechanism(text.replace("lowers = true", f"lowers = {str(request.param).lower()}"))
+    made = drawing_sheets(linkage)
+    assert [type(sheet).__name__ for sheet in made.sheets] == ["MotionSheet", "CamSheet"] and not made.missing
+    folder = tmp_path_factory.mktemp("driving")
+    write_drawing_set(made, folder, ["dxf"])
+    document = ezdxf.readfile(folder / "sheet-2.dxf")
+    assert not document.audit().errors
+    return linkage, Drawn(linkage.drives[0].cam, drawing_figures(made)[1], document)
+
+
+def test_rollers_of_a_driving_cam_stand_where_the_linkage_has_them(driving: tuple[Any, Drawn]) -> None:
+    """The law of cosines with the lever's angle in the solved linkage, where the cam has turned so far."""
+    linkage, sheet = driving
+    per, axis, pivot = _axis_and_pivot(sheet)
+    assert math.dist(axis, pivot) * per == pytest.approx(0.110, rel=1e-9)
+    rings = [place for place, size in sheet.rings() if abs(size * per - 0.012) <= 1e-11]
+    phi = np.radians([*np.arange(0, 120, 20), 120, *np.arange(180, 290, 110 / 6), 290])
+    assert len(rings) == len(phi)
+    speed = 150.0 * math.pi / 30.0
+    lever = ct.motion(linkage, at=(phi / speed).tolist()).drive_value.values[:, 0]
+    assert np.ptp(lever) == pytest.approx(math.radians(24.0), rel=1e-9)
+    start = math.acos((0.090**2 + 0.110**2 - 0.052**2) / (2 * 0.090 * 0.110))
+    forward = 1.0 if linkage.drives[0].lowers else -1.0
+    mirror = np.array([forward, 1.0])  # an arm that lifts counter-clockwise stands on the left of its cam
+    for turned, swung in zip(phi, np.abs(lever), strict=True):
+        arm = math.pi - start - swung
+        x, y = (np.array([0.110, 0.0]) + 0.090 * np.array([math.cos(arm), math.sin(arm)])) * mirror
+        c, s = math.cos(turned), math.sin(turned) * forward
+        expected = axis + np.array([c * x + s * y, c * y - s * x]) / per
+        assert min(math.dist(expected, place) for place in rings) <= 1e-7
+
+
+def test_the_profile_of_a_driving_cam_is_the_one_drawn_in_the_linkage(driving: tuple[Any, Drawn]) -> None:
+    """The cam of `centrode draw` at the beginning, turned so that the pivot lies as on the sheet: never mirrored."""
+    linkage, sheet = driving
+    motion = ct.motion(linkage, at=[0.0])
+    (cam,) = driving_cams(linkage, motion, 1.0)
+    assert cam.pivot is not None
+    per, axis, pivot = _axis_and_pivot(sheet)
+    turn = complex(*(pivot - axis)) / complex(*(cam.pivot - cam.centre))
+    placed = (cam.outline(0) - cam.centre) @ np.array([1.0, 1.0j]) * turn
+    profile = (sheet.profile() - axis) @ np.array([1.0, 1.0j])
+    apart = np.abs(placed[:, None] - profile).min(axis=1) * per
+    # places of the sheet's profile are a quarter of a degree apart, at 70 mm from the axis at most
+    assert apart.max() <= 0.5 * 0.070 * math.radians(0.3)
+    wrong = np.abs(placed.conjugate()[:, None] - profile).min(axis=1) * per
+    assert wrong.max() > 1e-3
+
+
+def _axis_and_pivot(sheet: Drawn) -> tuple[float, Array, Array]:
+    """The scale of the profile [m/mm], the axis of the cam and the pivot at its beginning [mm]."""
+    per = sheet.scales["l"][0]
+    rings = sheet.rings()
+    axis = next(place for place, size in rings if abs(size * per - 0.040) <= 1e-11)
+    hinges = [place for place, size in rings if abs(math.dist(place, axis) * per - 0.110) <= 1e-9]
+    assert len(hinges) == 1
+    return per, axis, hinges[0]
+
+
+def test_a_scale_is_that_of_the_linkage(tmp_path: Path) -> None:
+    made = drawing_sheets(ct.example("cam-driven-linkage"))
+    for figure, scale in zip(
+        drawing_figures(made, read_scale("1:2", "--scale")), ("1:2", "1:1"), strict=True
+    ):
+        shown = [text for layer, text, _box in boxes_of_texts(figure) if layer and ":" in text]
+        assert scale in shown
+        check_fields(figure, [])
+
+
+def test_a_driving_cam_that_does_not_reach_its_follower_is_named() -> None:
+    linkage = ct.example("cam-driven-linkage")
+    cam = linkage.drives[0].cam
+    assert cam is not None
+    small = cam.model_copy(update={"body": cam.body.model_copy(update={"base_radius": 0.005})})
+    drive = linkage.drives[0].model_copy(update={"cam": small})
+    with pytest.raises(ct.InputError, match=r"lever, cam, \[follower\] arm"):
+        drawing_sheets(linkage.model_copy(update={"drives": (drive,)}))
+
+
+def test_a_driving_cam_without_a_size_has_no_sheet() -> None:
+    text = ct.cam_text(ct.example("indexing-cam"))
+    rows = [
+        row for row in text.splitlines() if not row.startswith(("base_radius", "pressure_angle", "[bounds]"))
+    ]
+    cam = ct.parse_cam("\n".join(rows))
+    linkage = ct.example("cam-driven-linkage")
+    drive = linkage.drives[0].model_copy(update={"cam": cam})
+    made = drawing_sheets(linkage.model_copy(update={"drives": (drive,)}))
+    assert [type(sheet).__name__ for sheet in made.sheets] == ["MotionSheet"]
 
 
 CIRCLE = """

@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 import centrode as ct
 from centrode import render
 from centrode.dynamics.bearings.results import reaction_results
+from centrode.render.drawing.style import Decimals, house_style
+from centrode.render.figures.curves import write_legend
 from centrode.sheets.plots import Plot
 from centrode.topics.presentation import sheet_of
 from drawn_curves import at_samples, heights_at
@@ -43,6 +45,22 @@ def test_the_press() -> None:
     assert figures["balancing"].axes[0].get_ylabel() == "$M_b$, N·m"
     # the guide bears no moment: no panel for it
     assert [axes.get_ylabel() for axes in figures["other-reactions"].axes] == ["$R_n$, N"]
+
+
+def test_the_power_of_ten_of_an_axis_stands_beside_the_legend() -> None:
+    """Reactions of tens of thousands of newtons, their names in two rows above the axes."""
+    with house_style():
+        figure = Figure(figsize=(6.0, 3.0), layout="constrained")
+        axes = figure.subplots()
+        axes.yaxis.set_major_formatter(Decimals())
+        lines = axes.plot([0.0, 1.0], np.outer([0.0, 3e4], np.ones(7)))
+        write_legend(axes, [(line, f"pin {k} of a long name") for k, line in enumerate(lines)], beside=False)
+        figure.draw_without_rendering()
+        legend, power = axes.get_legend(), axes.yaxis.get_offset_text()
+        assert legend is not None and power.get_text() == "×10⁴"
+        assert len({round(text.get_window_extent().y0) for text in legend.get_texts()}) > 1
+        assert power.get_window_extent().x1 <= legend.get_window_extent().x0
+        assert power.get_window_extent().y1 > legend.get_window_extent().y0  # else nothing is tried
 
 
 def test_what_is_not_determined_is_not_drawn() -> None:

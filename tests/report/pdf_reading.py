@@ -16,6 +16,8 @@ from pypdfium2 import raw
 
 BAND = 1 / 12
 """Of the height of a page: a blank band that belongs to what is around it."""
+TOP = 1 / 10
+"""Of the height of a page: what begins above that begins at its top, below the margin."""
 STANDARD = re.compile(rb"<pdf(a|ua)id:(part|conformance)>(\w)<")
 
 
@@ -57,16 +59,16 @@ class PdfFile:
     def half_empty_pages(self) -> list[int]:
         """Numbers of the pages less than half full on which no chapter ends, of those from the first chapter on.
 
-        A page is as full as its text is high, blank bands of more than a twelfth of it left out.
+        A page is as full as its text is high, blank bands of more than a twelfth of it left out. A chapter ends on it
+        if the next begins at the top of the page behind: what stands there above a heading belongs to the chapter too.
         """
         with self._opened() as document:
             entries = [one for one in document.get_toc(max_depth=15) if one.level == 0]
-            begins = {one.get_dest().get_index() + 1 for one in entries}
+            begins = [_beginning(one.get_dest(), document) for one in entries]
             full = {number: _filled(page) for number, page in enumerate(document, start=1)}
-        last = max(full)
-        return [
-            number for number in range(min(begins), last) if full[number] < 0.5 and number + 1 not in begins
-        ]
+        first, last = min(begins)[0], max(full)
+        ends = {page - 1 for page, down in begins if down < TOP}
+        return [number for number in range(first, last) if full[number] < 0.5 and number not in ends]
 
     @cached_property
     def title(self) -> str:
@@ -105,6 +107,13 @@ class PdfFile:
                 boxes = [text.get_rect(k) for k in range(text.count_rects())]
                 found += [(*box, text.get_text_bounded(*box)) for box in boxes]
         return found
+
+
+def _beginning(place: Any, document: Any) -> tuple[int, float]:
+    """The page of a place in the outline, from 1, and the share of the page above it."""
+    number = place.get_index()
+    _mode, (_left, up, *_zoom) = place.get_view()
+    return number + 1, 1.0 - up / document[number].get_height()
 
 
 def _filled(page: Any) -> float:

@@ -203,7 +203,9 @@ def test_pages_of_the_compact_form_are_filled(compact: Report, full: Report) -> 
 
 
 @pytest.mark.drawn
-@pytest.mark.parametrize("name", ["slider-between-cranks-locked", "spherical-four-bar", "valve-cam"])
+@pytest.mark.parametrize(
+    "name", ["slider-between-cranks", "slider-between-cranks-locked", "spherical-four-bar", "valve-cam"]
+)
 def test_no_page_is_half_empty_unless_a_chapter_ends(name: str) -> None:
     made = PdfFile(pdf_document(ct.report(name, language="uk")))
     assert len(made.pages) > 7

@@ -20,6 +20,7 @@ from centrode.render.document.blocks import (
     SectionBlocks,
     TableBlock,
 )
+from centrode.report.figure_places import Layout, well_placed
 from centrode.report.pdf_document import Source, pdf_document
 
 from .made import HOSTILE, report, svg
@@ -144,6 +145,50 @@ def test_figures_stand_before_the_next_chapter() -> None:
     )
     text = "\n".join(pages_of(*chapters))
     assert text.rindex("Tall") < text.index("after")
+
+
+@pytest.mark.parametrize("standard", ["plain", "gost"])
+@pytest.mark.parametrize("lines", range(12, 36, 4))
+def test_no_figure_at_the_end_of_a_chapter_has_half_a_page_of_its_own(lines: int, standard: Standard) -> None:
+    """Two figures find no room on one page, nor the first of them below the text: it goes above a part of it."""
+    low, high = (Picture(svg(400, height), f"{height} high", 5.5) for height in (300, 440))
+    words = tuple(ParagraphBlock(f"line {k} " + "word " * 12) for k in range(lines))
+    sections = (SectionBlocks("", (*words, low, ParagraphBlock("Between."), high)),)
+    second = ChapterBlocks("b", "Second", (SectionBlocks("", (ParagraphBlock("after " * 100),)),))
+    report = Report("T", "", "en", (ChapterBlocks("a", "First", sections), second), standard=standard)
+    made = PdfFile(pdf_document(report))
+    assert made.half_empty_pages == []
+    text = made.text
+    assert text.index("300 high") < text.index("440 high") < text.index("after")
+    assert [f"line {k} " in text for k in range(lines)] == [True] * lines
+
+
+def test_figures_go_earlier_within_their_chapter_and_keep_their_order() -> None:
+    """A page of 700 points: the text of a chapter ends in the middle of one, two figures have pages of their own."""
+    lines = (
+        "#heading(level: 1, a)|#par|#floating-picture(1)|#chapter-end|#heading(level: 1, b)|#par|#par|#par"
+    )
+    lines += "|#floating-picture(2)|#floating-picture(3)|#chapter-end"
+    texts: list[str] = []
+
+    def layout_of(text: str) -> Layout:
+        texts.append(text)
+        place = text.split("\n").index("#floating-picture(2)")
+        # from two lines earlier on the second figure stands above the text
+        seconds = ((3, 300.0), (2, 350.0))[place <= 6]
+        return Layout(((1, 500.0), (2, 400.0)), ((1, 300.0), seconds, (4, 400.0)))
+
+    placed = well_placed(lines.replace("|", "\n"), layout_of, 50.0, 700.0).split("\n")
+    assert len(texts) == 3
+    assert placed == [*lines.split("|")[:6], "#floating-picture(2)", "#par", "#par", *lines.split("|")[9:]]
+
+    def hopeless(text: str) -> Layout:
+        texts.append(text)
+        return Layout(((1, 500.0), (2, 400.0)), ((1, 300.0), (3, 300.0), (4, 400.0)))
+
+    texts.clear()
+    assert well_placed(lines.replace("|", "\n"), hopeless, 50.0, 700.0) == lines.replace("|", "\n")
+    assert len(texts) == 4  # before each paragraph of its chapter, no farther
 
 
 def test_a_number_and_its_unit_stay_on_one_line() -> None:

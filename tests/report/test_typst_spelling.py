@@ -14,7 +14,11 @@ import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.locale import speaking
+from centrode.model.settings import Display
+from centrode.render.document.numbers import Numbers
+from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.document.typst import TypstSpelling, decimal, quote, word
+from centrode.sheets.texts import Expression, Number
 from equation_pages import formulas
 
 from .typst_reading import read
@@ -175,3 +179,16 @@ def test_what_is_quoted_ends_where_it_should() -> None:
     assert quote("a\nb\u200e") == '"a b "'
     assert word("x") == "x"
     assert word("12") == "12"
+
+
+def test_the_sign_of_degrees_stands_close_behind_a_number_with_a_comma() -> None:
+    """Typst sets blanks around a string, and a number with a comma is one."""
+    spelling = DocumentSpelling(Numbers(Display()))
+    formula = Expression("phi = {angle} degree + {whole} degree", angle=Number(12.5), whole=Number(3.0))
+    for language, spelled in (
+        ("en", "phi = 12.5 degree + 3 degree"),
+        ("ru", 'phi = "12,5°" + 3 degree'),
+        ("uk", 'phi = "12,5°" + 3 degree'),
+    ):
+        with speaking(language):
+            assert spelling.mathematics(formula) == spelled

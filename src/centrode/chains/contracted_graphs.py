@@ -36,18 +36,11 @@ class ContractedGraph:
     @classmethod
     def of(cls, colours: Sequence[int], edges: Iterable[Edge]) -> ContractedGraph:
         """The canonical form of a graph."""
-        return cls.with_places(colours, edges)[0]
-
-    @classmethod
-    def with_places(
-        cls, colours: Sequence[int], edges: Iterable[Edge]
-    ) -> tuple[ContractedGraph, tuple[int, ...]]:
-        """The canonical form of a graph, and the vertex of the graph that stands at each of its places."""
         edges = tuple(edges)
         order = canonical_order(tuple(colours), edges)
         place = {vertex: k for k, vertex in enumerate(order)}
         moved = ((min(place[u], place[v]), max(place[u], place[v]), weight) for u, v, weight in edges)
-        return cls(tuple(colours[v] for v in order), tuple(sorted(moved))), order
+        return cls(tuple(colours[v] for v in order), tuple(sorted(moved)))
 
     @property
     def vertices(self) -> int:

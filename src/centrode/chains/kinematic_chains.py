@@ -64,7 +64,7 @@ class KinematicChain:
     @classmethod
     def of(cls, joints: Sequence[Joint]) -> KinematicChain:
         """The chain with these joints between links 0, 1, ..., however they are numbered."""
-        return cls(contract(joints)[0])
+        return cls(contract(joints))
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -122,14 +122,8 @@ class KinematicChain:
         return any(not _is_connected(self.joints, self.links, without=link) for link in range(self.links))
 
 
-def contract(
-    joints: Sequence[Joint], mark: int | None = None
-) -> tuple[ContractedGraph, tuple[tuple[int, ...], ...]]:
-    """The contracted graph of links with joints, a link marked, and the links in the order of the canonical chain.
-
-    The links come in tuples: the polygonal links (and the marked one) one by one, then the string of each edge of the
-    graph. A circle is contracted to its marked link, or to its first.
-    """
+def contract(joints: Sequence[Joint], mark: int | None = None) -> ContractedGraph:
+    """The contracted graph of links with joints, a link marked; a circle is contracted to its marked link or its first."""
     neighbours: dict[int, list[int]] = {}
     for u, v in joints:
         neighbours.setdefault(u, []).append(v)
@@ -137,14 +131,9 @@ def contract(
     kept = [link for link in sorted(neighbours) if len(neighbours[link]) != 2 or link == mark]
     kept = kept or [min(neighbours)]
     place = {link: k for k, link in enumerate(kept)}
-    strings = list(_strings(neighbours, kept))
+    strings = _strings(neighbours, kept)
     edges = [(min(place[s[0]], place[s[-1]]), max(place[s[0]], place[s[-1]]), len(s) - 2) for s in strings]
-    colours = [MARKED if link == mark else 0 for link in kept]
-    graph, order = ContractedGraph.with_places(colours, edges)
-    at = {vertex: k for k, vertex in enumerate(order)}
-    turned = [s if at[place[s[0]]] <= at[place[s[-1]]] else s[::-1] for s in strings]
-    turned.sort(key=lambda s: (at[place[s[0]]], at[place[s[-1]]], len(s)))
-    return graph, (*((kept[v],) for v in order), *(tuple(s[1:-1]) for s in turned))
+    return ContractedGraph.of([MARKED if link == mark else 0 for link in kept], edges)
 
 
 def _strings(neighbours: dict[int, list[int]], ends: Sequence[int]) -> Iterator[list[int]]:
@@ -169,7 +158,7 @@ def _strings(neighbours: dict[int, list[int]], ends: Sequence[int]) -> Iterator[
 
 def marked(joints: Sequence[Joint], link: int) -> ContractedGraph:
     """The contracted graph of a chain with one link marked: equal for links that symmetry exchanges."""
-    return contract(joints, link)[0]
+    return contract(joints, link)
 
 
 def chains(links: int, mobility: int = 1, *, cut_links: bool = False) -> tuple[KinematicChain, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.analysis.graphic.results import graphic_analysis
 from centrode.analysis.position_plan import SAMPLES, USUAL, check_positions, plan_of_positions
-from centrode.cams.followers.base_circle import follower_cam
+from centrode.cams.followers.base_circle import follower_cam, has_size
 from centrode.cams.profiles import roller_path_of
 from centrode.dynamics.force_polygons.results import force_polygon_results, has_force_polygons
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
@@ -22,8 +22,9 @@ from centrode.model.examples.catalogue import description_of
 from centrode.model.explanatory_note import TitlePage
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import FRAME
+from centrode.scenes.driving_cams import driving_body
 from centrode.sheets.drawing_sheets import DrawingSet, TitleBlock
-from centrode.views.cam_sheets import cam_sheet
+from centrode.views.cam_sheets import cam_sheet, driving_cam_sheet
 from centrode.views.drawing_sheets import diagram_sheet, energy_sheet, force_sheets, motion_sheets
 from centrode.views.path_sheets import path_sheet
 
@@ -43,7 +44,7 @@ def drawing_sheets(
     positions: int = USUAL,
     link: str | None = None,
 ) -> DrawingSet:
-    """Sheets A1 of a mechanism: its motion; where they are described, its machine and its forces; or of a cam.
+    """Sheets A1 of a mechanism: its motion; where they are described, its cams, machine and forces; or of a cam.
 
     Of a mechanism on the sphere they show the diagrams of its output and of its machine; `absent` names the drawings
     that are of the plane. Of a cam one sheet shows the synthesis.
@@ -58,8 +59,8 @@ def drawing_sheets(
     Raises
     ------
     InputError, MotionError
-        As `plan_of_positions`; on the sphere, a link that does not turn about a hinge of the frame; as `follower_cam`,
-        and of a cam instants or a link.
+        As `plan_of_positions`; on the sphere, a link that does not turn about a hinge of the frame; as `follower_cam`;
+        of a cam instants or a link.
 
     Examples
     --------
@@ -135,6 +136,7 @@ def _sheets(
     drawn = graphic_analysis(mechanism, instants=instants, incomplete=True)
     missing += [str(check) for check in drawn.checks if isinstance(check, CentrodeError)]
     yield from motion_sheets(plan, drawn)
+    yield from _sheets_of_driving_cams(mechanism, positions)
     if is_machine(mechanism):
         try:
             yield energy_sheet(machine_results(mechanism), plan)
@@ -150,6 +152,15 @@ def _sheets(
             missing.append(str(failure))
         else:
             yield from force_sheets(forces)
+
+
+def _sheets_of_driving_cams(mechanism: Mechanism, positions: int) -> Iterator[DrawingSheet]:
+    """The cams that drive, where their sizes are described."""
+    for drive in mechanism.drives:
+        cam = drive.cam
+        if cam is not None and has_size(cam):
+            sheet = cam_sheet(cam, driving_body(drive, cam), positions)
+            yield driving_cam_sheet(drive, sheet, mechanism.display)
 
 
 def _sheets_on_sphere(mechanism: Mechanism, link: str | None, missing: list[str]) -> Iterator[DrawingSheet]:

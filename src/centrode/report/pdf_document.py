@@ -37,6 +37,7 @@ from centrode.render.document.numbering import number_blocks
 from centrode.render.document.numbers import NO_BREAK
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.render.document.typst import quote
+from centrode.report.figure_places import CHAPTER_END, EXPRESSION, FLOATING, Layout, well_placed
 from centrode.report.mathematics import check_formula, pieces_of, relations_of
 from centrode.report.note import CONCLUSIONS, SOURCES
 from centrode.report.page_styles import page_style
@@ -52,6 +53,8 @@ LONGEST_WHOLE = 600
 """Characters from which on a cell may break between pages."""
 LONGEST_NUMBER = 24
 """Characters of a number that is not parted from its unit."""
+POINTS = 72.0 / 25.4
+"""Points in a millimetre."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 
@@ -119,6 +122,8 @@ class Source:
             yield from self._section(title, section, chapter.role)
         if sentences:
             yield "]"
+        if chapter.role != "front":
+            yield CHAPTER_END
 
     def _section(self, title: Heading | None, section: SectionBlocks, role: str) -> Iterator[str]:
         if title is not None:
@@ -184,9 +189,9 @@ class Source:
     def _picture(self, block: Picture, floats: bool = True) -> str:
         name = f"pictures/{len(self.files) + 1}.svg"
         self.files[name] = with_cubic_letters(block.svg)
-        where = f"{block.number}, floats: {'true' if floats else 'false'}"
-        words = quote(spoken_picture(block))
-        return f"#picture({quote(name)}, {picture_width(block):.3f}in, {_caption(block.caption)}, {words}, {where})"
+        kind = FLOATING if floats and block.caption else "#picture("
+        given = (f"{picture_width(block):.3f}in", _caption(block.caption), quote(spoken_picture(block)))
+        return f"{kind}{quote(name)}, {', '.join(given)}, {block.number})"
 
     @_shown.register
     def _moving(self, block: Moving) -> str:
@@ -423,11 +428,15 @@ def pdf_document(report: Report) -> bytes:
     """
     with speaking(report.language):
         source = Source(report)
-    files: Any = {
-        "main": source.text.encode(),
-        **style_files(report),
-        **source.files,
-    }
+    beside = {**style_files(report), **source.files}
+
+    def layout_of(text: str) -> Layout:
+        inputs: Any = {"main": text.encode(), **beside}
+        return Layout.read(typst.Compiler(input=inputs, ignore_system_fonts=True).eval(EXPRESSION))
+
+    page = page_style(report.standard)
+    text = well_placed(source.text, layout_of, page.top * POINTS, (297.0 - page.top - page.bottom) * POINTS)
+    files: Any = {"main": text.encode(), **beside}
     compiler = typst.Compiler(ignore_system_fonts=True)
     *strict, plain = STANDARDS
     for standards in strict:

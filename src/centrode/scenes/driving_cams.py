@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.followers.base_circle import follower_cam, has_bounds
+from centrode.cams.followers.base_circle import follower_cam, has_size
 from centrode.cams.followers.geometry import FollowerCam, Oscillating
 from centrode.errors import CentrodeError
 from centrode.model.checks import pivot_of
@@ -20,6 +20,7 @@ from centrode.numerics.arrays import ARRAYS
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.model.follower_cam import PlateCam
     from centrode.model.mechanism import Drive, Mechanism
 
 Array = NDArray[np.float64]
@@ -197,9 +198,7 @@ def driving_cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -
 
 def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Iterator[DrivingCam]:
     for drive in mechanism.drives:
-        if drive.cam is None or drive.turning is None:
-            continue
-        if drive.cam.body.base_radius is None and not has_bounds(drive.cam):
+        if drive.cam is None or drive.turning is None or not has_size(drive.cam):
             continue
         time = np.asarray(dataset["time"], dtype=float)
         coordinate = mechanism.motion_parameter.drive(drive.id)
@@ -211,11 +210,7 @@ def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Itera
             1.0, float(np.nanmax(abs(values)))
         ):
             continue
-        try:
-            body = follower_cam(drive.cam)
-        except CentrodeError as error:
-            where = ", ".join(part for part in (f"[[drives]] {drive.id}, cam", error.where) if part)
-            raise type(error)(where, error.what, error.repair) from None
+        body = driving_body(drive, drive.cam)
         placed = (
             _translating(mechanism, drive, body, zero)
             if drive.guide
@@ -225,6 +220,21 @@ def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Itera
             centre, axes, pivot = placed
             angles = drive.cam_angle + drive.turning * time
             yield DrivingCam(body, centre, axes, angles, pivot, factor)
+
+
+def driving_body(drive: Drive, cam: PlateCam) -> FollowerCam:
+    """The cam of a drive with its follower.
+
+    Raises
+    ------
+    InputError, MotionError
+        As `follower_cam`, naming the drive.
+    """
+    try:
+        return follower_cam(cam)
+    except CentrodeError as error:
+        where = ", ".join(part for part in (f"[[drives]] {drive.id}, cam", error.where) if part)
+        raise type(error)(where, error.what, error.repair) from None
 
 
 Placed = tuple[Array, Array, Array | None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,7 @@ from centrode.sheets.drawing_sheets import (
     ScaledDiagram,
 )
 from centrode.sheets.plots import AxisLabel
-from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text, Unit
+from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Symbol, Text, Unit
 from centrode.views.followers import CONTACTS, KINDS, curve_name
 from centrode.views.geometric_drawings import (
     CENTRE,
@@ -46,6 +47,7 @@ from centrode.views.geometric_drawings import (
     in_degrees,
     length_facts,
     mesh_with,
+    mirrored,
     numbered_names,
     point_of,
     ticks_of,
@@ -53,7 +55,9 @@ from centrode.views.geometric_drawings import (
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
+    from centrode.model.drives import Drive
     from centrode.model.follower_cam import PlateCam
+    from centrode.model.settings import Display
 
 BEYOND = 0.12
 """How far faces, rays and axes go on beyond what they are drawn for, over the base radius."""
@@ -99,6 +103,20 @@ def cam_sheet(cam: PlateCam, body: FollowerCam, positions: int) -> CamSheet:
         tuple(_facts(cam, body)),
         cam.display,
     )
+
+
+def driving_cam_sheet(drive: Drive, sheet: CamSheet, display: Display) -> CamSheet:
+    """The sheet of a cam as it stands in the linkage that it drives, in the units of the linkage.
+
+    An oscillating follower lifts clockwise on the sheet of its cam alone. Where the lift turns the link of the linkage
+    counter-clockwise, the cam is the mirror image and turns the other way.
+    """
+    facts = ((Sentence("drive"), Name(drive.id)), *sheet.facts)
+    sheet = replace(sheet, facts=facts, display=display)
+    if drive.cam is None or not drive.cam.swings or drive.lowers:
+        return sheet
+    choice = mirrored(sheet.choice) if isinstance(sheet.choice, GeometricDrawing) else sheet.choice
+    return replace(sheet, choice=choice, profile=mirrored(sheet.profile))
 
 
 # Diagrams over the angle of the cam

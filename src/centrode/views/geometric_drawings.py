@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.drawing_sheets import GeometryAngle, GeometryName
+from centrode.sheets.drawing_sheets import (
+    GeometricDrawing,
+    GeometryAngle,
+    GeometryFrame,
+    GeometryName,
+)
 from centrode.sheets.plots import AxisLabel
 from centrode.sheets.texts import Joined, Number, Symbol, Text
 
@@ -53,6 +59,37 @@ def numbered_names(places: Array, shown: Array | None = None) -> Iterator[Geomet
     for number, place in enumerate(places):
         if shown is None or shown[number]:
             yield GeometryName(point_of(place), Number(number, digits="d"), dotted=shown is not None)
+
+
+def mirrored(drawing: GeometricDrawing) -> GeometricDrawing:
+    """The mirror image of a drawing: left and right exchanged, its texts as they are."""
+    axes = np.array([-1.0, 1.0])
+    return replace(
+        drawing,
+        lines=tuple(replace(line, places=line.places * axes) for line in drawing.lines),
+        circles=tuple(replace(circle, centre=_exchanged(circle.centre)) for circle in drawing.circles),
+        names=tuple(replace(name, place=_exchanged(name.place)) for name in drawing.names),
+        angles=tuple(
+            replace(
+                angle,
+                apex=_exchanged(angle.apex),
+                first=math.pi - angle.first,
+                last=math.pi - angle.last,
+            )
+            for angle in drawing.angles
+        ),
+        frame=None if drawing.frame is None else _mirrored_frame(drawing.frame),
+    )
+
+
+def _mirrored_frame(frame: GeometryFrame) -> GeometryFrame:
+    """The same of hinges, a guide and the sense in which the body turns."""
+    guide = None if frame.guide is None else (_exchanged(frame.guide[0]), _exchanged(frame.guide[1]))
+    return GeometryFrame(tuple(map(_exchanged, frame.hinges)), guide, -frame.sense)
+
+
+def _exchanged(place: tuple[float, float]) -> tuple[float, float]:
+    return -place[0], place[1]
 
 
 def point_of(place: Array) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from centrode.locale import chosen_language, coordinate_separator
 from centrode.quantities import DEGREES, spelled_unit, with_unit
 from centrode.render.document.formulas import NumberSpelling, in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number
-from centrode.render.document.typst import TypstSpelling, in_degrees, quote, shown, word
+from centrode.render.document.typst import TypstSpelling, in_degrees, quote, shown, with_degrees, word
 from centrode.render.document.vectors import vector_mathematics
 from centrode.render.spelling import Spelling, filled_notation
 from centrode.render.symbolic import spell_symbolic
@@ -119,9 +119,8 @@ class DocumentSpelling(Spelling):
             case str():
                 return spelled_functions(leaf)
             case Expression(notation, values):
-                return spelled_functions(notation).format(
-                    **{name: self.mathematics(value) for name, value in values.items()}
-                )
+                spelled = {name: self.mathematics(value) for name, value in values.items()}
+                return with_degrees(spelled_functions(notation).format(**spelled))
             case Number():
                 size, label = self._size(leaf)
                 if leaf.unit_hidden or not label:

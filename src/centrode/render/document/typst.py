@@ -151,6 +151,11 @@ def in_degrees(number: str) -> str:
     return f'{number[:-1]}°"' if number.endswith('"') else f"{number} degree"
 
 
+def with_degrees(formula: str) -> str:
+    """A formula whose quoted numbers have the sign of degrees close behind them: typst sets blanks around a string."""
+    return formula.replace('" degree', '°"')
+
+
 def strip_brackets(text: str) -> str:
     """What a fraction holds needs no brackets of its own."""
     if not (text.startswith("(") and text.endswith(")")):

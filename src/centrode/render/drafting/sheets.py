@@ -78,7 +78,7 @@ def drawing_figures(made: DrawingSet, scale: DrawingScale | None = None) -> list
 
     Parameters
     ----------
-    scale : of the mechanism in its positions; the largest standard one that fits if None
+    scale : of the mechanism in its positions, or of a cam alone; the largest standard one that fits if None
 
     Raises
     ------
@@ -90,7 +90,8 @@ def drawing_figures(made: DrawingSet, scale: DrawingScale | None = None) -> list
     for number, sheet in enumerate(made.sheets, start=1):
         with house_style():
             page = new_drawing_page(A1)
-            shown = _draw(page, sheet, scale)
+            # a cam beside its linkage keeps the scale that fits
+            shown = _draw(page, sheet, scale if number == 1 else None)
             blacken(page.figure)
             draw_frame(page, Inscription(made.block, names, number, shown))
             respell(page.figure, with_primes)

@@ -401,6 +401,8 @@ def write_legend(
         look = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.25}
         look |= {"ncols": columns_above(texts, width)}
         texts = [textwrap.fill(text, letters_above(width)) for text in texts]
+        # the common factor of the ticks ("×10⁴") stands there too
+        axes.yaxis.get_offset_text().set_horizontalalignment("right")
         if axes.get_title():
             axes.set_title(axes.get_title(), pad=4.0 + 72.0 * _height(texts, width))
     handles = [handle for handle, _name in entries]
