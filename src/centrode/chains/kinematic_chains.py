@@ -123,7 +123,7 @@ class KinematicChain:
 
 
 def contract(joints: Sequence[Joint], mark: int | None = None) -> ContractedGraph:
-    """The contracted graph of links with joints, a link marked; a circle is contracted to its marked link or its first."""
+    """The contracted graph of links with joints, a link marked; of a circle the marked link or the first stays."""
     neighbours: dict[int, list[int]] = {}
     for u, v in joints:
         neighbours.setdefault(u, []).append(v)
