@@ -156,7 +156,7 @@ def _body(title: str, program: PageProgram) -> str:
 
 def _subtitle() -> str:
     return _escaped(
-        _("Computed on this page by a program that centrode {version} printed"), version=__version__
+        _("This page computes the motion itself; made by centrode {version}"), version=__version__
     )
 
 
