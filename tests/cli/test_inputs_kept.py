@@ -50,6 +50,7 @@ FILES: dict[str, tuple[str, tuple[str, ...]]] = {
     "draw": ("press.svg", ("--samples", "3")),
     "describe": ("press.md", ()),
     "export": ("press.xml", ()),
+    "page": ("press.html", ("--samples", "3")),
 }
 """Commands that write one file, and its name."""
 STUDIES = {"sweep", "variants"}
@@ -228,11 +229,14 @@ MAY_REPLACE = re.compile(r"\b(?:os|shutil|unlink|rmtree)\b")
 """What a module holds that takes a file away; the others are not parsed."""
 REPLACING = {"replace", "rename", "renames", "unlink", "remove", "rmtree", "move"}
 """Functions of `os` and `shutil`, and methods of paths, that take a file away."""
-OWN_FILES = {"files/drafts.py", "numerics/machine_code/cache.py"}
+OWN_FILES = {"files/drafts.py", "numerics/machine_code/cache.py", "sweeps/storage.py"}
 
 
 def test_files_are_replaced_in_one_place() -> None:
-    """In `files.drafts`, which asks first, so no command can forget to; the kernels' cache has entries of its own."""
+    """In `files.drafts`, which asks first, so no command can forget to.
+
+    The kernels' cache and stores of sweeps have drafts of their own.
+    """
     found = set()
     for module in PACKAGE.rglob("*.py"):
         name, text = module.relative_to(PACKAGE).as_posix(), module.read_text(encoding="utf-8")

@@ -15,7 +15,7 @@ from centrode.locale import speaking
 from centrode.render.document.typst import TypstSpelling
 from centrode.report.html.fonts import FONT, cut_font, font_letters
 from centrode.report.html.mathematics import formulas_of
-from centrode.report.html.page import HERE
+from centrode.report.html.parts import HERE
 from equation_pages import Relation, entries
 
 EXAMPLES = ["six-bar-press", "spherical-crank-rocker", "third-class-triad"]

@@ -56,6 +56,8 @@ class Failing:
                 # every other failure comes after the work is done: the answer alone is lost
                 if self.failed % 2 and writes:
                     b"".join(self.served(environment, lambda *_: io.BytesIO().write))
+                    # its body is read: to wait for more of it would take until the client gives up
+                    environment["CONTENT_LENGTH"] = "0"
                 return _answered(environment, begin, "503 Slow Down", b"<Error><Code>SlowDown</Code></Error>")
         return self.served(environment, begin)
 
@@ -64,7 +66,9 @@ def _answered(
     environment: dict[str, Any], begin: Callable[..., Any], status: str, body: bytes
 ) -> Iterable[bytes]:
     environment["wsgi.input"].read(int(environment.get("CONTENT_LENGTH") or 0))
-    begin(status, [("Content-Type", "application/xml"), ("Content-Length", str(len(body)))])
+    # what may be left of the request does not come before the next one: each has a connection of its own then
+    head = [("Content-Type", "application/xml"), ("Content-Length", str(len(body))), ("Connection", "close")]
+    begin(status, head)
     return [body]
 
 

@@ -325,10 +325,9 @@ def _digest(mechanism: Mechanism, parameters: Sequence[PageParameter]) -> str:
 
 def _parameter_data(ready: Ready) -> dict[str, Any]:
     path = ready.kinematics.path
-    unit = "s" if path.by_time else ready.parameter.units[0]
     return {
         "name": "time" if path.by_time else "drive",
-        "unit": unit,
+        "unit": _parameter_unit(ready),
         "turns": path.turns,
         "initial": float(path.initial),
         "forward": float(path.forward),
@@ -336,10 +335,13 @@ def _parameter_data(ready: Ready) -> dict[str, Any]:
     }
 
 
+def _parameter_unit(ready: Ready) -> str:
+    parameter = ready.parameter.in_time() if ready.kinematics.path.by_time else ready.parameter
+    return parameter.variable.unit
+
+
 def _quantity(ready: Ready, quantity: Any) -> dict[str, Any]:
-    known = QUANTITIES[quantity.name].for_drive(
-        "s" if ready.kinematics.path.by_time else ready.parameter.units[0]
-    )
+    known = QUANTITIES[quantity.name].for_drive(_parameter_unit(ready))
     if ready.mechanism.space == "sphere":
         known = known.on_sphere()
     return {

@@ -44,7 +44,7 @@ from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics, la
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import ORDERS
 from centrode.kinematics.solve import Solved
-from centrode.laws import TableLaw, TextLaw, Uniform
+from centrode.laws import SegmentedLaw, ShaftLaw
 from centrode.locale import _
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
@@ -93,7 +93,7 @@ def refuse_laws(ready: Ready) -> None:
     """Raise NotComputedYet, with the drive's name, for a law of several drives that is not traced."""
     path = ready.kinematics.path
     for driven in path.driven if path.by_time else ():
-        if not isinstance(driven.law, Uniform | TextLaw | TableLaw):
+        if isinstance(driven.law, SegmentedLaw | ShaftLaw):
             what = _("a page with several drives knows no law of a cam, and drive {drive} has one")
             raise NotComputedYet(
                 "page", what.format(drive=driven.drive.id), _("drive it by a formula or a table")
