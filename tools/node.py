@@ -34,6 +34,8 @@ for (const values of cases) {
   const frame = mechanism.recompute(values);
   const quantities = data.quantities.map((each) => rows(frame.quantities[each.name]));
   const centres = data.space === "plane" ? data.links.map((_name, k) => mechanism.centre(k)) : [];
+  const acting = mechanism.reactions();
+  quantities.push(...data.reactions.map((each) => rows(acting[each.name])));
   const all = [...quantities.flat(), ...centres.flatMap(({ fixed, moving }) => [...fixed, ...moving])];
   for (const row of [Float64Array.from(frame.status), frame.residual, ...all]) numbers.push(row.slice());
   const { events, signsChange, possible } = frame;
@@ -65,7 +67,7 @@ class PageFrame:
     Attributes
     ----------
     status, residual : (samples,)
-    quantities : name -> (samples, ...), as a motion has them
+    quantities : name -> (samples, ...), as a motion and its reactions have them
     centres : link of the plane -> fixed and moving centrode (samples, 4)
     events : as the page has them
     """
@@ -102,7 +104,7 @@ def page_frames(program: PageProgram, cases: Sequence[Sequence[float]]) -> list[
 
 def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame:
     quantities, first = {}, 2
-    for each in program.data["quantities"]:
+    for each in [*program.data["quantities"], *program.data["reactions"]]:
         shape = np.shape(each["rows"])
         count = int(np.prod(shape, dtype=int))
         quantities[each["name"]] = np.moveaxis(rows[first : first + count].reshape(*shape, -1), -1, 0)

@@ -13,7 +13,7 @@ from tools.node import MISSING, NODE, page_frames
 import centrode as ct
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.model.examples import example_text
-from centrode.model.files import parse_mechanism
+from centrode.model.files import parse_mechanism, with_values
 from centrode.page.program import page_program
 
 needs_node = pytest.mark.skipif(NODE is None, reason=MISSING)
@@ -145,6 +145,34 @@ def test_the_balancing_moment_is_that_of_all_reactions(name: str) -> None:
     # reactions come from the equations of every link, the page's from those of energy
     expected = ct.reactions(program.mechanism).balancing.values[:, 0]
     assert np.abs(frame.quantities["balancing"] - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+REACTIONS = ("joint_force", "guide_force", "guide_normal", "guide_moment", "frame_force", "frame_moment", "shaking_force",
+             "shaking_moment")  # fmt: skip
+
+
+@needs_node
+@pytest.mark.parametrize("name", ["six-bar-press", "single-cylinder-engine", "in-line-four-bar", "andrews-squeezer"])
+def test_reactions_are_those_of_the_arrays(name: str) -> None:
+    program = page_program(name)
+    own = np.array([parameter.value for parameter in program.parameters])
+    random = np.random.default_rng(27)
+    cases = [own, *(own * (1.0 + 0.02 * random.uniform(-1.0, 1.0, (3, len(own)))))]
+    for values, frame in zip(cases, page_frames(program, [case.tolist() for case in cases]), strict=True):
+        paths = [parameter.path for parameter in program.parameters]
+        changed = with_values(program.mechanism, dict(zip(paths, values.tolist(), strict=True)))
+        expected = ct.reactions(changed)
+        there = expected.reaction_status.values == Status.OK
+        assert there.mean() > 0.9
+        # each system loses the digits that its loss tells, and no more than all of them
+        loss = 1e-12 + 16.0 * expected.reaction_loss.values[there].max()
+        size = max(np.abs(expected[x].values[there]).max() for x in ("joint_force", "frame_force"))
+        named = [x for x in REACTIONS if x in expected]
+        assert {x["name"] for x in program.data["reactions"]} == set(named)
+        for quantity in named:
+            wanted = expected[quantity].values[there]
+            unit = size if expected[quantity].attrs["units"] == "N" else max(size, np.abs(wanted).max())
+            assert np.abs(frame.quantities[quantity][there] - wanted).max() <= loss * unit, quantity
 
 
 @needs_node
