@@ -152,7 +152,9 @@ REACTIONS = ("joint_force", "guide_force", "guide_normal", "guide_moment", "fram
 
 
 @needs_node
-@pytest.mark.parametrize("name", ["six-bar-press", "single-cylinder-engine", "in-line-four-bar", "andrews-squeezer"])
+@pytest.mark.parametrize(
+    "name", ["six-bar-press", "single-cylinder-engine", "in-line-four-bar", "andrews-squeezer"]
+)
 def test_reactions_are_those_of_the_arrays(name: str) -> None:
     program = page_program(name)
     own = np.array([parameter.value for parameter in program.parameters])

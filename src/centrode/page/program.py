@@ -304,7 +304,7 @@ def _data(
         "reactions": [_quantity(ready, quantity) for quantity in acting.quantities],
         "reactions_missing": acting.missing,
         "largest_gain": LARGEST_GAIN,
-        "sides": list(acting.sides),
+        "sides": [[side.point, side.body] for side in acting.sides],
         "gears": [gear.id for gear in mechanism.gears],
         "gear_bodies": list(GEAR_BODIES),
         "guards": [[kind, group] for kind, group in traced.cells],

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from centrode.dynamics.kinetostatics.joints import sides_of
+from centrode.dynamics.kinetostatics.joints import JointSide, sides_of
 from centrode.dynamics.kinetostatics.reaction_expressions import REACTIONS, ReactionNodes, reaction_nodes
 from centrode.dynamics.kinetostatics.reactions import DIMENSIONS
 from centrode.dynamics.masses import masses_of
@@ -29,13 +29,13 @@ class TracedReactions:
     ----------
     rows : numbers, and as the last one the gain above which none of them is trusted; none where there are no reactions
     quantities : of the reactions, with the places of their rows
-    sides : of hinges, "point/body"
+    sides : of hinges: the point, and the body on which its pin acts
     missing : why there are none; empty where they are, or where there are neither masses nor loads
     """
 
     rows: tuple[Node, ...] = ()
     quantities: tuple[TracedQuantity, ...] = ()
-    sides: tuple[str, ...] = ()
+    sides: tuple[JointSide, ...] = ()
     missing: str = ""
 
 
@@ -54,11 +54,10 @@ def trace_reactions(solved: Solved, paths: Sequence[str], known: Sequence[Traced
     names = [name for name in REACTIONS if name in found.parts]
     if any(quantity.name == BALANCING for quantity in known):
         names.remove(BALANCING)
-    sides = tuple(side.label for side in sides_of(mechanism))
-    return _rows(found, names, sides)
+    return _rows(found, names, sides_of(mechanism))
 
 
-def _rows(found: ReactionNodes, names: Sequence[str], sides: tuple[str, ...]) -> TracedReactions:
+def _rows(found: ReactionNodes, names: Sequence[str], sides: tuple[JointSide, ...]) -> TracedReactions:
     """Rows of the reactions, equal ones once."""
     places: dict[Node, int] = {}
     quantities = []

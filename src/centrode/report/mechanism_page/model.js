@@ -191,7 +191,7 @@ class Model {
     return [Math.cos(y) * Math.cos(x), Math.cos(y) * Math.sin(x), Math.sin(y)];
   }
   course(part) {
-    let found = this.frame.quantities[part.quantity];
+    let found = this.frame.quantities[part.quantity] ?? this.engine.reactions()[part.quantity];
     for (const place of part.index) found = found && found[place];
     return found;
   }
