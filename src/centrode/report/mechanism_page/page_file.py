@@ -199,7 +199,7 @@ def _missing(program: PageProgram) -> list[str]:
     said = [reduction] if reduction else []
     # what forbids both is told once
     if reactions and reactions != reduction:
-        said.append(_("reactions are omitted: {reason}").format(reason=reactions))
+        said.append(_("Curves of reactions are left out: {reason}.").format(reason=reactions))
     return said
 
 
