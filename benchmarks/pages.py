@@ -13,7 +13,8 @@ from centrode.page.program import page_program
 SAMPLES = 361
 MOST = 0.2
 """Milliseconds that a recompute of a six-bar may take on the machine of docs/benchmarks.md."""
-MECHANISMS = {"crank-rocker": None, "watt-six-bar": MOST, "stephenson-six-bar": MOST, "double-rocker": None,
+MECHANISMS = {"crank-rocker": None, "watt-six-bar": MOST, "stephenson-six-bar": MOST, "six-bar-press": MOST,
+              "double-rocker": None,
               "jansen-leg": None, "spherical-four-bar": None}  # fmt: skip
 WARM, ROUNDS = 400, 1000
 
