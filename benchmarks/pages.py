@@ -33,5 +33,8 @@ def recomputes() -> Iterator[Row]:
             "slowest of 20 [ms]": float(np.quantile(times, 0.95)),
             "program [kB]": len(program.javascript.encode()) / 1000,
         }
+        if program.data["reactions"]:
+            acting = recompute_times(program, cases, WARM + ROUNDS, acting=True)[WARM:]
+            numbers["with reactions [ms]"] = float(np.median(acting))
         promises = [] if most is None else [Promise(f"{name}: recompute in Node [ms]", took, at_most=most)]
         yield Row(name, numbers, promises=promises)

@@ -195,12 +195,12 @@ def _dimensions() -> str:
 
 def _missing(program: PageProgram) -> list[str]:
     """Why reduced masses and loads, or reactions, are not among the curves."""
-    reduction, reactions = str(program.data["reduction_missing"]), str(program.data["reactions_missing"])
-    said = [reduction] if reduction else []
-    # what forbids both is told once
-    if reactions and reactions != reduction:
-        said.append(_("Curves of reactions are left out: {reason}.").format(reason=reactions))
-    return said
+    sentences = {
+        "reduction_missing": _("Curves of reduced masses and loads are left out: {reason}."),
+        "reactions_missing": _("Curves of reactions are left out: {reason}."),
+    }
+    reasons = {name: str(program.data[name]) for name in sentences}
+    return [sentences[name].format(reason=reason) for name, reason in reasons.items() if reason]
 
 
 def _curves(missing: Sequence[str]) -> str:
