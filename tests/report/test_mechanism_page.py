@@ -403,6 +403,8 @@ def test_reactions_are_curves_numbers_and_arrows(running: Any, pages: Callable[.
             column = [float(row[head.index(f"R_{axis}(B/AB) [N]")]) for row in rows]
             # printed with 15 digits
             np.testing.assert_allclose(column, force[:, k], rtol=0, atol=1e-12 * size.max())
+        whole = [float(row[head.index("|R|(B/AB) [N]")]) for row in rows]
+        np.testing.assert_allclose(whole, size, rtol=0, atol=1e-12 * size.max())
         seen.page.click("summary")
         seen.page.wait_for_selector(".numbers th >> text='H: force of the guide on its point or slider'")
         arrows = ".arrow.reaction:not([display=none])"

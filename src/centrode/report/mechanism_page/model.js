@@ -195,4 +195,13 @@ class Model {
     for (const place of part.index) found = found && found[place];
     return found;
   }
+  // The numbers of a course as they are now, each with its label; of a vector its magnitude is the last.
+  lines({ parts, factor, size }) {
+    const found = parts.map((part) => {
+      const numbers = this.course(part);
+      return { label: part.label, value: (sample) => (numbers && this.reached(sample) ? numbers[sample] * factor : NaN) };
+    });
+    const whole = (sample) => Math.hypot(...found.map((one) => one.value(sample)));
+    return size ? [...found, { label: size, value: whole }] : found;
+  }
 }
