@@ -417,10 +417,10 @@ def test_reactions_are_curves_numbers_and_arrows(running: Any, pages: Callable[.
 
 
 def test_a_page_says_why_it_has_no_reactions() -> None:
-    assert "Curves of reactions are left out: reactions on the sphere." in mechanism_page(
+    assert "Curves of reactions are omitted: reactions on the sphere." in mechanism_page(
         "spherical-crank-rocker"
     )
-    assert "left out" not in mechanism_page(PLANE)
+    assert "are omitted" not in mechanism_page(PLANE)
     assert 'data-show="reactions"' not in mechanism_page(PLANE)
 
 

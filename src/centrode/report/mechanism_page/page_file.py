@@ -196,8 +196,8 @@ def _dimensions() -> str:
 def _missing(program: PageProgram) -> list[str]:
     """Why reduced masses and loads, or reactions, are not among the curves."""
     sentences = {
-        "reduction_missing": _("Curves of reduced masses and loads are left out: {reason}."),
-        "reactions_missing": _("Curves of reactions are left out: {reason}."),
+        "reduction_missing": _("Curves of reduced masses and loads are omitted: {reason}."),
+        "reactions_missing": _("Curves of reactions are omitted: {reason}."),
     }
     reasons = {name: str(program.data[name]) for name in sentences}
     return [sentences[name].format(reason=reason) for name, reason in reasons.items() if reason]
