@@ -13,7 +13,8 @@ from centrode.page.program import page_program
 SAMPLES = 361
 MOST = 0.2
 """Milliseconds that a recompute of a six-bar may take on the machine of docs/benchmarks.md."""
-MECHANISMS = {"crank-rocker": None, "watt-six-bar": MOST, "stephenson-six-bar": MOST, "double-rocker": None,
+MECHANISMS = {"crank-rocker": None, "watt-six-bar": MOST, "stephenson-six-bar": MOST, "six-bar-press": MOST,
+              "double-rocker": None,
               "jansen-leg": None, "spherical-four-bar": None}  # fmt: skip
 WARM, ROUNDS = 400, 1000
 
@@ -32,5 +33,8 @@ def recomputes() -> Iterator[Row]:
             "slowest of 20 [ms]": float(np.quantile(times, 0.95)),
             "program [kB]": len(program.javascript.encode()) / 1000,
         }
+        if program.data["reactions"]:
+            acting = recompute_times(program, cases, WARM + ROUNDS, acting=True)[WARM:]
+            numbers["with reactions [ms]"] = float(np.median(acting))
         promises = [] if most is None else [Promise(f"{name}: recompute in Node [ms]", took, at_most=most)]
         yield Row(name, numbers, promises=promises)

@@ -22,7 +22,7 @@ MISSING = "node is not installed"
 PRELUDE = """
 "use strict";
 const fs = require("fs"), vm = require("vm");
-const { javascript, data, cases, rounds } = JSON.parse(fs.readFileSync(0, "utf8"));
+const { javascript, data, cases, rounds, acting } = JSON.parse(fs.readFileSync(0, "utf8"));
 // as in a browser: one classic script whose constants are global
 vm.runInThisContext(javascript);
 const mechanism = vm.runInThisContext("createMechanism")(data);
@@ -34,6 +34,8 @@ for (const values of cases) {
   const frame = mechanism.recompute(values);
   const quantities = data.quantities.map((each) => rows(frame.quantities[each.name]));
   const centres = data.space === "plane" ? data.links.map((_name, k) => mechanism.centre(k)) : [];
+  const acting = mechanism.reactions();
+  quantities.push(...data.reactions.map((each) => rows(acting[each.name])));
   const all = [...quantities.flat(), ...centres.flatMap(({ fixed, moving }) => [...fixed, ...moving])];
   for (const row of [Float64Array.from(frame.status), frame.residual, ...all]) numbers.push(row.slice());
   const { events, signsChange, possible } = frame;
@@ -52,6 +54,7 @@ const times = [];
 for (let round = 0; round < rounds; round++) {
   const values = cases[round % cases.length], start = performance.now();
   mechanism.recompute(values);
+  if (acting) mechanism.reactions();
   times.push(performance.now() - start);
 }
 console.log(JSON.stringify(times));
@@ -65,7 +68,7 @@ class PageFrame:
     Attributes
     ----------
     status, residual : (samples,)
-    quantities : name -> (samples, ...), as a motion has them
+    quantities : name -> (samples, ...), as a motion and its reactions have them
     centres : link of the plane -> fixed and moving centrode (samples, 4)
     events : as the page has them
     """
@@ -80,9 +83,12 @@ class PageFrame:
     reach: tuple[float, float]
 
 
-def _run(body: str, program: PageProgram, cases: Sequence[Sequence[float]], rounds: int = 0) -> bytes:
+def _run(
+    body: str, program: PageProgram, cases: Sequence[Sequence[float]], rounds: int = 0, acting: bool = False
+) -> bytes:
     assert NODE is not None, MISSING
     given = {"javascript": program.javascript, "data": program.data, "cases": cases, "rounds": rounds}
+    given["acting"] = acting
     text = json.dumps(given, allow_nan=False).encode()
     ended = subprocess.run([NODE, "-e", PRELUDE + body], input=text, capture_output=True, check=False)
     if ended.returncode:
@@ -102,7 +108,7 @@ def page_frames(program: PageProgram, cases: Sequence[Sequence[float]]) -> list[
 
 def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame:
     quantities, first = {}, 2
-    for each in program.data["quantities"]:
+    for each in [*program.data["quantities"], *program.data["reactions"]]:
         shape = np.shape(each["rows"])
         count = int(np.prod(shape, dtype=int))
         quantities[each["name"]] = np.moveaxis(rows[first : first + count].reshape(*shape, -1), -1, 0)
@@ -116,6 +122,8 @@ def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame
     return PageFrame(status, rows[1], quantities, centres, events, signs_change, possible, (low, high))
 
 
-def recompute_times(program: PageProgram, cases: Sequence[Sequence[float]], rounds: int) -> Array:
-    """Milliseconds that each of so many recomputes takes, one after the other in one process."""
-    return np.array(json.loads(_run(TIMES, program, cases, rounds)))
+def recompute_times(
+    program: PageProgram, cases: Sequence[Sequence[float]], rounds: int, acting: bool = False
+) -> Array:
+    """Milliseconds that each of so many recomputes takes, with reactions if `acting`; one process does them all."""
+    return np.array(json.loads(_run(TIMES, program, cases, rounds, acting)))

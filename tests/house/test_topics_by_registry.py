@@ -57,6 +57,9 @@ ALLOWED = {
     # a layer of a drawing at full size, not the topic
     "render/drafting/board.py": {"centrodes"},
     "render/drafting/sheet.py": {"centrodes"},
+    # a group of curves, and a box that shows arrows
+    "report/mechanism_page/courses.py": {"reactions"},
+    "report/mechanism_page/page_file.py": {"reactions"},
     # a type of an option: points that counterweights stand on
     "cli/option_values.py": {"centrode.dynamics.balancing.balance"},
     # the kind of a block, not the topic

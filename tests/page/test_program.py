@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from tools.node import MISSING, NODE, page_frames
+from tools.node import MISSING, NODE, Array, PageFrame, page_frames
 
 import centrode as ct
+from centrode.dynamics.kinetostatics.reaction_expressions import REACTIONS
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.model.examples import example_text
-from centrode.model.files import parse_mechanism
+from centrode.model.examples.catalogue import MechanismSource
+from centrode.model.files import parse_mechanism, with_values
 from centrode.page.program import page_program
+from centrode.report.mechanism_page.numbers_that_vary import ranges_of
 
 needs_node = pytest.mark.skipif(NODE is None, reason=MISSING)
 
@@ -145,6 +149,98 @@ def test_the_balancing_moment_is_that_of_all_reactions(name: str) -> None:
     # reactions come from the equations of every link, the page's from those of energy
     expected = ct.reactions(program.mechanism).balancing.values[:, 0]
     assert np.abs(frame.quantities["balancing"] - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+TURNED = """
+[[loads]]
+kind = "torque"
+link = "OA"
+value = "3 - 0.1 * q"
+"""
+
+
+def turned() -> ct.Mechanism:
+    """A load that grows with the angle of the crank, beyond half a turn too."""
+    return parse_mechanism(example_text("in-line-four-bar") + TURNED, "turned.toml")
+
+
+def differences(
+    mechanism: ct.Mechanism, frame: PageFrame, there: Array
+) -> Iterator[tuple[str, float, float]]:
+    """Of each reaction its name, the greatest difference, and what the arrays say of their own rounding."""
+    expected = ct.reactions(mechanism)
+    assert (expected.reaction_status.values[there] == Status.OK).all()
+    names = [name for name in REACTIONS if name in expected and name in frame.quantities]
+    greatest = max(float(np.abs(expected[name].values[there]).max()) for name in names)
+    bound = float(expected.reaction_loss.values[there].max()) * greatest
+    for name in names:
+        wanted = expected[name].values[there].reshape(there.sum(), -1)
+        found = frame.quantities[name][there].reshape(there.sum(), -1)
+        yield name, float(np.abs(found - wanted).max()), bound
+
+
+@needs_node
+@pytest.mark.parametrize(
+    "name", ["six-bar-press", "single-cylinder-engine", "in-line-four-bar", "andrews-squeezer", "turned"]
+)
+def test_reactions_are_those_of_the_arrays(name: str) -> None:
+    mechanism = turned() if name == "turned" else ct.example(name)
+    program = page_program(mechanism, ranges_of(mechanism))
+    random = np.random.default_rng(27)
+    own = np.array([parameter.value for parameter in program.parameters])
+    span = np.array([parameter.most - parameter.least for parameter in program.parameters])
+    cases = [own, *(own + 0.005 * span * random.uniform(-1.0, 1.0, (3, len(own))))]
+    paths = [parameter.path for parameter in program.parameters]
+    for values, frame in zip(cases, page_frames(program, [case.tolist() for case in cases]), strict=True):
+        changed = with_values(mechanism, dict(zip(paths, values.tolist(), strict=True)))
+        every = np.ones(len(frame.status), dtype=bool)
+        found = {told: (apart, bound) for told, apart, bound in differences(changed, frame, every)}
+        assert {"joint_force", "balancing", "frame_force", "frame_moment", "shaking_moment"} <= set(found)
+        assert ("guide_moment" in found) == bool(mechanism.guides)
+        for told, (apart, bound) in found.items():
+            assert apart <= bound, told
+
+
+@needs_node
+def test_reactions_are_absent_beside_change_points() -> None:
+    text = re.sub(
+        r"^(\[links\.\w+\])$", r"\1\nmass = 1.5\ninertia = 0.3", example_text("parallelogram"), flags=re.M
+    )
+    mechanism = parse_mechanism(text.replace("\ntitle", "\ngravity = [0.0, -9.81]\ntitle"), "heavy.toml")
+    program = page_program(mechanism)
+    (frame,) = page_frames(program, [[parameter.value for parameter in program.parameters]])
+    absent = np.isnan(frame.quantities["joint_force"]).any(axis=(1, 2))
+    drive = np.array(program.data["places"]["parameter"])
+    places = np.array([event["drive"] for event in frame.events if event["kind"] == "change point"])
+    assert len(places) >= 2
+    assert (absent == (np.abs(drive[:, None] - places) < 0.02).any(axis=1)).all() and absent.any()
+    assert all(apart <= bound for _name, apart, bound in differences(mechanism, frame, ~absent))
+
+
+FRICTION = """
+[[loads]]
+kind = "friction"
+guide = "H"
+coefficient = 0.1
+"""
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "reason"),
+    [
+        ("spherical-crank-rocker", "sphere"),
+        (parse_mechanism(example_text("six-bar-press") + FRICTION, "rubbed.toml"), "friction"),
+        ("crank-rocker", ""),
+    ],
+)
+def test_what_reactions_cannot_be_traced_is_left_out_with_a_reason(
+    mechanism: MechanismSource, reason: str
+) -> None:
+    program = page_program(mechanism)
+    assert program.data["reactions"] == [] and "reactions: {" not in program.javascript
+    assert reason in program.data["reactions_missing"] and bool(reason) == bool(
+        program.data["reactions_missing"]
+    )
 
 
 @needs_node

@@ -32,7 +32,7 @@ PLANE, SPHERE, LOCKED, BRANCHED = (
     "slider-between-cranks-locked",
     "antiparallelogram",
 )
-LARGE = ("excavator-arm", "jansen-leg", "five-bar-two-drives")
+LARGE = ("excavator-arm", "jansen-leg", "five-bar-two-drives", "andrews-squeezer")
 BYTES = 250_000
 AXE = Path(__file__).with_name("axe") / "axe.min.js"
 AXE_SUM = "880970c081707360e64f34cea25ff91892f5bc95675b0776925b9709dd8a68bb"
@@ -378,6 +378,50 @@ def test_numbers_are_spelled_for_the_reader(running: Any, pages: Callable[..., P
         assert head[0] == "φ [°]" and first[0].startswith("219,1") and "v_x(A) [м/с]" in head
         with speaking("ru"):
             assert seen.page.inner_text(".statuses") == "Механизм проходит все положения."
+
+
+def test_reactions_are_curves_numbers_and_arrows(running: Any, pages: Callable[..., Path]) -> None:
+    mechanism = ct.example("six-bar-press")
+    with opened(running, pages("six-bar-press")) as seen:
+        hand = Hand(seen)
+        seen.page.click('[data-do="add-curve"]')
+        seen.page.select_option(".chart:last-child select", label="reaction at B on link AB")
+        seen.page.fill(".rows input[type=text] >> nth=0", "0.33")
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        changed = with_values(mechanism, hand.values())
+        force = ct.reactions(changed).joint_force.sel(side="B/AB").values
+        size = np.hypot(*force.T)
+        shown = seen.page.inner_text(".chart:last-child .legend").replace("\u2212", "-")
+        told = [float(one) for one in re.findall(r"= (-?[\d.]+) N", shown)]
+        # five digits of the greatest number are shown
+        np.testing.assert_allclose(
+            told, [*force[0], size[0]], rtol=0, atol=0.5 * 10 ** (np.ceil(np.log10(size.max())) - 5)
+        )
+        head, *rows = hand.table()
+        for k, axis in enumerate("xy"):
+            column = [float(row[head.index(f"R_{axis}(B/AB) [N]")]) for row in rows]
+            # printed with 15 digits
+            np.testing.assert_allclose(column, force[:, k], rtol=0, atol=1e-12 * size.max())
+        whole = [float(row[head.index("|R|(B/AB) [N]")]) for row in rows]
+        np.testing.assert_allclose(whole, size, rtol=0, atol=1e-12 * size.max())
+        seen.page.click("summary")
+        seen.page.wait_for_selector(".numbers th >> text='H: force of the guide on its point or slider'")
+        arrows = ".arrow.reaction:not([display=none])"
+        assert seen.page.locator(arrows).count() == 0
+        seen.page.click('[data-show="reactions"]')
+        frames(seen.page)
+        # both pins of the coupler push it
+        assert seen.page.locator(arrows).count() == 2
+        assert seen.messages == []
+
+
+def test_a_page_says_why_it_has_no_reactions() -> None:
+    assert "Curves of reactions are omitted: reactions on the sphere." in mechanism_page(
+        "spherical-crank-rocker"
+    )
+    assert "are omitted" not in mechanism_page(PLANE)
+    assert 'data-show="reactions"' not in mechanism_page(PLANE)
 
 
 def test_a_sphere_follows_the_hand_and_paper_shows_no_controls(

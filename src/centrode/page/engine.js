@@ -9,6 +9,7 @@
  * velocity, acceleration [point][axis]; angle, angularVelocity, angularAcceleration [link] (on the sphere rotation
  * vectors [link][axis], and the angles of data.joints in jointAngle); all of them and what else there is by name in
  * `quantities`. Beside these: events [{kind, drive, group}], reach [low, high], signsChange, possible, residualBound.
+ * mechanism.reactions() gives those of data.reactions by name in the last frame; they are computed when they are asked for.
  * mechanism.centre(link) gives the instant centre of a link in the last frame: {fixed: [x, y], moving: [x, y]}.
  * Arrays belong to the mechanism and are written anew by the next call; what is absent is NaN.
  */
@@ -472,6 +473,11 @@ function createMechanism(data) {
   });
   const signRows = new Map(atSamples.moving.filter((each) => each.word === "sign").map((each) => [each.of, each.row]));
   const turnRows = new Map(atSamples.moving.filter((each) => each.word === "turns").map((each) => [each.of, each.row]));
+  /* what loads depend on in reactions, and not in the motion, is counted as well */
+  for (const name of printed.reactions?.moving ?? []) {
+    const of = name.slice("turns ".length);
+    if (name.startsWith("turns ") && !turnRows.has(of)) turnRows.set(of, new Float64Array(n));
+  }
   const status = new Uint8Array(n);
   const impossible = new Set(data.impossible);
 
@@ -667,6 +673,7 @@ function createMechanism(data) {
     frame.possible = isPossible(values);
     frame.signsChange = false;
     frame.events = events = [];
+    forcesKnown = false;
     reach[0] = -Infinity;
     reach[1] = Infinity;
     if (!frame.possible) {
@@ -696,6 +703,44 @@ function createMechanism(data) {
     return frame;
   }
 
+  /* ---- reactions: most frames are never asked for theirs ---- */
+
+  let forces = null, forcesKnown = false;
+  const reactionNames = {};
+
+  function reactions() {
+    if (printed.reactions === undefined || forcesKnown) return reactionNames;
+    if (forces === null) {
+      forces = preparePlaces(printed.reactions, given, n);
+      const row = (k) => forces.o.subarray(k * n, (k + 1) * n);
+      const named = (places) => (Array.isArray(places) ? places.map(named) : row(places));
+      for (const each of data.reactions) reactionNames[each.name] = named(each.rows);
+    }
+    forcesKnown = true;
+    if (frame.possible) computeReactions(); else forces.o.fill(NaN);
+    return reactionNames;
+  }
+
+  function computeReactions() {
+    const { f, p, o, moving } = forces, numbers = f.count - 1;
+    fillMoving(forces, nearSamples);
+    for (const { word, of, row } of moving) {
+      const known = word === "sign" ? signRows.get(of) : word === "turns" ? turnRows.get(of) : undefined;
+      if (known !== undefined) row.set(known);
+    }
+    f.run(v, p, n, o);
+    for (let i = 0; i < n; i++) {
+      /* where the motion is mended by places around, forces are not: they may pass all bounds there */
+      const reached = (status[i] === OK || status[i] === CUT_OFF) && !besideAnyChange(drive[i]);
+      if (reached && o[numbers * n + i] < data.largest_gain) continue;
+      for (let k = 0; k < numbers; k++) o[k * n + i] = NaN;
+    }
+  }
+
+  function besideAnyChange(x) {
+    return data.smooth && events.some((e) => e.kind === "change point" && Math.abs(x - e.drive) < BESIDE * unit);
+  }
+
   /* Instant centre of a link of the plane at every sample of the last frame: where it is (the fixed centrode), and where
    * in the link, from its first point along its axes (the moving centrode); NaN where the link does not turn. */
   const held = new Map();
@@ -718,7 +763,7 @@ function createMechanism(data) {
     return { fixed, moving };
   }
 
-  return { data, parameters, recompute, centre, names: { points: data.points, links: data.links, joints: data.joints, guides: data.guides } };
+  return { data, parameters, recompute, reactions, centre, names: { points: data.points, links: data.links, joints: data.joints, guides: data.guides } };
 }
 
 return createMechanism;

@@ -12,6 +12,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.dynamics.kinetostatics.reaction_expressions import LARGEST_GAIN
+from centrode.dynamics.kinetostatics.reactions import GEAR_BODIES
 from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet
 from centrode.kinematics.hinge_angles import moving_hinges
 from centrode.kinematics.machine_code.frame_kernels import FreeNumbers
@@ -39,6 +41,7 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph, Unwritten
 from centrode.numerics.javascript import HELPERS, PlaceFunction, once
+from centrode.page.reaction_tracing import TracedReactions, trace_reactions
 from centrode.page.tracing import HALF, PageTrace, near_of, sign_of, trace_page, turns_of
 from centrode.quantities import QUANTITIES
 from centrode.structure.dimensions import dimensions_of
@@ -131,15 +134,19 @@ def page_program(
         what = _("numbers that follow from {paths} cannot be printed").format(paths=", ".join(paths))
         raise NotComputedYet("page", what, _("vary other numbers"))
     traced = trace_page(prepared, span, varied, paths)
+    acting = trace_reactions(traced.solved, paths, traced.quantities)
     try:
-        functions = _functions(prepared, traced, free, varied)
+        functions = _functions(traced, acting, free, varied)
     except Unwritten as unwritten:
         what = _("the operation {operation} has no words in JavaScript").format(operation=unwritten.operation)
         raise NotComputedYet("page", what) from None
     engine = files("centrode.page").joinpath("engine.js").read_text(encoding="utf-8")
     javascript = engine.replace("/* printed */", f"{HELPERS}const printed = {{\n{functions}\n}};")
     return PageProgram(
-        mechanism, parameters, _data(mechanism, prepared, span, parameters, varied, traced), javascript
+        mechanism,
+        parameters,
+        _data(mechanism, prepared, span, parameters, varied, traced, acting),
+        javascript,
     )
 
 
@@ -210,7 +217,7 @@ PLACE = (PARAMETER, TIME, RATE, SECOND_RATE, HALF)
 """Variables of a place that stay when numbers of the mechanism change."""
 
 
-def _functions(ready: Ready, traced: PageTrace, free: FreeNumbers, varied: Varied) -> str:
+def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, varied: Varied) -> str:
     """All functions of a page as members of an object."""
     of_mechanism = {name: k for k, name in enumerate(_variables(varied, free.paths))}
     moving = [sign_of(group) for group in traced.at_samples]
@@ -230,6 +237,8 @@ def _functions(ready: Ready, traced: PageTrace, free: FreeNumbers, varied: Varie
         function("rotors", [x for two in traced.rotors.values() for x in two]),
         function("counted", list(traced.counted.values())),
     ]
+    if acting.rows:
+        members.append(function("reactions", acting.rows))
     return ",\n".join(members)
 
 
@@ -259,6 +268,7 @@ def _data(
     parameters: Sequence[PageParameter],
     varied: Varied,
     traced: PageTrace,
+    acting: TracedReactions,
 ) -> dict[str, Any]:
     path, layout = ready.kinematics.path, traced.solved.layout
     frame = list(ready.structure.dimensions.frame)
@@ -291,6 +301,12 @@ def _data(
         "angles": [[name, row, started[name]] for name, row in traced.angles.items()],
         "turns_matter": _turns_matter(traced),
         "reduction_missing": traced.missing,
+        "reactions": [_quantity(ready, quantity) for quantity in acting.quantities],
+        "reactions_missing": acting.missing,
+        "largest_gain": LARGEST_GAIN,
+        "sides": [[side.point, side.body] for side in acting.sides],
+        "gears": [gear.id for gear in mechanism.gears],
+        "gear_bodies": list(GEAR_BODIES),
         "guards": [[kind, group] for kind, group in traced.cells],
         "signs": {str(group): float(sign) for group, sign in ready.assembled.signs.items()},
         "radicands": list(traced.at_samples),

@@ -27,6 +27,8 @@ def courses_of(mechanism: Mechanism, data: Mapping[str, Any]) -> list[dict[str, 
     for quantity in quantities.values():
         if quantity["name"] not in OF_POINTS:
             found += _of_parts(quantity, data, numbers)
+    for quantity in data["reactions"]:
+        found += _of_reactions(quantity, data, numbers)
     return found
 
 
@@ -116,3 +118,58 @@ def _of_parts(
                 "label": f"{one}: {_title(quantity)}",
                 "parts": parts,
             }
+
+
+def _of_reactions(
+    quantity: Mapping[str, Any], data: Mapping[str, Any], numbers: Numbers
+) -> Iterator[dict[str, Any]]:
+    """A reaction: of vectors one course for each side, guide, mesh or wheel, of numbers one for all of them."""
+    name, symbol = quantity["name"], quantity["symbol"]
+    own = {"group": _("reactions"), **_unit(quantity, numbers)}
+    *kinds, last = quantity["dimensions"] or ["whole"]
+    parts_of = {"axis": data["axes"], "gear_body": data["gear_bodies"]}
+    owners = _owners(kinds[0] if kinds else last, data)
+    if last not in parts_of:
+        parts = [
+            {"quantity": name, "index": index, "label": f"{symbol}({told})" if told else symbol}
+            for index, told, _label in owners
+        ]
+        yield {**own, "key": name, "size": "", "label": _title(quantity), "parts": parts}
+        return
+    for index, told, label in owners:
+        of = f"({told})" if told else ""
+        title = label if name == "joint_force" else ": ".join(filter(None, (label, _title(quantity))))
+        parts = [
+            {"quantity": name, "index": [*index, k], "label": f"{symbol}_{each}{of}"}
+            for k, each in enumerate(parts_of[last])
+        ]
+        size = f"|{symbol}|{of}" if last == "axis" else ""
+        yield {
+            **own,
+            "key": ".".join([name, *filter(None, [told])]),
+            "size": size,
+            "label": title,
+            "parts": parts,
+        }
+
+
+def _owners(kind: str, data: Mapping[str, Any]) -> list[tuple[list[int], str, str]]:
+    """What a reaction belongs to: its place among others, its name in symbols, and what a reader calls it."""
+    if kind == "side":
+        return [
+            ([k], f"{point}/{body}", _side_words(point, body))
+            for k, (point, body) in enumerate(data["sides"])
+        ]
+    names = {
+        "guide": data["guides"],
+        "gear": data["gears"],
+        "rolling": data["rolling"],
+        "drive": [drive["id"] for drive in data["drives"]],
+    }.get(kind)
+    return [([], "", "")] if names is None else [([k], one, one) for k, one in enumerate(names)]
+
+
+def _side_words(point: str, body: str) -> str:
+    if body == FRAME:
+        return _("reaction at {point} on the frame").format(point=point)
+    return _("reaction at {point} on link {link}").format(point=point, link=body)

@@ -119,16 +119,8 @@ class Chart {
   }
 
   renew() {
-    const { model, course } = this, { factor } = course;
     this.wide = Math.max(260, this.curves.wide);
-    this.lines = course.parts.map((part) => {
-      const numbers = model.course(part);
-      return { label: part.label, value: (sample) => (numbers && model.reached(sample) ? numbers[sample] * factor : NaN) };
-    });
-    if (course.size) {
-      const parts = this.lines.slice();
-      this.lines.push({ label: course.size, value: (sample) => Math.hypot(...parts.map((one) => one.value(sample))) });
-    }
+    this.lines = this.model.lines(this.course);
     this.draw();
     this.show();
   }

@@ -29,6 +29,8 @@ class MechanismStage extends Stage {
     this.svg.insertBefore(this.centres, this.names);
     this.velocities = this.points.map(() => this.arrow("velocity"));
     this.accelerations = this.points.map(() => this.arrow("acceleration"));
+    this.sides = model.data.program.sides.map(([point, body]) => ({ point: model.data.program.points.indexOf(point), body }));
+    this.reactions = this.sides.map(() => this.arrow("reaction"));
     this.crosses = this.bodies.map((body) => this.centre(body));
     this.renewVectors();
     this.handles = new Handles(this, model, this.data.tell);
@@ -67,7 +69,10 @@ class MechanismStage extends Stage {
         this.show();
       });
     }
-    if (this.body) this.body.addEventListener("change", () => this.renewCentrodes());
+    if (this.body) this.body.addEventListener("change", () => {
+      this.renewCentrodes();
+      this.show();
+    });
   }
 
   toggle(name, on) {
@@ -76,7 +81,7 @@ class MechanismStage extends Stage {
     if (groups[name]) this.switch(groups[name], on);
     if (name === "ghosts") this.renewGhosts();
     if (name === "rolling-centrodes") this.renewCentrodes();
-    if (name === "velocities" || name === "accelerations") this.renewVectors();
+    if (name === "velocities" || name === "accelerations" || name === "reactions") this.renewVectors();
     this.show();
   }
 
@@ -254,10 +259,10 @@ class MechanismStage extends Stage {
 
   renewVectors() {
     const { frame } = this.model, fixed = this.model.data.program.fixed;
-    const scale = (courses) => {
+    const scale = (courses, first = fixed) => {
       let most = 0;
       courses.forEach((axes, point) => {
-        if (point < fixed) return;
+        if (point < first) return;
         for (let k = 0; k <= this.last; k += 1) {
           const size = Math.hypot(...axes.map((numbers) => numbers[k]));
           if (size > most) most = size;
@@ -265,11 +270,17 @@ class MechanismStage extends Stage {
       });
       return most ? (REACHED * Math.min(...this.data.size)) / most : 0;
     };
+    const moves = (point) => point >= fixed, own = (point) => point;
     this.vectors = [
-      { name: "velocities", arrows: this.velocities, courses: frame.velocity, scale: this.on.velocities ? scale(frame.velocity) : 0 },
-      { name: "accelerations", arrows: this.accelerations, courses: frame.acceleration,
+      { name: "velocities", arrows: this.velocities, courses: frame.velocity, at: own, shown: moves,
+        scale: this.on.velocities ? scale(frame.velocity) : 0 },
+      { name: "accelerations", arrows: this.accelerations, courses: frame.acceleration, at: own, shown: moves,
         scale: this.on.accelerations ? scale(frame.acceleration) : 0 },
     ];
+    if (!this.reactions.length) return;
+    const forces = this.on.reactions ? this.model.engine.reactions().joint_force : [];
+    this.vectors.push({ name: "reactions", arrows: this.reactions, courses: forces, at: (side) => this.sides[side].point,
+      shown: (side) => this.body && this.sides[side].body === this.body.value, scale: scale(forces, 0) });
   }
 
   mixed(numbers) {
@@ -278,10 +289,10 @@ class MechanismStage extends Stage {
   }
 
   showVectors(flat, now) {
-    for (const { name, arrows, courses, scale } of this.vectors) {
-      arrows.forEach(({ group, shaft, head }, point) => {
-        const found = this.on[name] && flat[point] && point >= this.model.data.program.fixed
-          ? courses[point].map((numbers) => this.mixed(numbers)) : [NaN];
+    for (const { name, arrows, courses, at, shown, scale } of this.vectors) {
+      arrows.forEach(({ group, shaft, head }, k) => {
+        const point = at(k), found = this.on[name] && flat[point] && shown(k)
+          ? courses[k].map((numbers) => this.mixed(numbers)) : [NaN];
         const seen = found.every(Number.isFinite) && scale && this.space.front(now[point]);
         const way = seen ? this.towards(found, scale) : [0, 0], size = Math.hypot(...way);
         group.setAttribute("display", seen && size > 20 ? "inline" : "none");

@@ -191,8 +191,17 @@ class Model {
     return [Math.cos(y) * Math.cos(x), Math.cos(y) * Math.sin(x), Math.sin(y)];
   }
   course(part) {
-    let found = this.frame.quantities[part.quantity];
+    let found = this.frame.quantities[part.quantity] ?? this.engine.reactions()[part.quantity];
     for (const place of part.index) found = found && found[place];
     return found;
+  }
+  // The numbers of a course as they are now, each with its label; of a vector its magnitude is the last.
+  lines({ parts, factor, size }) {
+    const found = parts.map((part) => {
+      const numbers = this.course(part);
+      return { label: part.label, value: (sample) => (numbers && this.reached(sample) ? numbers[sample] * factor : NaN) };
+    });
+    const whole = (sample) => Math.hypot(...found.map((one) => one.value(sample)));
+    return size ? [...found, { label: size, value: whole }] : found;
   }
 }

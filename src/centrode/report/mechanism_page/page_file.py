@@ -88,7 +88,7 @@ def mechanism_page(
     ranges = ranges_of(mechanism) if vary is None else vary
     program = page_program(mechanism, ranges, samples)  # what is refused is said in the language of messages
     with speaking(language or chosen_language()):
-        if program.data["reduction_missing"]:
+        if program.data["reduction_missing"] or program.data["reactions_missing"]:
             program = page_program(mechanism, ranges, samples)
         return _page(mechanism, program, _data(mechanism, program, source))
 
@@ -147,7 +147,7 @@ def _page(mechanism: Mechanism, program: PageProgram, data: Mapping[str, Any]) -
 def _body(title: str, program: PageProgram) -> str:
     """The elements of the page; scripts fill what is empty."""
     dimensions = _dimensions() if program.parameters else ""
-    curves = _curves(str(program.data["reduction_missing"]))
+    curves = _curves(_missing(program))
     return (
         f'<div class="live"><header><h1>{title}</h1><p class="subtitle">{_subtitle()}</p></header>\n<main>\n'
         f"{_player(_controls(program))}\n{dimensions}\n{curves}\n{_away()}\n</main>\n</div>\n{_by_hand()}\n"
@@ -193,9 +193,19 @@ def _dimensions() -> str:
     )
 
 
-def _curves(missing: str) -> str:
+def _missing(program: PageProgram) -> list[str]:
+    """Why reduced masses and loads, or reactions, are not among the curves."""
+    sentences = {
+        "reduction_missing": _("Curves of reduced masses and loads are omitted: {reason}."),
+        "reactions_missing": _("Curves of reactions are omitted: {reason}."),
+    }
+    reasons = {name: str(program.data[name]) for name in sentences}
+    return [sentences[name].format(reason=reason) for name, reason in reasons.items() if reason]
+
+
+def _curves(missing: Sequence[str]) -> str:
     """The curves; `missing` says why masses and loads are not among them."""
-    note = f'<p class="hint">{_escaped(missing)}</p>' if missing else ""
+    note = "".join(f'<p class="hint">{_escaped(why)}</p>' for why in missing)
     name, add = _("Curves"), _button("add-curve", _("Add a curve"))
     return (
         f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", name)}'
@@ -247,6 +257,7 @@ def _controls(program: PageProgram) -> str:
     links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
     body = f'<label class="of"> {of_link} <select data-do="body">{links}</select></label>'
     centrodes = box("rolling-centrodes", _("both centrodes"))
+    reactions = box("reactions", _("reactions")) if program.data["sides"] else ""
     return (
         '<div class="strip"></div>'
         + box("loop", _("loop"), on=True)
@@ -254,7 +265,7 @@ def _controls(program: PageProgram) -> str:
         + box("velocities", _("velocities"))
         + box("accelerations", _("accelerations"))
         + box("instant-centres", _("instant centres"))
-        + f'<span class="pair">{centrodes}{body}</span>'
+        + f'<span class="pair">{centrodes}{reactions}{body}</span>'
         + box("ghosts", _("ghost positions"))
         + _button("fit", _("Fit"))
         + (_turns() if program.mechanism.space == "sphere" else "")

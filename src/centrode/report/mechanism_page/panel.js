@@ -161,28 +161,30 @@ class Numbers {
   show() {
     if (!this.holder.open) return;
     const { model } = this, sample = within(Math.round(this.stage.place), 0, model.last);
-    if (!this.cells) this.lay();
-    for (const { cell, course, factor } of this.cells) {
-      const numbers = course();
-      const said = numbers && model.reached(sample) ? model.spelling.number(numbers[sample] * factor, 6) : "—";
-      if (cell.textContent !== said) cell.textContent = said;
+    if (!this.rows) this.lay();
+    for (const { cells, course } of this.rows) {
+      model.lines(course).forEach((line, k) => {
+        const said = model.spelling.number(line.value(sample), 6);
+        if (cells[k].textContent !== said) cells[k].textContent = said;
+      });
     }
     this.caption.textContent = `${model.place(sample)} · ${model.words.statuses[model.status(sample)]}`;
   }
 
   lay() {
     const { model } = this;
-    this.cells = [];
     this.caption = element("p", { className: "caption" });
     const body = element("tbody");
-    for (const course of model.data.courses) {
-      course.parts.forEach((part, k) => {
+    this.rows = model.data.courses.map((course) => {
+      const lines = model.lines(course);
+      const cells = lines.map((line, k) => {
         const cell = element("td", { className: "n" });
-        this.cells.push({ cell, course: () => model.course(part), factor: course.factor });
-        const first = k ? [] : [element("th", { scope: "rowgroup", rowSpan: course.parts.length }, course.label)];
-        body.append(element("tr", {}, ...first, element("td", {}, part.label), cell, element("td", {}, course.unit)));
+        const first = k ? [] : [element("th", { scope: "rowgroup", rowSpan: lines.length }, course.label)];
+        body.append(element("tr", {}, ...first, element("td", {}, line.label), cell, element("td", {}, course.unit)));
+        return cell;
       });
-    }
+      return { course, cells };
+    });
     this.body.replaceChildren(this.caption, element("div", { className: "table", tabIndex: 0, role: "region", "aria-label": model.words.numbers }, element("table", {}, body)));
   }
 }
@@ -194,11 +196,9 @@ const tableOf = (model) => {
   const head = (name, unit) => (unit ? `${name} [${unit}]` : name);
   const heads = [head(parameter.symbol, parameter.label), words.status], columns = [];
   for (const course of courses) {
-    for (const part of course.parts) {
-      const numbers = model.course(part);
-      if (!numbers) continue;
-      heads.push(head(part.label, course.unit));
-      columns.push((k) => (model.reached(k) ? numbers[k] * course.factor : NaN));
+    for (const line of model.lines(course)) {
+      heads.push(head(line.label, course.unit));
+      columns.push(line.value);
     }
   }
   const spelled = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(15))).replace(".", decimal) : "");
