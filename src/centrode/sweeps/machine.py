@@ -531,6 +531,10 @@ def _streams(
     return whole[first : first + numbers].reshape(shape), blank
 
 
+HUGE_PAGE = (1 << 21) // NUMBER
+"""Numbers on a huge page of most processors."""
+
+
 # Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
 # buffer.
 
@@ -565,6 +569,10 @@ class EverySample:
             for place, number in self.fixed.items():
                 if not (blank and is_blank(number)):
                     streams[place] = number
+            for place in range(len(streams)):
+                # huge pages that are cleared one stream after the other are cleared faster than in turns
+                if blank and place not in self.fixed:
+                    streams[place].reshape(-1)[::HUGE_PAGE] = 0.0
             yield slice(0, streams.shape[1]), streams
             return
         numbers = sum(map(len, self.columns.values()))
