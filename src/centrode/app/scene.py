@@ -253,7 +253,9 @@ def _rows_of_point(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
     of_guide = [k for k in sketch.guides_of(name) if sketch.guides[k].get("on", FRAME) == FRAME]
     driven = guided and bool(sketch.drives_of(_guide_id(sketch, sketch.guides_of(name)[0])))
     loads = [one for one in list_of_tables(sketch.tables, "loads") if one.get("point") == name]
-    value = next((number_list(one.get("vector"), "force") for one in loads if one.get("kind") == "force"), None)
+    value = next(
+        (number_list(one.get("vector"), "force") for one in loads if one.get("kind") == "force"), None
+    )
     ground = sphere or unplaced
     if not ground and not fixed and guided:
         ground = _("this point slides in a guide: remove the guide first")
@@ -268,12 +270,13 @@ def _rows_of_point(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
         "guide": _row(guided, slide, value=direction),
         "drive": _row(driven, sphere or ("" if guided else _("only a link or a sliding point is driven"))),
         "fixed": _row(name in sketch.marks["fixed"], sphere),
-        "trace": _row(
-            name in sketch.marks["traced"], _("a point of the frame has no path") if fixed else ""
-        ),
+        "trace": _row(name in sketch.marks["traced"], _("a point of the frame has no path") if fixed else ""),
         "mass": _row(False, _("masses belong to links: select one")),
         "load": _row(
-            bool(loads), sphere or (_("a force on the frame does no work") if fixed else ""), value=value, unit="N"
+            bool(loads),
+            sphere or (_("a force on the frame does no work") if fixed else ""),
+            value=value,
+            unit="N",
         ),
     }
 

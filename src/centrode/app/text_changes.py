@@ -174,7 +174,11 @@ class TextChanges:
             return self._inserted(last.end, f"{prefix}.{line}" if prefix else line)
         names = ".".join(spelled_key(str(key)) for key in place[:-1])
         first = next(
-            (one for one in self._places.statements if one.is_heading and one.place[: len(place) - 1] == place[:-1]),
+            (
+                one
+                for one in self._places.statements
+                if one.is_heading and one.place[: len(place) - 1] == place[:-1]
+            ),
             None,
         )
         at = first.start if first is not None else len(self.text)
@@ -232,7 +236,9 @@ class TextChanges:
             self.text[self._places.section_end(one) : other.start]
             for one, other in zip(same[:-1], same[1:], strict=True)
         ]
-        return bool(pairs) and not any(between.strip(" \t\r\n") == "" and "\n" in between for between in pairs)
+        return bool(pairs) and not any(
+            between.strip(" \t\r\n") == "" and "\n" in between for between in pairs
+        )
 
     def _lead(self, offset: int) -> int:
         """Where the comments that lead a heading begin; comments at the top of a text belong to the text."""
@@ -246,10 +252,14 @@ class TextChanges:
 
     def _without(self, place: Place) -> str:
         statements = self._places.statements
-        if isinstance(place[-1], int) and not any(one.is_heading and one.place == place for one in statements):
+        if isinstance(place[-1], int) and not any(
+            one.is_heading and one.place == place for one in statements
+        ):
             statement = self._statement(place)
             rest = place[len(statement.place) :] if statement else ()
-            return self._within(statement, lambda inner: _take(inner, rest)) if statement and rest else self.text
+            return (
+                self._within(statement, lambda inner: _take(inner, rest)) if statement and rest else self.text
+            )
         whole = [one for one in statements if one.place[: len(place)] == place]
         if not whole:
             statement = self._statement(place)
@@ -264,7 +274,11 @@ class TextChanges:
                 led = text[:start].rstrip(" \t").endswith(("\n\n", "\r\n\r\n"))
                 if led and blank:
                     start = blank.start() + (1 if text[blank.start()] == "\n" else 2)
-                    start = one.start - len(self.newline) if text[: one.start].endswith(self.newline * 2) else one.start
+                    start = (
+                        one.start - len(self.newline)
+                        if text[: one.start].endswith(self.newline * 2)
+                        else one.start
+                    )
             text = text[:start] + text[end:]
         return text
 
@@ -279,16 +293,32 @@ class TextChanges:
             return self._within(statement, lambda inner: _rename(inner, rest, name)) if statement else text
         tables = {one.place for one in self._places.statements if one.is_heading}
         for one in reversed(found):
-            if not one.is_heading and any(one.place[: len(head)] == head and len(head) >= len(place) for head in tables):
+            if not one.is_heading and any(
+                one.place[: len(head)] == head and len(head) >= len(place) for head in tables
+            ):
                 continue
-            head = next((len(h) for h in sorted(tables, key=len, reverse=True) if one.place[: len(h)] == h), 0)
+            head = next(
+                (len(h) for h in sorted(tables, key=len, reverse=True) if one.place[: len(h)] == h), 0
+            )
             skipped = 0 if one.is_heading else len([k for k in one.place[:head] if isinstance(k, str)])
             start, end = _key_span(text, one, depth - skipped)
             text = text[:start] + written + text[end:]
         return text
 
 
-ROOMS = ("points", "frame", "links", "guides", "gears", "rolling", "drives", "assembly", "loads", "machine", "simulation")
+ROOMS = (
+    "points",
+    "frame",
+    "links",
+    "guides",
+    "gears",
+    "rolling",
+    "drives",
+    "assembly",
+    "loads",
+    "machine",
+    "simulation",
+)
 """Tables of a description in the order in which a person writes them."""
 
 
