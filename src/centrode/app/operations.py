@@ -23,7 +23,7 @@ from centrode.app.reshaping import (
     value_at_place,
     written_position,
 )
-from centrode.app.scene import FORCE, guide_name, load_name, rows_of
+from centrode.app.scene import FORCE, guide_line, guide_name, load_name, rows_of
 from centrode.app.sketch import Sketch, Vector, list_of_tables, marked_names, with_mark
 from centrode.app.text_changes import TextChanges
 from centrode.errors import InputError
@@ -94,7 +94,7 @@ class Patch:
             after = self.document
             if before.mechanism is not None and after.mechanism is None and after.tables.get("links"):
                 first = after.problems[0]
-                raise InputError("", first.message, first.repair)
+                raise InputError(first.path, first.message, first.repair)
         except (KeyError, IndexError, TypeError, ValueError, AttributeError) as fault:
             self.text = text
             what = _("this part of the text is written in a way that cannot be changed here")
@@ -476,16 +476,9 @@ class Patch:
 
     def _slide(self, sketch: Sketch, guide: int) -> float:
         """Displacement of the point of a guide from the place that its line goes through."""
-        entry = sketch.guides[guide]
-        point, through = str(entry.get("point")), entry.get("through")
-        prepared = sketch.document.prepared
-        del prepared
-        if through is None or point not in sketch.places:
-            return 0.0
-        from centrode.app.scene import guide_line  # noqa: PLC0415
-
+        point = str(sketch.guides[guide].get("point"))
         start, direction = guide_line(sketch, guide)
-        if start is None or direction is None:
+        if start is None or direction is None or point not in sketch.places:
             return 0.0
         x, y = sketch.places[point][0] - start[0], sketch.places[point][1] - start[1]
         return x * math.cos(direction) + y * math.sin(direction)
@@ -575,10 +568,7 @@ class Patch:
             self._stretch(sketch, str(place[1]), number)
             return
         old = value_at_place(sketch.tables, place)
-        text = isinstance(value, str) and not is_number(value)
-        self._write(
-            (place, value.strip() if text else written_quantity(sketch, old, number, kind, exactly=True))
-        )
+        self._write((place, typed_quantity(sketch, old, value, number, kind)))
 
     def _stretch(self, sketch: Sketch, link: str, length: float) -> None:
         """Another length of a link that cannot move yet: its second point goes, or its first where that one is free."""
@@ -596,11 +586,8 @@ class Patch:
         old = value_at_place(sketch.tables, place)
         prepared = follow(sketch, path, number)
         own: tuple[Assignment, ...] = ()
-        text = isinstance(value, str) and not is_number(value)
         if old is not None or place[0] == "drives":
-            own = (
-                (place, value.strip() if text else written_quantity(sketch, old, number, kind, exactly=True)),
-            )
+            own = ((place, typed_quantity(sketch, old, value, number, kind)),)
         self._write(*own, *written_position(sketch, prepared, {place}))
 
     def _move_point(self, operation: Operation) -> None:

@@ -9,6 +9,7 @@ import copy
 import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import tomlkit
@@ -232,10 +233,7 @@ class TextChanges:
 
     def _stand_close(self, same: Sequence[Statement]) -> bool:
         """Whether headings of one kind follow each other without a blank line."""
-        pairs = [
-            self.text[self._places.section_end(one) : other.start]
-            for one, other in zip(same[:-1], same[1:], strict=True)
-        ]
+        pairs = [self.text[self._places.section_end(one) : other.start] for one, other in pairwise(same)]
         return bool(pairs) and not any(
             between.strip(" \t\r\n") == "" and "\n" in between for between in pairs
         )

@@ -78,7 +78,7 @@ def cam_from(
 
 
 def kind_of_cam(mapping: Mapping[str, Any], where: str = "") -> type[Cam] | type[PlateCam]:
-    """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage or of both."""
+    """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage."""
     if not is_cam(mapping) and "links" in mapping:
         what = _("this describes a linkage, not a cam")
         raise InputError(
