@@ -91,8 +91,12 @@ class Patch:
             raise InputError("", what, _("correct it in the text first"))
         try:
             change(operation)
+            if before.prepared is not None and self.document.prepared is None:
+                self._keep_places(Sketch(before))
             after = self.document
-            if before.mechanism is not None and after.mechanism is None and after.tables.get("links"):
+            broken = before.mechanism is not None and after.mechanism is None and after.tables.get("links")
+            # a drawing is unfinished on the way; a number or a name that does not fit is a mistake
+            if broken and name in ("set", "rename", "move_point", "mirror", "join"):
                 first = after.problems[0]
                 raise InputError(first.path, first.message, first.repair)
         except (KeyError, IndexError, TypeError, ValueError, AttributeError) as fault:
@@ -112,6 +116,24 @@ class Patch:
     def sketch(self) -> Sketch:
         """What is drawn of it."""
         return Sketch(self.document)
+
+    def _keep_places(self, before: Sketch) -> None:
+        """Write the angles of links that no position gives any more, so that they stay where they were drawn."""
+        while True:
+            sketch = self.sketch
+            lost = [
+                name
+                for name in sketch.links
+                if name not in sketch.poses and name in before.poses and sketch.local(name)
+            ]
+            # an angle may place the links behind it too
+            for name in lost[:1]:
+                place: Place = ("links", name, "angle")
+                if value_at_place(sketch.tables, place) is not None:
+                    return
+                self._write((place, self._angle(before.poses[name][1])))
+            if not lost:
+                return
 
     def _write(self, *assignments: Assignment) -> None:
         changes = TextChanges(self.text)
@@ -203,7 +225,7 @@ class Patch:
     # drawing
 
     def _is_short(self) -> bool:
-        """Whether what is drawn has its coordinates in the table of points: in a new text and where others have them."""
+        """Whether what is drawn gets coordinates in the table of points: in a new text, and where others have them."""
         sketch = self.sketch
         return sketch.is_short_form or not (sketch.links or sketch.fixed)
 
@@ -231,11 +253,11 @@ class Patch:
         names: list[str | None] = []
         for key in ("from_point", "to_point"):
             names.append(None if operation.get(key) is None else self._point_of(operation, key))
-        for k, name in enumerate(names):
-            if name is not None:
-                if name not in sketch.places:
-                    raise InputError(name, _("its place is not known: correct the description first"))
-                ends[k] = sketch.places[name]
+        for k, end_name in enumerate(names):
+            if end_name is not None:
+                if end_name not in sketch.places:
+                    raise InputError(end_name, _("its place is not known: correct the description first"))
+                ends[k] = sketch.places[end_name]
         if names[0] is not None and names[0] == names[1]:
             raise InputError("", _("a link joins two different points"), _("drop it on another point"))
         for link, points in sketch.links.items():

@@ -155,7 +155,7 @@ def server_application(
         WebSocketRoute("/socket", socket),
     ]
     if STATIC.is_dir():
-        routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))  # type: ignore[arg-type]
+        routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
     return Starlette(routes=routes, lifespan=living)
 
 

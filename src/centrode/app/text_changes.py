@@ -77,7 +77,7 @@ class TextChanges:
         container = _entered(expected, place[:-1])
         del container[place[-1]]
         if place[:-1] and isinstance(container, list) and not container and len(place) == 2:
-            del expected[place[0]]
+            del expected[str(place[0])]
         self._become(self._without(place), expected)
 
     def add_table(self, place: Place, entries: Mapping[str, Any]) -> None:
@@ -112,7 +112,7 @@ class TextChanges:
             tables = tomllib.loads(text)
         except (tomllib.TOMLDecodeError, RecursionError):
             tables = {}
-        if tables != expected:
+        if tables != expected and tables != _without_empty(expected, tables):
             what = _("this part of the text is written in a way that cannot be changed here")
             raise InputError("", what, _("change it in the text"))
         self.text, self.tables = text, tables
@@ -302,6 +302,11 @@ class TextChanges:
             start, end = _key_span(text, one, depth - skipped)
             text = text[:start] + written + text[end:]
         return text
+
+
+def _without_empty(expected: Mapping[str, Any], tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables without those at the top that have become empty and have no heading of their own."""
+    return {key: value for key, value in expected.items() if value not in ({}, []) or key in tables}
 
 
 ROOMS = (

@@ -323,11 +323,11 @@ def _described(drawing: Drawing) -> Mechanism:
         tables["links"][names.links[body.id]] = {
             "points": [names.points[one] for one in body.joints if one in pins]
         }
-    for joint in drawing.joints.values():
-        if joint.slides:
-            tables["guides"].append(_guide(drawing, bodies, names, joint))
-        if joint.driven:
-            tables["drives"].append(_drive(drawing, bodies, names, joint))
+    for drawn in drawing.joints.values():
+        if drawn.slides:
+            tables["guides"].append(_guide(drawing, bodies, names, drawn))
+        if drawn.driven:
+            tables["drives"].append(_drive(drawing, bodies, names, drawn))
     _check_welds(drawing, bodies)
     _add_masses(drawing, bodies, names, tables)
     for force in drawing.forces:
