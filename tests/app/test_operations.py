@@ -123,7 +123,9 @@ def test_renaming_keeps_what_the_mechanism_does():
     )
     after = ct.motion(ct.parse_mechanism(patch.text), 13)
     assert after.position.sel(point="ram").values == pytest.approx(before.position.sel(point="H").values)
-    removed = [line for line in difflib.ndiff(text.splitlines(), patch.text.splitlines()) if line.startswith("- ")]
+    removed = [
+        line for line in difflib.ndiff(text.splitlines(), patch.text.splitlines()) if line.startswith("- ")
+    ]
     assert not any(line[2:].lstrip().startswith("#") for line in removed)
 
 
@@ -186,7 +188,9 @@ def test_a_length_in_points_moves_what_follows():
 
 
 def test_units_are_those_of_the_author():
-    text = FOUR_BAR.replace("A = [0, 0]", 'A = ["0 mm", "0 mm"]').replace("B = [1, 0.5]", 'B = ["1000 mm", "50 cm"]')
+    text = FOUR_BAR.replace("A = [0, 0]", 'A = ["0 mm", "0 mm"]').replace(
+        "B = [1, 0.5]", 'B = ["1000 mm", "50 cm"]'
+    )
     patch = patched(text, {"do": "move_point", "point": "B", "to": [0.9, 0.61]})
     assert 'B = ["900 mm", "61 cm"]' in patch.text
 

@@ -48,7 +48,9 @@ def test_a_section_that_is_added_and_removed_leaves_every_byte(name):
     text = example_text(name)
     changes = TextChanges(text)
     changes.add_table(("links", "added one"), {"points": ["A", "B"], "length": 0.25})
-    lines = [line[2:] for line in difflib.ndiff(text.splitlines(), changes.text.splitlines()) if line[0] != " "]
+    lines = [
+        line[2:] for line in difflib.ndiff(text.splitlines(), changes.text.splitlines()) if line[0] != " "
+    ]
     assert [line for line in lines if line.strip()] == [
         '[links."added one"]', 'points = ["A", "B"]', "length = 0.25",
     ]  # fmt: skip
@@ -95,7 +97,9 @@ def test_what_cannot_be_changed_is_refused_and_nothing_is_lost():
     assert changes.text == text
 
 
-@pytest.mark.parametrize("value", [1, -2.5, 1e300, True, 'a "quoted" text', [0, [1, 2]], {"a b": 1, "c": "ü"}])
+@pytest.mark.parametrize(
+    "value", [1, -2.5, 1e300, True, 'a "quoted" text', [0, [1, 2]], {"a b": 1, "c": "ü"}]
+)
 def test_values_are_spelled_as_toml(value):
     assert tomllib.loads(f"{spelled_key('some key')} = {spelled_value(value)}") == {"some key": value}
 

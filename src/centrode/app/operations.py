@@ -282,14 +282,14 @@ class Patch:
         if names[0] is None and names[1] is not None:
             names, ends = names[::-1], ends[::-1]
         free = self._free_names()
-        if names[0] is None:
-            names[0] = next(free)
-            self._write((("frame", "points", names[0]), self._pair(ends[0])))
-            self.named.append(names[0])
-        if names[1] is None:
-            names[1] = next(name for name in free if name != names[0])
-            self.named.append(names[1])
-        first, second = (str(name) for name in names)
+        first, second = names
+        if first is None:
+            first = next(free)
+            self._write((("frame", "points", first), self._pair(ends[0])))
+            self.named.append(first)
+        if second is None:
+            second = next(name for name in free if name != first)
+            self.named.append(second)
         (x, y), (u, v) = ends[0][:2], ends[1][:2]
         name = self._link_name(first, second)
         entries: dict[str, Any] = {} if two_points(name) else {"points": [first, second]}
