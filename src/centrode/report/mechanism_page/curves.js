@@ -18,6 +18,10 @@ const ticksOf = (least, most, step) => {
   return found;
 };
 
+// More lines than hues: further ones are dashed.
+const HUES = 6;
+const hueOf = (k) => `line-${k % HUES}${k >= HUES ? " dashed" : ""}`;
+
 class Curves {
   constructor(holder, stage, model) {
     this.holder = holder;
@@ -145,13 +149,14 @@ class Chart {
     const up = (value) => TALL - LOWER - ((TALL - LOWER - UPPER) * (value - least)) / (most - least);
     this.up = up;
     this.bands(svg);
-    const symbol = [parameter.symbol, parameter.label].filter(Boolean).join(", "), named = 9 * symbol.length + 22;
+    const symbol = [parameter.symbol, parameter.label].filter(Boolean).join(", "), named = 6.5 * symbol.length + 8;
     const vertical = stepsOf(low, high, wide / 70, parameter.label === "°");
     for (const tick of ticksOf(low, high, vertical)) {
       make("line", { class: "grid", x1: across(tick), x2: across(tick), y1: UPPER, y2: TALL - LOWER }, svg);
-      if (wide - RIGHT - across(tick) < named) continue;
+      const told = this.tick(tick, vertical);
+      if (wide - RIGHT - across(tick) < named + 3.5 * told.length) continue;
       const label = make("text", { x: across(tick), y: TALL - 6, "text-anchor": "middle" }, svg);
-      label.textContent = this.tick(tick, vertical);
+      label.textContent = told;
     }
     const horizontal = stepsOf(least, most, 5, this.course.unit === "°" && most - least > 20);
     for (const tick of ticksOf(least, most, horizontal)) {
@@ -172,18 +177,19 @@ class Chart {
         if (seen && model.strained(sample)) red += `M${text(this.x(sample))} ${text(up(value))}h0`;
         pen = seen;
       }
-      make("path", { class: `line line-${k % 6}`, d }, svg);
+      make("path", { class: `line ${hueOf(k)}`, d }, svg);
       if (red) make("path", { class: "strained", d: red }, svg);
     });
     this.cursor = make("line", { class: "cursor", y1: UPPER, y2: TALL - LOWER }, svg);
-    this.dots = this.lines.map((_line, k) => make("circle", { class: `spot line-${k % 6}`, r: 3.5 }, svg));
+    this.dots = this.lines.map((_line, k) => make("circle", { class: `spot ${hueOf(k)}`, r: 3.5 }, svg));
     const [from, to] = known.length ? span(known) : [NaN, NaN];
     svg.setAttribute("aria-label", fill(words.curve, {
       what: this.course.label, least: this.said(from), most: this.said(to),
     }));
     this.legend.replaceChildren(...this.lines.map((line, k) => {
       line.output = element("span", { className: "value" });
-      return element("span", { className: "entry" }, element("i", { className: `line-${k % 6}`, ariaHidden: "true" }), `${line.label} = `, line.output);
+      return element("span", { className: "entry" }, element("i", { className: hueOf(k), ariaHidden: "true" }),
+        element("span", {}, ...indexed(line.label), " = "), line.output);
     }));
   }
 
