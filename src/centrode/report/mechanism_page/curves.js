@@ -1,5 +1,5 @@
 // Curves over the motion, with a cursor that is the player's place: drawn at the size they are seen at.
-const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22;
+const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22, ON_PAPER = 340;
 
 // Round steps of an axis: 1, 2 or 5 times a power of ten, of degrees parts of a turn.
 const stepsOf = (least, most, count, turns) => {
@@ -37,6 +37,9 @@ class Curves {
     });
     model.watchers.push(() => this.renew());
     new ResizeObserver(() => this.widen()).observe(this.list);
+    // on paper two stand beside each other, whatever the screen was
+    window.addEventListener("beforeprint", () => this.print(true));
+    window.addEventListener("afterprint", () => this.print(false));
   }
 
   get keys() {
@@ -64,9 +67,14 @@ class Curves {
   renew() {
     for (const chart of this.charts) chart.renew();
   }
+  print(on) {
+    this.printing = on;
+    this.wide = on ? ON_PAPER : this.list.clientWidth;
+    this.renew();
+  }
   widen() {
     const wide = this.list.clientWidth;
-    if (!wide || Math.abs(wide - this.wide) < 8) return;
+    if (this.printing || !wide || Math.abs(wide - this.wide) < 8) return;
     this.wide = wide;
     this.renew();
   }

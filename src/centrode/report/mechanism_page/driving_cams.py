@@ -31,9 +31,9 @@ def cams_of(
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Cams of a linkage in its plane, as plain data, and sentences that say why others are not drawn.
 
-    Lengths are in m. A cam has its `outline` about its axis as it stands at time zero, and `turned`, what its axis is
-    turned at time zero and its speed. `place` says on what its axis hangs. The follower's `lines` and `roller` are drawn
-    in the axes of the link that the cam turns, about its pivot, or beside the guided point.
+    Lengths are in m. A cam has its `outline` about its axis as it stands untouched, and in `turned` the angle at time
+    zero and the speed. `axis` is the way to its axis from the pivot of the link that it turns, or from the place of the
+    guide. The follower's `lines` and `roller` are in the axes of that link about its pivot, or beside the guided point.
     """
     driving = [drive for drive in mechanism.drives if drive.cam is not None]
     if not driving:
@@ -43,10 +43,11 @@ def cams_of(
     except CentrodeError as error:
         return [], [_("The cam is not drawn: {reason}.").format(reason=error.what)]
     if len(found) < len(driving):
-        return [], [_("The cam is not drawn: it has no size, or its follower does not move against the frame.")]
+        return [], [
+            _("The cam is not drawn: it has no size, or its follower does not move against the frame.")
+        ]
     cams = [
-        _cam(mechanism, motion, drive, cam, points, links)
-        for drive, cam in zip(driving, found, strict=True)
+        _cam(mechanism, motion, drive, cam, points, links) for drive, cam in zip(driving, found, strict=True)
     ]
     return cams, []
 
