@@ -112,7 +112,10 @@ def with_shifts(pair: PairGeometry, first: float, second: float) -> PairGeometry
 
 
 def blocking_contour(
-    pair: PairGeometry, first: tuple[float, float] | None = None, second: tuple[float, float] | None = None, nodes: int = 61
+    pair: PairGeometry,
+    first: tuple[float, float] | None = None,
+    second: tuple[float, float] | None = None,
+    nodes: int = 61,
 ) -> BlockingContour:
     """The contour over a grid of shifts.
 
@@ -147,7 +150,11 @@ def _curve(pair: PairGeometry, name: str, across: Array, up: Array, margin: Arra
     """Where a margin vanishes along x_2 at each x_1; where it does not depend on x_2, along x_1 at each x_2."""
     if name == "undercut_1":
         least = pair.wheels[0].least_shift
-        return np.array([[least, up[0]], [least, up[-1]]]) if across[0] <= least <= across[-1] else np.empty((0, 2))
+        return (
+            np.array([[least, up[0]], [least, up[-1]]])
+            if across[0] <= least <= across[-1]
+            else np.empty((0, 2))
+        )
     branches: list[list[tuple[float, float]]] = []
     step = float(up[1] - up[0])
     for row, x in enumerate(across):
@@ -156,7 +163,9 @@ def _curve(pair: PairGeometry, name: str, across: Array, up: Array, margin: Arra
             branches.append([(math.nan, math.nan)])
         for branch in range(len(branches)):
             place = (float(x), roots[branch]) if branch < len(roots) else (math.nan, math.nan)
-            if abs(place[1] - branches[branch][-1][1]) > _LEAP * step:  # another branch, or another part of the curve
+            if (
+                abs(place[1] - branches[branch][-1][1]) > _LEAP * step
+            ):  # another branch, or another part of the curve
                 branches[branch].append((math.nan, math.nan))
             branches[branch].append(place)
     return np.array([place for branch in branches for place in branch]) if branches else np.empty((0, 2))

@@ -49,7 +49,9 @@ def pressure_angle_of(value: float) -> float:
     return angle
 
 
-def involute_curve(base_radius: float, rolls: Array, half_angle: float, sense: int = 1) -> tuple[Array, Array]:
+def involute_curve(
+    base_radius: float, rolls: Array, half_angle: float, sense: int = 1
+) -> tuple[Array, Array]:
     """Places and slopes (n, 2) of the right flank of a tooth whose middle lies on the y axis [m, m/rad].
 
     Parameters

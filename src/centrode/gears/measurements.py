@@ -67,15 +67,21 @@ def span_over_teeth(pair: PairGeometry, number: int) -> tuple[int, float]:
     if middle <= wheel.base:
         return 0, math.nan
     half = math.sqrt(middle * middle - wheel.base * wheel.base) / 2
-    wanted = half * 2 / (pair.base_pitch) + 0.5 - side * (
-        2 * wheel.shift * math.tan(alpha) + side * wheel.teeth * involute(angle)
-    ) / math.pi
+    wanted = (
+        half * 2 / (pair.base_pitch)
+        + 0.5
+        - side * (2 * wheel.shift * math.tan(alpha) + side * wheel.teeth * involute(angle)) / math.pi
+    )
     least, most = _flank_lengths(pair, number)
     for teeth in sorted(range(1, max(2, int(wheel.teeth))), key=lambda k: abs(k - wanted)):
         span = (
             pair.module
             * math.cos(alpha)
-            * (math.pi * (teeth - 0.5) + side * 2 * wheel.shift * math.tan(alpha) + wheel.teeth * involute(angle))
+            * (
+                math.pi * (teeth - 0.5)
+                + side * 2 * wheel.shift * math.tan(alpha)
+                + wheel.teeth * involute(angle)
+            )
         )
         # The line of the span lies in the base plane, inclined by the base helix angle: W cos(beta_b) in the section.
         touching = span * math.cos(base_helix) / 2

@@ -182,7 +182,9 @@ class PairGeometry:
         if self.kind == "rack":
             return first, math.nan
         if self.kind == "internal":
-            return first, 2 * self.centre_distance + self.tip_diameters[0] + 2 * self.rack.clearance * self.module
+            return first, 2 * self.centre_distance + self.tip_diameters[
+                0
+            ] + 2 * self.rack.clearance * self.module
         return first, module * other - 2 * (depth - other_shift) * self.module
 
     @cached_property
@@ -240,7 +242,10 @@ class PairGeometry:
         base = self.wheel_base(number)
         if not base <= diameter:
             return math.nan
-        slope, angle = 2 * self.shifts[number] * math.tan(self.rack.pressure_angle), self.transverse.pressure_angle
+        slope, angle = (
+            2 * self.shifts[number] * math.tan(self.rack.pressure_angle),
+            self.transverse.pressure_angle,
+        )
         sign = -1 if number == 1 and self.kind == "internal" else 1
         difference = involute(angle) - involute(math.acos(base / diameter))
         return diameter * ((math.pi / 2 + sign * slope) / self.teeth[number] + sign * difference)
@@ -280,7 +285,7 @@ class PairGeometry:
         internal = number == 1 and self.kind == "internal"
         begin, end = self.action_ends
         angle = self.transverse.pressure_angle
-        thickness = (math.pi / 2 + (-1 if internal else 1) * 2 * shift * math.tan(self.rack.pressure_angle))
+        thickness = math.pi / 2 + (-1 if internal else 1) * 2 * shift * math.tan(self.rack.pressure_angle)
         pitch_thickness = thickness * self.transverse.module
         if not math.isfinite(teeth):
             nothing = math.nan
@@ -300,7 +305,10 @@ class PairGeometry:
             # Where the straight flank of the rack ends: (h_a* - x) m_n below the pitch circle (GOST 16532).
             flank = math.atan(
                 math.tan(angle)
-                - 4 * (self.rack.addendum - shift) * self.module / (self.transverse.module * teeth * math.sin(2 * angle))
+                - 4
+                * (self.rack.addendum - shift)
+                * self.module
+                / (self.transverse.module * teeth * math.sin(2 * angle))
             )
         return GearWheel(
             teeth,

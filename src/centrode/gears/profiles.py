@@ -127,7 +127,18 @@ def _undercut(pair: PairGeometry, number: int, half: float) -> tuple[float, floa
 
     normals = np.linspace(math.pi / 2, pair.transverse.pressure_angle, 400)
     places = fillet_curve(*generation, normals)[0]
-    over = normals[np.hypot(*places.T) >= base]
+    radii = np.hypot(*places.T)
+    over = normals[radii >= base]
+    inside = normals[(radii < base) & (normals > over[0])] if len(over) else normals[:0]
+    if len(inside):  # the corner may lie close to the base circle, where the involute begins
+        start = brentq(
+            lambda normal: float(np.hypot(*fillet_curve(*generation, np.array([normal]))[0][0])) - base,
+            float(inside[-1]),
+            float(over[0]),
+            xtol=1e-15,
+            rtol=8.9e-16,
+        )
+        over = np.concatenate([[start], over])
     values = [beyond(float(normal)) for normal in over]
     # The first crossing on the way out from the root is the corner; beyond it the fillet lies where metal is gone.
     for before, after, left, right in zip(over, over[1:], values, values[1:], strict=False):
@@ -137,11 +148,15 @@ def _undercut(pair: PairGeometry, number: int, half: float) -> tuple[float, floa
     return pair.transverse.pressure_angle, 0.0
 
 
-def turned_pieces(profile: ToothProfile, angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> list[ProfilePiece]:
+def turned_pieces(
+    profile: ToothProfile, angle: float, centre: tuple[float, float] = (0.0, 0.0)
+) -> list[ProfilePiece]:
     """The whole tooth, both flanks, with its middle turned counter-clockwise by an angle [rad] about a centre [m]."""
     mirror = np.array([-1.0, 1.0])
     left = [
-        ProfilePiece(piece.kind, -piece.parameter[::-1], piece.places[::-1] * mirror, -piece.slopes[::-1] * mirror)
+        ProfilePiece(
+            piece.kind, -piece.parameter[::-1], piece.places[::-1] * mirror, -piece.slopes[::-1] * mirror
+        )
         for piece in reversed(profile.pieces)
     ]
     cosine, sine = math.cos(angle), math.sin(angle)

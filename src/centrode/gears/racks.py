@@ -85,7 +85,9 @@ def least_teeth(rack: ReferenceRack, shift: float = 0.0, helix_angle: float = 0.
     return 2 * (rack.addendum - shift) * math.cos(helix_angle) / math.sin(angle) ** 2
 
 
-def fillet_curve(rack: TransverseRack, pitch_radius: float, shift: float, normals: Array) -> tuple[Array, Array]:
+def fillet_curve(
+    rack: TransverseRack, pitch_radius: float, shift: float, normals: Array
+) -> tuple[Array, Array]:
     """Places and slopes (n, 2) of the fillet that the rounded edge of the rack envelopes [m, m/rad].
 
     The tooth's middle lies on the y axis; the fillet is that on its right. By the law of gearing the normal where edge

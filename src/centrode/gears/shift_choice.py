@@ -21,7 +21,6 @@ from centrode.gears.involutes import involute
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.locale import _, mark
 
-PURPOSES = ("no undercut", "equal sliding", "least sliding", "strength")
 _NO_SHIFTS = mark("no shifts of these wheels keep contact ratio, tips and flanks within their bounds")
 GRID = 41
 """Nodes along each shift, or along their sum, from which a search begins."""
@@ -38,18 +37,24 @@ def shift_sum_at(pair: PairGeometry, centre_distance: float) -> float:
     if not 0 < cosine <= 1:
         least = pair.pitch_distance * math.cos(pair.transverse.pressure_angle)
         what = _("at this centre distance the flanks do not touch: it has to be greater than {least:.9g} m")
-        raise InputError("centre_distance", what.format(least=least), _("without shift it is {a:.9g} m").format(a=pair.pitch_distance))
+        raise InputError(
+            "centre_distance",
+            what.format(least=least),
+            _("without shift it is {a:.9g} m").format(a=pair.pitch_distance),
+        )
     difference = involute(math.acos(cosine)) - involute(pair.transverse.pressure_angle)
     return difference * pair.teeth_sum / (2 * math.tan(pair.rack.pressure_angle))
 
 
-def chosen_shifts(pair: PairGeometry, purpose: str, centre_distance: float | None = None) -> tuple[float, float]:
+def chosen_shifts(
+    pair: PairGeometry, purpose: str, centre_distance: float | None = None
+) -> tuple[float, float]:
     """Both shifts for a purpose.
 
     Parameters
     ----------
     pair : whose shifts are chosen; those it has are ignored
-    purpose : one of `PURPOSES`
+    purpose : one of `model.gear_pairs.PURPOSES`
         "no undercut": the least shift of the pinion that avoids it (zero where none is needed), taken back on the
         wheel where that allows it, so that the centre distance stays. "equal sliding": the greatest specific sliding is
         equal on both wheels, on the line of the centre distance, or of the sum that "no undercut" has. "least sliding":
@@ -96,7 +101,9 @@ def _without_undercut(pair: PairGeometry, total: float | None) -> tuple[float, f
         return first, second
     shifts = parted(pair, first, total)
     if shifts[1] < other:
-        what = _("at this centre distance one of the wheels is undercut: the sum of shifts is {total:.6g}, {least:.6g} is needed")
+        what = _(
+            "at this centre distance one of the wheels is undercut: the sum of shifts is {total:.6g}, {least:.6g} is needed"
+        )
         raise InputError("centre_distance", what.format(total=total, least=first + other), _("enlarge it"))
     return shifts
 
@@ -143,19 +150,33 @@ def _flatness(pair: PairGeometry) -> float:
 def _bounds(pair: PairGeometry) -> list[float]:
     """Margins that a chosen pair keeps: at least zero."""
     margins = margins_of(pair)
-    names = ("undercut_1", "undercut_2", "interference_1", "interference_2", "tip_0.25_1", "tip_0.25_2", "contact_ratio_1.2")
+    names = (
+        "undercut_1",
+        "undercut_2",
+        "interference_1",
+        "interference_2",
+        "tip_0.25_1",
+        "tip_0.25_2",
+        "contact_ratio_1.2",
+    )
     return [margins[name] if math.isfinite(margins[name]) else -1.0 for name in names]
 
 
-def _best(pair: PairGeometry, goal: Callable[[PairGeometry], float], total: float | None) -> tuple[float, float]:
+def _best(
+    pair: PairGeometry, goal: Callable[[PairGeometry], float], total: float | None
+) -> tuple[float, float]:
     """The best shifts within the bounds: the best node of a grid, polished."""
 
     def shifts_at(free: np.ndarray[tuple[int], np.dtype[np.float64]]) -> tuple[float, float]:
         return parted(pair, float(free[0]), total) if total is not None else (float(free[0]), float(free[1]))
 
     line = np.linspace(LEAST_SHIFT, MOST_SHIFT, GRID)
-    nodes = [np.array([x]) for x in line] if total is not None else [np.array([x, y]) for x in line for y in line]
-    kept = [(goal(at), node) for node in nodes if min(_bounds(at := with_shifts(pair, *shifts_at(node)))) >= 0]
+    nodes = (
+        [np.array([x]) for x in line] if total is not None else [np.array([x, y]) for x in line for y in line]
+    )
+    kept = [
+        (goal(at), node) for node in nodes if min(_bounds(at := with_shifts(pair, *shifts_at(node)))) >= 0
+    ]
     if not kept:
         raise MotionError("shifts", _(_NO_SHIFTS))
     value, start = min(kept, key=lambda one: one[0])
@@ -164,7 +185,9 @@ def _best(pair: PairGeometry, goal: Callable[[PairGeometry], float], total: floa
         lambda free: goal(with_shifts(pair, *shifts_at(free))),
         start,
         method="SLSQP",
-        bounds=[(max(LEAST_SHIFT, entry - 1.5 * step), min(MOST_SHIFT, entry + 1.5 * step)) for entry in start],
+        bounds=[
+            (max(LEAST_SHIFT, entry - 1.5 * step), min(MOST_SHIFT, entry + 1.5 * step)) for entry in start
+        ],
         constraints={"type": "ineq", "fun": lambda free: _bounds(with_shifts(pair, *shifts_at(free)))},
         options={"maxiter": 200, "ftol": 1e-13},
     )
