@@ -8,7 +8,7 @@ mp.dps = 50
 
 
 def rack_corner(alpha: mpf, addendum: mpf, clearance: mpf, fillet: mpf, shift: mpf) -> tuple[mpf, mpf]:
-    """Centre of the rounded edge of the rack's tooth (module 1): from the middle of the tooth, and below the pitch line."""
+    """Centre of the rounded edge of the rack's tooth (module 1): from the tooth's middle, below the pitch line."""
     tip = addendum + clearance
     across = mp.pi / 4 - tip * mp.tan(alpha) - fillet * mp.tan((mp.pi / 2 - alpha) / 2)
     return across, tip - shift - fillet
@@ -17,8 +17,8 @@ def rack_corner(alpha: mpf, addendum: mpf, clearance: mpf, fillet: mpf, shift: m
 def gap_wall(place: tuple[mpf, mpf], normal: tuple[mpf, mpf], teeth: int) -> tuple[mpf, mpf]:
     """Where a place of the rack's tooth touches the wheel of module 1, in the axes of the gap's middle.
 
-    The rack lies above the wheel's centre, its pitch line at the height z/2; `place` is given for the rack in its middle
-    position. It has rolled as far as brings the normal through the pitch point.
+    The rack lies above the wheel's centre, its pitch line at the height z/2; `place` is given for its middle position.
+    It has rolled as far as brings the normal through the pitch point.
     """
     radius = mpf(teeth) / 2
     x, y = place

@@ -32,7 +32,7 @@ def test_printed_spur_pair() -> None:
     assert pair.centre_distance == pytest.approx(56.4999, abs=5e-5)
     assert pair.contact_ratio == pytest.approx(1.2021, abs=5e-5)
     printed = (
-        ("rolling", 37.6666, 75.3332), ("tip", 44.8397, 79.3997), ("root", 32.100, 66.660), ("base", 33.8289, 67.6579),
+        ("working_pitch", 37.6666, 75.3332), ("tip", 44.8397, 79.3997), ("root", 32.100, 66.660), ("base", 33.8289, 67.6579),
         ("addendum", 4.420, 3.700), ("dedendum", 1.950, 2.670),
     )  # fmt: skip
     for name, *values in printed:
@@ -50,7 +50,7 @@ def test_printed_helical_pair() -> None:
     assert pair.contact_ratio == pytest.approx(1.294, abs=5e-4)
     assert pair.overlap_ratio == pytest.approx(1.061, abs=5e-4)
     printed = (
-        ("pitch", 41.569, 207.846), ("base", 38.322, 191.611), ("rolling", 41.667, 208.333), ("addendum", 3.292, 2.998),
+        ("pitch", 41.569, 207.846), ("base", 38.322, 191.611), ("working_pitch", 41.667, 208.333), ("addendum", 3.292, 2.998),
         ("dedendum", 3.456, 3.750), ("tip", 48.154, 213.842), ("root", 34.658, 200.346),
     )  # fmt: skip
     for name, *values in printed:
@@ -109,8 +109,8 @@ PAIRS = _pairs()
 def _flank(pair: PairGeometry, number: int, roll: float, turned: float) -> tuple[np.ndarray, np.ndarray]:
     """Place and slope of the flanks that touch while the pinion turns clockwise, each wheel turned by an angle.
 
-    The pinion's centre is the origin, the wheel's lies above it (below it where it is internal); at zero the pinion's tooth and
-    a gap of the wheel lie on the line of centres.
+    The pinion's centre is the origin, the wheel's lies above it (below it where it is internal). At zero a tooth of the
+    pinion and a gap of the wheel lie on the line of centres.
     """
     wheel = pair.wheels[number]
     half = half_base_angle(pair, number)
@@ -119,8 +119,8 @@ def _flank(pair: PairGeometry, number: int, roll: float, turned: float) -> tuple
     if number == 0:
         angle, centre = turned, np.zeros(2)
     else:
-        # The tooth on the right of the gap, and its flank on the left there: below the wheel's centre that is the one which is
-        # on the right where the tooth points up.
+        # The tooth on the right of the gap, and its flank on the left there: below its centre that is the one
+        # on the right of a tooth that points up.
         if pair.sign < 0:
             place, slope = place * [-1, 1], slope * [-1, 1]
         step = math.pi / wheel.teeth
@@ -153,7 +153,7 @@ def test_true_flanks_keep_the_ratio_over_the_line_of_action(pair: PairGeometry) 
     base = pair.wheels[0].base / 2
     # The pinion turns by as much as the contact moves along the line of action over the base radius.
     rolls = np.linspace(begin + 0.02, end - 0.02, 9) / base
-    # The flank passes the pitch point when half of the tooth on the rolling circle has turned past the line of centres.
+    # The flank passes the pitch point when half of the tooth on the working pitch circle has turned past the line of centres.
     pitch_roll, half = math.tan(pair.working_angle), half_base_angle(pair, 0) - involute(pair.working_angle)
     start = _contact(pair, 0.0)
     for roll in rolls:
@@ -193,7 +193,7 @@ def test_specific_sliding_is_that_of_velocities(pair: PairGeometry) -> None:
     omega = np.array([-1.0, pair.sign / pair.ratio])  # clockwise pinion
     for radius in np.linspace(begin + 0.01, end - 0.01, 5):
         angle = pair.working_angle
-        pitch = np.array([0.0, pair.wheels[0].rolling / 2])
+        pitch = np.array([0.0, pair.wheels[0].working_pitch / 2])
         # The pinion turns clockwise: the contact moves to the right and up along the line of action.
         place = pitch + (radius - pair.pitch_curvature_radius) * np.array([math.cos(angle), math.sin(angle)])
         tangent = np.array([-math.sin(angle), math.cos(angle)])

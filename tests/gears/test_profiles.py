@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from rack_envelope import fillet_place, flank_place
 from scipy.optimize import brentq, minimize_scalar
 
 from centrode.gears.involutes import involute_curve
@@ -15,6 +15,7 @@ from centrode.gears.measurements import measurements
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.gears.profiles import half_base_angle, tooth_profile, turned_pieces, wheel_outline
 from centrode.gears.racks import fillet_curve
+from rack_envelope import fillet_place, flank_place
 
 SHAPES = [(24, 0.36), (12, 0.6), (8, 0.0), (60, -0.4), (17, 0.0)]
 
@@ -57,7 +58,7 @@ def test_pieces_join_and_slopes_are_derivatives(teeth: int, shift: float) -> Non
     for before, after in zip(profile.pieces, profile.pieces[1:], strict=False):
         assert np.hypot(*(before.places[-1] - after.places[0])) < 1e-12
     whole = turned_pieces(profile, 0.3, (1.0, 2.0))
-    for before, after in zip(whole, whole[1:], strict=False):
+    for before, after in itertools.pairwise(whole):
         assert np.hypot(*(before.places[-1] - after.places[0])) < 1e-12
     for piece in profile.pieces:
         # Hermite's cubic between two places hits the middle of a finer curve as its fourth derivative allows.

@@ -1,8 +1,8 @@
 """The blocking contour of a pair: which shifts (x_1, x_2) are possible at all, and which are good.
 
-On each side of the plane of both shifts something stops: a wheel is undercut, a tip is pointed, contact is lost before the
-next tooth takes over, a tip runs into a fillet. What is left is bounded by the blocking contour (Bolotovsky et al.,
-"Handbook of geometrical calculation of involute gearing", 1986).
+In the plane of both shifts each of these bounds what is possible: a wheel is undercut, a tip is pointed, contact ends
+before the next tooth takes over, a tip runs into a fillet. What is left lies inside the blocking contour (Bolotovsky et
+al., "Handbook of geometrical calculation of involute gearing", 1986).
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -70,8 +71,8 @@ class BlockingContour:
 def margins_of(pair: PairGeometry) -> dict[str, float]:
     """How far a pair is from each curve of the contour: positive where that is in order, NaN where it cannot mesh.
 
-    Undercut and fillet margins are shifts and tangents of pressure angles; thicknesses are in modules; contact ratios over
-    their bound.
+    Margins of undercut are shifts, those of fillets tangents of pressure angles, those of tips modules, those of the
+    contact ratio its excess over the bound.
     """
     if math.isnan(pair.working_angle):
         return dict.fromkeys(CURVES, math.nan)
@@ -158,7 +159,7 @@ def _curve(pair: PairGeometry, name: str, across: Array, up: Array, margin: Arra
     branches: list[list[tuple[float, float]]] = []
     step = float(up[1] - up[0])
     for row, x in enumerate(across):
-        roots = _roots(lambda y, x=x: margins_of(with_shifts(pair, float(x), y))[name], up, margin[row])
+        roots = _roots(partial(_margin, pair, name, float(x)), up, margin[row])
         while len(branches) < len(roots):
             branches.append([(math.nan, math.nan)])
         for branch in range(len(branches)):
@@ -169,6 +170,10 @@ def _curve(pair: PairGeometry, name: str, across: Array, up: Array, margin: Arra
                 branches[branch].append((math.nan, math.nan))
             branches[branch].append(place)
     return np.array([place for branch in branches for place in branch]) if branches else np.empty((0, 2))
+
+
+def _margin(pair: PairGeometry, name: str, first: float, second: float) -> float:
+    return margins_of(with_shifts(pair, first, second))[name]
 
 
 def _roots(margin: Callable[[float], float], up: Array, values: Array) -> list[float]:

@@ -25,8 +25,9 @@ def involute(pressure_angle: float) -> float:
         series = 1 / 3 + square * (
             2 / 15 + square * (17 / 315 + square * (62 / 2835 + square * (1382 / 155925)))
         )
-        return pressure_angle * square * series
-    return math.tan(pressure_angle) - pressure_angle
+        return float(pressure_angle * square * series)
+    tangent: float = math.tan(pressure_angle)
+    return tangent - pressure_angle
 
 
 def pressure_angle_of(value: float) -> float:

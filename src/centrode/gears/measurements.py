@@ -50,7 +50,7 @@ def measurements(pair: PairGeometry, number: int, pin: float = 0.0) -> WheelMeas
 
 
 def span_over_teeth(pair: PairGeometry, number: int) -> tuple[int, float]:
-    """k and the base tangent length W = m cos(alpha) (pi (k - 1/2) + 2 x tan(alpha) + z inv(alpha_t)) of a wheel.
+    """K and the base tangent length W = m cos(alpha) (pi (k - 1/2) + 2 x tan(alpha) + z inv(alpha_t)) of a wheel.
 
     The jaws are to touch near the middle of the flanks, on the circle of d + 2 x m; k is the nearest whole number whose
     jaws touch the involute between the fillet and the tip. (0, NaN) where there is none, and of racks and internal
@@ -91,7 +91,7 @@ def span_over_teeth(pair: PairGeometry, number: int) -> tuple[int, float]:
 
 
 def shift_outwards(pair: PairGeometry, number: int) -> float:
-    """x m [m]: how far the middle of the teeth lies outside the pitch circle."""
+    """X m [m]: how far the middle of the teeth lies outside the pitch circle."""
     return pair.shifts[number] * pair.module
 
 
@@ -107,8 +107,8 @@ def _flank_lengths(pair: PairGeometry, number: int) -> tuple[float, float]:
 def dimension_over_pins(pair: PairGeometry, number: int, pin: float) -> float:
     """M over (of an internal wheel between) two pins of a diameter [m]; NaN where they do not touch the involutes.
 
-    inv(alpha_D) = inv(alpha_t) + D/(z m cos(alpha)) - (pi/2 - 2 x tan(alpha))/z on an external wheel, with the signs of D
-    and of the half gap turned on an internal one; the centres of the pins lie at r_b/cos(alpha_D).
+    inv(alpha_D) = inv(alpha_t) + D/(z m cos(alpha)) - (pi/2 - 2 x tan(alpha))/z on an external wheel. On an internal
+    one the signs of D and of the half gap are the opposite; the centres of the pins lie at r_b/cos(alpha_D).
     """
     wheel = pair.wheels[number]
     if not math.isfinite(wheel.teeth):

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from centrode.gears.involutes import Array, involute, pressure_angle_of
-from centrode.gears.racks import ReferenceRack, TransverseRack, least_shift, transverse_rack
+from centrode.gears.racks import STANDARD_RACK, ReferenceRack, TransverseRack, least_shift, transverse_rack
 
 PairKind = Literal["external", "internal", "rack"]
 
@@ -29,7 +29,7 @@ class GearWheel:
     teeth : z; infinite of a rack
     shift : x
     internal : whether its teeth point inwards
-    pitch, base, rolling, tip, root : diameters d, d_b, d_w, d_a, d_f [m]; NaN of a rack
+    pitch, base, working_pitch, tip, root : diameters d, d_b, d_w, d_a, d_f [m]; NaN of a rack
     addendum, dedendum : heights over and below the pitch circle (of a rack: below its pitch line shifted by x) [m]
     pitch_thickness, tip_thickness : of the tooth, along the circle in the transverse section [m]
     least_shift : without undercut by the rack
@@ -43,7 +43,7 @@ class GearWheel:
     internal: bool
     pitch: float
     base: float
-    rolling: float
+    working_pitch: float
     tip: float
     root: float
     addendum: float
@@ -87,7 +87,7 @@ class PairGeometry:
     teeth: tuple[float, float]
     shifts: tuple[float, float]
     helix_angle: float = 0.0
-    rack: ReferenceRack = ReferenceRack()
+    rack: ReferenceRack = STANDARD_RACK
     width: float = 0.0
 
     @cached_property
@@ -137,7 +137,7 @@ class PairGeometry:
 
     @cached_property
     def distance_coefficient(self) -> float:
-        """y = (a_w - a)/m; of a rack the shift of its pitch line, x_1 + x_2."""
+        """Y = (a_w - a)/m; of a rack the shift of its pitch line, x_1 + x_2."""
         if self.kind == "rack":
             return self.shift_sum
         return (self.centre_distance - self.pitch_distance) / self.module
@@ -149,7 +149,7 @@ class PairGeometry:
 
     @cached_property
     def ratio(self) -> float:
-        """u = z_2/z_1."""
+        """U = z_2/z_1."""
         return self.teeth[1] / self.teeth[0]
 
     @cached_property
@@ -270,7 +270,7 @@ class PairGeometry:
             return 1 - share, 1 - 1 / share
 
     def pressure_coefficient(self, radius: Array | float) -> Array:
-        """m (1/rho_1 + 1/rho_2): how much the curvature of the flanks raises the contact stress (its square)."""
+        """M (1/rho_1 + 1/rho_2): how much the curvature of the flanks raises the contact stress (its square)."""
         radius = np.asarray(radius, dtype=np.float64)
         with np.errstate(divide="ignore"):
             return np.asarray(self.module * (1 / radius + self.sign / self.other_curvature_radius(radius)))

@@ -54,9 +54,9 @@ class ToothProfile:
 def tooth_profile(pair: PairGeometry, number: int) -> ToothProfile:
     """The profile of a wheel, 0 or 1, that has a number of teeth.
 
-    An external wheel has the fillet of the generating rack, and the corner where it crosses the involute if it is undercut;
-    the flank of an internal wheel goes on to its root circle, as no rack generates it. Places are on the curves to
-    rounding.
+    An external wheel has the fillet of the generating rack; if it is undercut, also the corner where that crosses the
+    involute. The flank of an internal wheel goes on to its root circle, as no rack generates it. Places are on the
+    curves to rounding.
     """
     wheel = pair.wheels[number]
     teeth, base = int(wheel.teeth), wheel.base / 2
@@ -168,7 +168,7 @@ def turned_pieces(
 
 
 def wheel_outline(profile: ToothProfile) -> Array:
-    """Places (n, 2) of the closed outline of a wheel whose first tooth lies on the y axis; the first one is repeated."""
+    """Places (n, 2) of the closed outline of a wheel with its first tooth on the y axis, the first place repeated."""
     tooth = np.concatenate([piece.places for piece in turned_pieces(profile, 0.0)])
     outline = []
     for number in range(profile.teeth):

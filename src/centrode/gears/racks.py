@@ -1,4 +1,4 @@
-"""The reference rack of involute teeth, and what it leaves on a wheel: undercut, the end of the involute, the fillet."""
+"""The reference rack of involute teeth, and what it leaves on a wheel: undercut, and the fillet."""
 
 from __future__ import annotations
 
@@ -31,6 +31,10 @@ class ReferenceRack:
     def greatest_fillet(self) -> float:
         """The radius with which the clearance is just filled: c*/(1 - sin alpha)."""
         return self.clearance / (1 - math.sin(self.pressure_angle))
+
+
+STANDARD_RACK = ReferenceRack()
+"""That of GOST 13755 and ISO 53, profile A."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ class ToothForces:
 
     Attributes
     ----------
-    tangential : F_t, along the rolling circles
+    tangential : F_t, along the working pitch circles
     radial : F_r, between the axes
     axial : F_x, along the axes; zero of spur teeth
     normal : F_n, along the normal of the flanks
@@ -126,10 +126,10 @@ class GearPairResults:
         moment, pair = self.gear_pair.moment, self.geometry
         if moment is None:
             return None
-        tangential = 2 * moment / pair.wheels[0].rolling
+        tangential = 2 * moment / pair.wheels[0].working_pitch
         angle = pair.working_angle
-        # Helix angle on the rolling circle: tan(beta_w) = tan(beta) d_w/d.
-        helix = math.tan(pair.helix_angle) * pair.wheels[0].rolling / pair.wheels[0].pitch
+        # Helix angle on the working pitch circle: tan(beta_w) = tan(beta) d_w/d.
+        helix = math.tan(pair.helix_angle) * pair.wheels[0].working_pitch / pair.wheels[0].pitch
         axial = tangential * helix
         radial = tangential * math.tan(angle)
         return ToothForces(tangential, radial, axial, math.hypot(tangential, radial, axial))
@@ -155,8 +155,8 @@ def gear_pair(source: GearPairSource) -> GearPairResults:
     Returns
     -------
     GearPairResults
-        Its `geometry` has the wheels with their diameters [m]; profiles, blocking contour, sliding and forces are computed
-        when they are looked at.
+        Its `geometry` has the wheels with their diameters [m]. Profiles, blocking contour, sliding and forces are
+        computed when they are first read.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Shifts that somebody wishes by their purpose: no undercut, equal sliding, least sliding, strength, a centre distance."""
+"""Shifts by their purpose: no undercut, equal sliding, least sliding, strength, a centre distance."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ from scipy.optimize import brentq, minimize
 from centrode.errors import InputError, MotionError
 from centrode.gears.blocking_contour import (
     BLOCKING,
-    LEAST_CONTACT_RATIO,
-    LEAST_TIP_THICKNESS,
     margins_of,
     sliding_difference,
     with_shifts,
@@ -102,7 +100,7 @@ def _without_undercut(pair: PairGeometry, total: float | None) -> tuple[float, f
     shifts = parted(pair, first, total)
     if shifts[1] < other:
         what = _(
-            "at this centre distance one of the wheels is undercut: the sum of shifts is {total:.6g}, {least:.6g} is needed"
+            "at this centre distance a wheel is undercut: the sum of shifts is {total:.6g}, {least:.6g} is needed"
         )
         raise InputError("centre_distance", what.format(total=total, least=first + other), _("enlarge it"))
     return shifts

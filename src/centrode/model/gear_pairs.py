@@ -56,9 +56,9 @@ def read_teeth(value: object) -> Teeth:
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
     first, second = value
-    if second != RACK:
-        return _tooth_number(first), _tooth_number(second)
-    return _tooth_number(first), RACK
+    if second == RACK:
+        return _tooth_number(first), "rack"
+    return _tooth_number(first), _tooth_number(second)
 
 
 def _tooth_number(value: object) -> int:
@@ -221,7 +221,7 @@ class GearPair(DescriptionPart):
                 raise Problem(_("a rack has no teeth inside"), _("remove internal"), ("internal",))
             if self.centre_distance is not None:
                 raise Problem(_("a rack has no centre"), _("give shifts"), ("centre_distance",))
-        elif self.internal and second - first < 2:
+        elif self.internal and isinstance(second, int) and second - first < 2:
             what = _("the internal wheel has to have at least two teeth more than the pinion")
             raise Problem(what, _("enlarge the second number"), ("teeth",))
         if self.centre_distance is not None and isinstance(self.shifts, tuple):

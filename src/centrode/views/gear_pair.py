@@ -64,10 +64,10 @@ CURVES = {
     "pointed_2": Sentence("pointed teeth of the wheel"),
     "contact_ratio_1": Sentence("contact ratio of one"),
     "contact_ratio_1.2": Sentence("contact ratio {ratio}", ratio=Number(LEAST_CONTACT_RATIO)),
-    "tip_0.25_1": Sentence("tips of the pinion {share} modules thick", share=Number(LEAST_TIP_THICKNESS)),
-    "tip_0.25_2": Sentence("tips of the wheel {share} modules thick", share=Number(LEAST_TIP_THICKNESS)),
-    "tip_0.4_1": Sentence("tips of the pinion {share} modules thick", share=Number(0.4)),
-    "tip_0.4_2": Sentence("tips of the wheel {share} modules thick", share=Number(0.4)),
+    "tip_0.25_1": Sentence("tips of the pinion: {share} modules", share=Number(LEAST_TIP_THICKNESS)),
+    "tip_0.25_2": Sentence("tips of the wheel: {share} modules", share=Number(LEAST_TIP_THICKNESS)),
+    "tip_0.4_1": Sentence("tips of the pinion: {share} modules", share=Number(0.4)),
+    "tip_0.4_2": Sentence("tips of the wheel: {share} modules", share=Number(0.4)),
     "equal_sliding": Sentence("equal specific sliding"),
 }
 TEETH_SHOWN = 3
@@ -210,7 +210,7 @@ def wheels_table(results: GearPairResults) -> Table:
     of_wheels("least shift without undercut", Sentence("least shift without undercut"), "1", "least_shift")
     of_wheels("pitch diameter", Sentence("pitch diameter"), "m", "pitch")
     of_wheels("base diameter", Sentence("base diameter"), "m", "base")
-    of_wheels("rolling diameter", Sentence("diameter of the rolling circle"), "m", "rolling")
+    of_wheels("working pitch diameter", Sentence("working pitch diameter"), "m", "working_pitch")
     of_wheels("tip diameter", Sentence("tip diameter"), "m", "tip")
     of_wheels("root diameter", Sentence("root diameter"), "m", "root")
     of_wheels("addendum", Sentence("addendum"), "m", "addendum")
@@ -290,10 +290,10 @@ def _failure(results: GearPairResults) -> Failure | None:
         return Failure(what, Sentence("reduce the sum of the shifts, or raise the numbers of teeth"))
     for wheel, name in zip(pair.wheels, names, strict=True):
         if not wheel.tip_thickness > 0:
-            what = Sentence("the teeth of the {wheel} are pointed below their tip", wheel=name)
+            what = Sentence("{wheel}: the teeth are pointed below their tip", wheel=name)
             return Failure(what, Sentence("reduce its shift"))
         if wheel.interferes:
-            what = Sentence("the other wheel's tips run into the fillets of the {wheel}", wheel=name)
+            what = Sentence("{wheel}: the tips of the other one run into its fillets", wheel=name)
             return Failure(what, advice)
     return None
 
@@ -304,21 +304,19 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
     for wheel, name in zip(pair.wheels, (PINION, _second(pair)), strict=True):
         if wheel.undercut:
             yield Sentence(
-                "The {wheel} is undercut: without undercut its shift is at least {least}.",
+                "{wheel}: undercut; without undercut the shift is at least {least}",
                 wheel=name,
                 least=Number(wheel.least_shift, digits=".5g"),
             )
         if 0 < wheel.tip_thickness < LEAST_TIP_THICKNESS * pair.module:
             yield Sentence(
-                "The tips of the {wheel} are {share} modules thick; at least {least} are usual.",
+                "{wheel}: the tips are {share} modules thick; at least {least} is usual",
                 wheel=name,
                 share=Number(wheel.tip_thickness / pair.module, digits=".3g"),
                 least=Number(LEAST_TIP_THICKNESS),
             )
     if 1 <= pair.contact_ratio + pair.overlap_ratio < LEAST_CONTACT_RATIO:
-        yield Sentence(
-            "The contact ratio is below {least}, which is usual.", least=Number(LEAST_CONTACT_RATIO)
-        )
+        yield Sentence("the contact ratio is below the usual {least}", least=Number(LEAST_CONTACT_RATIO))
 
 
 # Pictures
@@ -344,7 +342,7 @@ def _mesh(results: GearPairResults) -> OutlineDrawing:
     pair = results.geometry
     pieces: list[CamOutline] = []
     centres = [(0.0, 0.0)]
-    radius = pair.wheels[0].rolling / 2
+    radius = pair.wheels[0].working_pitch / 2
     for number, profile in enumerate(results.profiles):
         step = 2 * math.pi / profile.teeth
         centre, half, turn = (0.0, 0.0), 0.0, 0.0
@@ -364,10 +362,10 @@ def _mesh(results: GearPairResults) -> OutlineDrawing:
         shapes.append(DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (_rack_line(pair),)))
     else:
         circles = [
-            _arc(centre, wheel.rolling / 2, up)
+            _arc(centre, wheel.working_pitch / 2, up)
             for centre, wheel, up in zip(centres, pair.wheels, (1, -pair.sign), strict=True)
         ]
-        shapes.append(DrawnLines(LineUse.AXIS, Sentence("rolling circles"), tuple(circles)))
+        shapes.append(DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles)))
     begin, end = pair.action_ends
     middle, angle = pair.pitch_curvature_radius, pair.working_angle
     # The contact moves with the driven flank: along the inner tangent of both base circles through the pitch point.
@@ -505,13 +503,13 @@ def _formulas(results: GearPairResults) -> Iterator[Block]:
     if pair.kind == "rack":
         yield Paragraph(Sentence("A rack meshes at the pressure angle of its flanks, whatever the shift."))
         return
-    sign = "+" if pair.sign > 0 else "-"
+    sign, other = ("+", "-") if pair.sign > 0 else ("-", "+")
     total = "x_1 + x_2" if pair.sign > 0 else "x_2 - x_1"
     teeth = "z_1 + z_2" if pair.sign > 0 else "z_2 - z_1"
     yield Paragraph(
         Sentence(
-            "The sum of the shifts gives the working pressure angle, this the centre distance, and what the tips are lowered "
-            "by."
+            "The sum of the shifts gives the working pressure angle. That gives the centre distance, and the amount by "
+            "which the tips are lowered."
         )
     )
     yield Formula(
@@ -533,8 +531,8 @@ def _formulas(results: GearPairResults) -> Iterator[Block]:
             (
                 Expression("epsilon_alpha"),
                 Expression(
-                    f"frac(sqrt(r_(a 1)^2 - r_(b 1)^2) {sign} sqrt(r_(a 2)^2 - r_(b 2)^2) {'-' if sign == '+' else '+'} "
-                    "a_w sin alpha_w, pi m_t cos alpha_t)"
+                    f"frac(sqrt(r_(a 1)^2 - r_(b 1)^2) {sign} sqrt(r_(a 2)^2 - r_(b 2)^2) {other} a_w sin alpha_w, "
+                    "pi m_t cos alpha_t)"
                 ),
                 Number(pair.contact_ratio),
             ),

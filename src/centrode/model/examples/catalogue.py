@@ -95,7 +95,11 @@ def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
     path = _file(file_or_example)
     if path is None:
-        return example(str(file_or_example))
+        found = example(str(file_or_example))
+        if isinstance(found, GearPair):
+            repair = _("compute it with: centrode gears; in Python with gear_pair")
+            raise InputError(str(file_or_example), _("this describes a pair of gears, not a linkage"), repair)
+        return found
     text = read_file(path)
     reads = parse_cam if is_cam(toml_tables(text, path.name)) else parse_mechanism
     return reads(text, path.name, path.parent)
