@@ -32,8 +32,8 @@ def test_printed_spur_pair() -> None:
     assert pair.centre_distance == pytest.approx(56.4999, abs=5e-5)
     assert pair.contact_ratio == pytest.approx(1.2021, abs=5e-5)
     printed = (
-        ("working_pitch", 37.6666, 75.3332), ("tip", 44.8397, 79.3997), ("root", 32.100, 66.660), ("base", 33.8289, 67.6579),
-        ("addendum", 4.420, 3.700), ("dedendum", 1.950, 2.670),
+        ("working_pitch", 37.6666, 75.3332), ("tip", 44.8397, 79.3997), ("root", 32.100, 66.660),
+        ("base", 33.8289, 67.6579), ("addendum", 4.420, 3.700), ("dedendum", 1.950, 2.670),
     )  # fmt: skip
     for name, *values in printed:
         for wheel, value in zip(pair.wheels, values, strict=True):
@@ -50,8 +50,8 @@ def test_printed_helical_pair() -> None:
     assert pair.contact_ratio == pytest.approx(1.294, abs=5e-4)
     assert pair.overlap_ratio == pytest.approx(1.061, abs=5e-4)
     printed = (
-        ("pitch", 41.569, 207.846), ("base", 38.322, 191.611), ("working_pitch", 41.667, 208.333), ("addendum", 3.292, 2.998),
-        ("dedendum", 3.456, 3.750), ("tip", 48.154, 213.842), ("root", 34.658, 200.346),
+        ("pitch", 41.569, 207.846), ("base", 38.322, 191.611), ("working_pitch", 41.667, 208.333),
+        ("addendum", 3.292, 2.998), ("dedendum", 3.456, 3.750), ("tip", 48.154, 213.842), ("root", 34.658, 200.346),
     )  # fmt: skip
     for name, *values in printed:
         for wheel, value in zip(pair.wheels, values, strict=True):
@@ -153,7 +153,7 @@ def test_true_flanks_keep_the_ratio_over_the_line_of_action(pair: PairGeometry) 
     base = pair.wheels[0].base / 2
     # The pinion turns by as much as the contact moves along the line of action over the base radius.
     rolls = np.linspace(begin + 0.02, end - 0.02, 9) / base
-    # The flank passes the pitch point when half of the tooth on the working pitch circle has turned past the line of centres.
+    # The flank passes the pitch point when half of the tooth has turned past the line of centres.
     pitch_roll, half = math.tan(pair.working_angle), half_base_angle(pair, 0) - involute(pair.working_angle)
     start = _contact(pair, 0.0)
     for roll in rolls:

@@ -13,7 +13,13 @@ from scipy.optimize import brentq, minimize_scalar
 from centrode.gears.involutes import involute_curve
 from centrode.gears.measurements import measurements
 from centrode.gears.pair_geometry import PairGeometry
-from centrode.gears.profiles import half_base_angle, tooth_profile, turned_pieces, wheel_outline
+from centrode.gears.profiles import (
+    half_base_angle,
+    tooth_profile,
+    true_contact_ratio,
+    turned_pieces,
+    wheel_outline,
+)
 from centrode.gears.racks import fillet_curve
 from rack_envelope import fillet_place, flank_place
 
@@ -149,3 +155,17 @@ def test_undercut_is_where_the_rack_cuts_into_the_involute() -> None:
         assert pair.wheels[0].undercut == enters, (teeth, shift)
         seen[enters] += 1
     assert min(seen.values()) > 100
+
+
+def test_an_undercut_wheel_loses_contact() -> None:
+    """The contact ratio of true teeth, by the corner where fillet and involute cross."""
+    pair = PairGeometry("external", 2.0, (9, 40), (0.0, 0.0))
+    profile, base = tooth_profile(pair, 0), pair.wheels[0].base / 2
+    corner = next(piece for piece in profile.pieces if piece.kind == "fillet").places[-1]
+    assert math.hypot(*corner) > base
+    _begin, end = pair.action_ends
+    left = (end - math.sqrt(math.hypot(*corner) ** 2 - base**2)) / pair.base_pitch
+    assert true_contact_ratio(pair) == pytest.approx(left, rel=1e-9)
+    assert true_contact_ratio(pair) < pair.contact_ratio
+    whole = PairGeometry("external", 2.0, (20, 40), (0.0, 0.0))
+    assert true_contact_ratio(whole) == pytest.approx(whole.contact_ratio, rel=1e-14)

@@ -78,6 +78,27 @@ def tooth_profile(pair: PairGeometry, number: int) -> ToothProfile:
     return ToothProfile(pieces, base * math.hypot(1.0, begin), teeth)
 
 
+def true_contact_ratio(pair: PairGeometry) -> float:
+    """Contact ratio of the involutes that the rack leaves: less than that by the tips where a wheel is undercut.
+
+    Contact begins where the pinion's involute begins, if the other wheel's tip reaches below it, and ends where that of
+    the wheel does.
+    """
+    begin, end = pair.action_ends
+    begins = [
+        math.sqrt(
+            max(tooth_profile(pair, number).flank_radius ** 2 - (pair.wheels[number].base / 2) ** 2, 0.0)
+        )
+        for number in range(1 if pair.kind == "rack" else 2)
+        if pair.wheels[number].undercut
+    ]
+    if pair.wheels[0].undercut:
+        begin = max(begin, begins[0])
+    if pair.wheels[1].undercut:
+        end = min(end, pair.line_length - begins[-1])
+    return (end - max(begin, 0.0)) / pair.base_pitch
+
+
 def half_base_angle(pair: PairGeometry, number: int) -> float:
     """Half of the angle [rad] that a tooth of a wheel subtends at its base circle, outwards as far as it is there."""
     wheel = pair.wheels[number]

@@ -13,7 +13,7 @@ from centrode.gears.blocking_contour import BlockingContour, blocking_contour
 from centrode.gears.involutes import Array, involute
 from centrode.gears.measurements import WheelMeasurements, measurements
 from centrode.gears.pair_geometry import PairGeometry, PairKind
-from centrode.gears.profiles import ToothProfile, tooth_profile
+from centrode.gears.profiles import ToothProfile, tooth_profile, true_contact_ratio
 from centrode.gears.racks import ReferenceRack
 from centrode.gears.shift_choice import chosen_shifts
 from centrode.locale import _
@@ -114,6 +114,11 @@ class GearPairResults:
     def profiles(self) -> tuple[ToothProfile, ...]:
         """True teeth of the wheels; a rack has straight ones."""
         return tuple(tooth_profile(self.geometry, number) for number in range(len(self.measurements)))
+
+    @cached_property
+    def true_contact_ratio(self) -> float:
+        """The contact ratio of the involutes that are there: less than by the tips where a wheel is undercut."""
+        return true_contact_ratio(self.geometry)
 
     @cached_property
     def contour(self) -> BlockingContour | None:

@@ -39,7 +39,18 @@ from centrode.sheets.sheet import (
     Table,
     illustrations,
 )
-from centrode.sheets.texts import NOTHING, Expression, Joined, Number, Sentence, Symbol, Text, Title, Unit
+from centrode.sheets.texts import (
+    NOTHING,
+    Expression,
+    Joined,
+    Name,
+    Number,
+    Sentence,
+    Symbol,
+    Text,
+    Title,
+    Unit,
+)
 
 if TYPE_CHECKING:
     from centrode.gears.pair_geometry import PairGeometry
@@ -84,7 +95,7 @@ def sheet(results: GearPairResults) -> Sheet:
         scalars=_scalars(results),
         tables=Deferred(
             {
-                "wheels": lambda: wheels_table(results),
+                "wheels": lambda: _wheels_file(results),
                 "line-of-action": lambda: _action_table(results),
                 **({"blocking-contour": lambda: _contour_table(results)} if contour else {}),
             }
@@ -141,6 +152,11 @@ def _facts(results: GearPairResults) -> Iterator[Fact]:
         )
         yield Fact(Sentence("centre distance"), distance)
     yield Fact(Sentence("contact ratio"), Number(pair.contact_ratio))
+    if results.true_contact_ratio < pair.contact_ratio * (1 - 1e-9):
+        yield Fact(
+            NOTHING,
+            Sentence("{ratio} of the flanks that undercut leaves", ratio=Number(results.true_contact_ratio)),
+        )
     if pair.overlap_ratio:
         total = Sentence(
             "{overlap}, total {total}",
@@ -188,57 +204,74 @@ def _scalars(results: GearPairResults) -> dict[str, Scalar]:
     return {name: scalar for name, scalar in found.items() if math.isfinite(scalar.value)}
 
 
-def wheels_table(results: GearPairResults) -> Table:
-    """Dimensions of both wheels, a row for each."""
+Row = tuple[Text, str, list[float]]
+
+
+def _rows(results: GearPairResults) -> list[Row]:
+    """Dimensions of both wheels: what it is, its SI unit, the values; those that neither has are left out."""
     pair = results.geometry
-    rows: list[tuple[str, Text, str, list[float]]] = []
+    rows: list[Row] = []
 
-    def row(name: str, head: Text, unit: str, values: list[float]) -> None:
+    def row(head: Text, unit: str, values: list[float]) -> None:
         if not all(math.isnan(value) for value in values):
-            rows.append((name, head, unit, values))
+            rows.append((head, unit, values))
 
-    def of_wheels(name: str, head: Text, unit: str, attribute: str) -> None:
-        row(name, head, unit, [float(getattr(wheel, attribute)) for wheel in pair.wheels])
+    def of_wheels(head: Text, unit: str, attribute: str) -> None:
+        row(head, unit, [float(getattr(wheel, attribute)) for wheel in pair.wheels])
 
-    def of_measurements(name: str, head: Text, unit: str, attribute: str) -> None:
+    def of_measurements(head: Text, unit: str, attribute: str) -> None:
         values = [float(getattr(one, attribute)) for one in results.measurements]
-        row(name, head, unit, values + [math.nan] * (2 - len(values)))
+        row(head, unit, values + [math.nan] * (2 - len(values)))
 
     teeth = [pair.teeth[0], math.nan if math.isinf(pair.teeth[1]) else pair.teeth[1]]
-    row("number of teeth", Sentence("number of teeth"), "1", teeth)
-    of_wheels("shift coefficient", Sentence("shift coefficient"), "1", "shift")
-    of_wheels("least shift without undercut", Sentence("least shift without undercut"), "1", "least_shift")
-    of_wheels("pitch diameter", Sentence("pitch diameter"), "m", "pitch")
-    of_wheels("base diameter", Sentence("base diameter"), "m", "base")
-    of_wheels("working pitch diameter", Sentence("working pitch diameter"), "m", "working_pitch")
-    of_wheels("tip diameter", Sentence("tip diameter"), "m", "tip")
-    of_wheels("root diameter", Sentence("root diameter"), "m", "root")
-    of_wheels("addendum", Sentence("addendum"), "m", "addendum")
-    of_wheels("dedendum", Sentence("dedendum"), "m", "dedendum")
-    of_wheels("pitch thickness", Sentence("tooth thickness on the pitch circle"), "m", "pitch_thickness")
-    of_wheels("tip thickness", Sentence("tooth thickness at the tip"), "m", "tip_thickness")
-    of_measurements("constant chord", Sentence("constant chord"), "m", "constant_chord")
-    of_measurements("height of it", Sentence("height to the constant chord"), "m", "constant_chord_height")
-    of_measurements("teeth of the span", Sentence("teeth of the span"), "1", "span_teeth")
-    of_measurements("span", Sentence("span over these teeth"), "m", "span")
-    of_measurements("pin diameter", Sentence("pin diameter"), "m", "pin")
-    of_measurements("dimension over pins", Sentence("dimension over pins"), "m", "over_pins")
-    units = tuple(unit for _name, _head, unit, _values in rows)
-    values = np.array([numbers for _name, _head, _unit, numbers in rows])
+    row(Sentence("number of teeth"), "1", teeth)
+    of_wheels(Sentence("shift coefficient"), "1", "shift")
+    of_wheels(Sentence("least shift without undercut"), "1", "least_shift")
+    of_wheels(Sentence("pitch diameter"), "m", "pitch")
+    of_wheels(Sentence("base diameter"), "m", "base")
+    of_wheels(Sentence("working pitch diameter"), "m", "working_pitch")
+    of_wheels(Sentence("tip diameter"), "m", "tip")
+    of_wheels(Sentence("root diameter"), "m", "root")
+    of_wheels(Sentence("addendum"), "m", "addendum")
+    of_wheels(Sentence("dedendum"), "m", "dedendum")
+    of_wheels(Sentence("tooth thickness on the pitch circle"), "m", "pitch_thickness")
+    of_wheels(Sentence("tooth thickness at the tip"), "m", "tip_thickness")
+    of_measurements(Sentence("constant chord"), "m", "constant_chord")
+    of_measurements(Sentence("height to the constant chord"), "m", "constant_chord_height")
+    of_measurements(Sentence("teeth of the span"), "1", "span_teeth")
+    of_measurements(Sentence("span over these teeth"), "m", "span")
+    of_measurements(Sentence("pin diameter"), "m", "pin")
+    of_measurements(Sentence("dimension over pins"), "m", "over_pins")
+    return rows
+
+
+def wheels_table(results: GearPairResults) -> Table:
+    """Dimensions of both wheels, in the units of the display."""
+    heads, units, numbers = zip(*_rows(results), strict=True)
+    values = np.array(numbers)
+    spelled = tuple(NOTHING if unit == "1" else Unit(unit, shown=True) for unit in units)
     return Table(
         (
-            Column(
-                "quantity", tuple(head for _name, head, _unit, _values in rows), head=Sentence("dimension")
-            ),
-            Column(
-                "unit",
-                tuple(NOTHING if unit == "1" else Unit(unit, shown=True) for unit in units),
-                head=Sentence("unit"),
-            ),
+            Column("quantity", heads, head=Sentence("dimension")),
+            Column("unit", spelled, head=Sentence("unit")),
             Column("pinion", values[:, 0], head=PINION, units=units),
-            Column("wheel", values[:, 1], head=_second(pair), units=units),
+            Column("wheel", values[:, 1], head=_second(results.geometry), units=units),
         ),
         Sentence("Dimensions of the wheels"),
+    )
+
+
+def _wheels_file(results: GearPairResults) -> Table:
+    """The same in SI and in full."""
+    heads, units, numbers = zip(*_rows(results), strict=True)
+    values = np.array(numbers)
+    return Table(
+        (
+            Column("quantity", heads),
+            Column("unit", tuple(Name("" if unit == "1" else unit) for unit in units)),
+            Column("pinion", values[:, 0]),
+            Column("wheel", values[:, 1]),
+        )
     )
 
 
@@ -315,7 +348,7 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
                 share=Number(wheel.tip_thickness / pair.module, digits=".3g"),
                 least=Number(LEAST_TIP_THICKNESS),
             )
-    if 1 <= pair.contact_ratio + pair.overlap_ratio < LEAST_CONTACT_RATIO:
+    if 1 <= results.true_contact_ratio + pair.overlap_ratio < LEAST_CONTACT_RATIO:
         yield Sentence("the contact ratio is below the usual {least}", least=Number(LEAST_CONTACT_RATIO))
 
 
@@ -352,7 +385,8 @@ def _mesh(results: GearPairResults) -> OutlineDrawing:
             half, turn = step / 2, math.pi if pair.sign > 0 else 0.0
             centres.append(centre)
         shown = min(TEETH_SHOWN, (profile.teeth - 1) // 2)
-        for tooth in range(-shown, shown + 1):
+        # The gap of the wheel lies in the middle: as many teeth on either side.
+        for tooth in range(-shown, shown + 1 - number):
             angle = turn + half + tooth * step
             pieces += [
                 _piece(piece, ("profile", "shoe")[number]) for piece in turned_pieces(profile, angle, centre)
