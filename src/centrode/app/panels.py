@@ -44,7 +44,7 @@ NUMBERS = Lazily("centrode.render.document.numbers", "Numbers")
 
 def shown_topics() -> tuple[Topic, ...]:
     """Topics that the workbench shows, in the order of commands and chapters."""
-    return tuple(topic for topic in TOPICS if topic.title and topic.subject != "mechanisms")
+    return tuple(topic for topic in TOPICS if topic.title and topic.subject in ("mechanism", "cam"))
 
 
 def topic_list() -> list[dict[str, Any]]:
