@@ -35,8 +35,8 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import MECHANISM, Design, path_digests
 from centrode.sweeps.drawn_designs import Drawn, lazy_values
 from centrode.sweeps.executors import bare
-from centrode.sweeps.machine import StreamedColumns, columns_for
 from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
+from centrode.sweeps.result_columns import StreamedColumns, columns_for
 from centrode.sweeps.storage import DONE, GREATEST, METADATA, PROGRESS, Storage, place_refusals, table_of
 
 # The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.

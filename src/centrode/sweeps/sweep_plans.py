@@ -29,8 +29,8 @@ from centrode.sweeps.arrays import Results, SweepTask
 from centrode.sweeps.designs import Design, unit_of
 from centrode.sweeps.executors import Executor, executor_of
 from centrode.sweeps.kept_plans import KeptValues
-from centrode.sweeps.machine import StreamedColumns
 from centrode.sweeps.outputs import Outputs, Reduce, asked_of, with_slopes
+from centrode.sweeps.result_columns import StreamedColumns
 from centrode.sweeps.sample_tables import Tables
 from centrode.sweeps.store import Blocks, SweepFrame, Tally, frame_of, tally_of
 

@@ -105,7 +105,8 @@ class _Row:
 
     def __init__(self, places: Sequence[int]) -> None:
         self.numbers = np.zeros(len(places))
-        self._pack, self._pick = struct.Struct(f"{len(places)}d").pack_into, _picked(places)
+        self._pack: Callable[..., None] = struct.Struct(f"{len(places)}d").pack_into
+        self._pick = _picked(places)
 
     def fill(self, numbers: list[Any]) -> None:
         """Take them from the list."""
