@@ -209,6 +209,7 @@ class MachineCodeExecutor:
         # folds of folds: each pass knows the results of those before
         for depth in range(self.asked.folds.passes):
             rows = self._folding(depth, certain)(rows)
+            rows = rows | self.asked.inputs_at_extremes(rows, depth)
         if certain:
             rows = rows | self.asked.check_some(rows)
         values = self._at_end(rows)

@@ -39,7 +39,7 @@ from centrode.numerics.graphs import Graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
 from centrode.numerics.scans import LaneExtreme, Reduction, Scan, together
 from centrode.sweeps.arrays import SweepTask
-from centrode.sweeps.folds import Folds, Known, Slopes
+from centrode.sweeps.folds import NUMBER_OF_SAMPLE, Folds, Known, Slopes
 from centrode.sweeps.outputs import OutputFormula, table_variable
 from centrode.sweeps.result_columns import streamed_columns
 
@@ -120,7 +120,9 @@ class Expressed:
     @cached_property
     def slopes(self) -> Slopes:
         """Derivatives of the columns by the varied values; raises Untraceable."""
-        return Slopes.of(self.task.paths, self.varied, self.traced, self.folds, self._moving)
+        # along a path more than inputs moves, and places of a walk are no samples
+        inputs = frozenset() if self.traced.steps else frozenset(self.inputs)
+        return Slopes.of(self.task.paths, self.varied, self.traced, self.folds, self._moving, inputs)
 
     @property
     def _moving(self) -> frozenset[str]:
@@ -175,7 +177,8 @@ class Expressed:
         for fold in self.folds.found.values():
             known.append(fold.name)
             if self.task.asked.slopes:
-                known += self.slopes.states_of(fold.name).parts
+                states = self.slopes.states_of(fold.name)
+                known += [*states.parts, *states.there]
         return tuple(dict.fromkeys(known))
 
     @property
@@ -227,7 +230,18 @@ class Expressed:
     @cached_property
     def inputs(self) -> Values:
         """Values of the variables of a place at the samples, tables among them: name -> (samples,)."""
-        return inputs_of(self.task.ready.kinematics.path, self.task.span) | self._tables
+        numbers = {NUMBER_OF_SAMPLE: np.arange(float(self.samples))} if self.task.asked.slopes else {}
+        return inputs_of(self.task.ready.kinematics.path, self.task.span) | numbers | self._tables
+
+    def inputs_at_extremes(self, rows: Mapping[str, Array], depth: int) -> Values:
+        """Inputs of the samples at which the extremes of a pass are, by the names that derivatives have them under."""
+        found: Values = {}
+        for fold in self.folds.at_depth(depth) if self.task.asked.slopes else ():
+            states = self.slopes.states_of(fold.name)
+            if states.there:
+                sample = rows[states.sample].astype(np.intp)
+                found |= {own: self.inputs[name][sample] for own, name in states.there.items()}
+        return found
 
     @property
     def further(self) -> tuple[str, ...]:
