@@ -286,7 +286,7 @@ class MotionLabels:
         labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
         if SAMPLE in used:
             labels += ["time", "drive", "drive_value"]
-        coordinates: dict[Any, Any] = {name: motion[name].copy() for name in labels}
+        coordinates: dict[Any, Any] = {name: motion[name] for name in labels}
         if SAMPLE in used:
             # what formulas compare the motion with stands beside it
             coordinates |= {
@@ -294,7 +294,11 @@ class MotionLabels:
             }
         told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
         attributes = {**told, "samples": motion.sizes["sample"]}
-        return cls(xr.Dataset(coords=coordinates), attributes)
+        found = xr.Dataset(coords=coordinates)
+        # the drive along the samples is a label of a motion, and a number beside it here
+        return cls(
+            found.drop_indexes([name for name in found.xindexes if name not in found.dims]), attributes
+        )
 
     def with_design(
         self, design: Design, units: Mapping[str, str], asked: SweepOutputs, attributes: Mapping[str, Any]
