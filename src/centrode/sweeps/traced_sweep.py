@@ -7,7 +7,7 @@ itself, or along the path where groups of higher class ask for it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Protocol, TypeAlias
@@ -36,8 +36,8 @@ from centrode.kinematics.machine_code.variables import (
 from centrode.numerics.executors import streamer
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph
-from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.scans import LaneExtreme, Reduction, Scan, together
+from centrode.numerics.operations import CONSTANT
+from centrode.numerics.scans import LaneExtreme, Reduction, Scan, evaluate, together
 from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.folds import NUMBER_OF_SAMPLE, Folds, Known, Slopes
 from centrode.sweeps.outputs import OutputFormula, table_variable
@@ -329,21 +329,21 @@ class ResidualParts:
     scale: Node | None = None
 
     @classmethod
-    def of(cls, residual: Node) -> ResidualParts:
-        """The parts of a node that is a maximum of some."""
+    def of(cls, residual: Node, scale: Operand) -> ResidualParts:
+        """The parts of a node that is a maximum of some; `scale` is the greatest length of mechanisms."""
         parts = list(_parts_of_maximum(residual))
-        divided = [x for x in parts if x.operation == "divide" and _is_scale(x.arguments[1])]
+        divided = [x for x in parts if x.operation == "divide" and x.arguments[1] is as_node(scale)]
         if len(divided) != 1:
             return cls(residual)
-        without_unit: Operand = 0.0
-        for part in parts:
-            without_unit = without_unit if part is divided[0] else m.max(without_unit, part)
-        return cls(as_node(without_unit), *divided[0].arguments)
+        rest = _greatest_of(_without_zeros([part for part in parts if part is not divided[0]]))
+        lengths, by = divided[0].arguments
+        return cls(rest, _greatest_of(_without_zeros(list(_parts_of_maximum(lengths)))), by)
 
     def scale_of(self, rows: Mapping[str, Array]) -> Array | float:
         """The divisor of mechanisms."""
         assert self.scale is not None
-        return rows[SCALE] if self.scale.operation == VARIABLE else float(self.scale.detail)
+        found: Array | float = evaluate(Graph({SCALE: self.scale}), rows)[SCALE]
+        return found
 
 
 def _parts_of_maximum(node: Node) -> Iterator[Node]:
@@ -354,11 +354,42 @@ def _parts_of_maximum(node: Node) -> Iterator[Node]:
         yield node
 
 
-def _is_scale(node: Node) -> bool:
-    """Whether it is the greatest length of mechanisms, or a constant above zero as that is."""
-    if node.operation == VARIABLE:
-        return node.detail == SCALE
-    return node.operation == CONSTANT and float(node.detail) > 0.0
+def _greatest_of(parts: Sequence[Node]) -> Node:
+    greatest: Operand = 0.0
+    for part in parts:
+        greatest = m.max(greatest, part)
+    return as_node(greatest)
+
+
+CARRYING = frozenset({"add", "subtract", "multiply", "negate", "abs"})
+"""Operations whose result is not finite where an argument is not."""
+
+
+def _without_zeros(parts: Sequence[Node]) -> list[Node]:
+    """The parts of a greatest residual but those that are zero by construction, as those of the crank's own end.
+
+    Such a part tells only whether its number is finite. It is left out where another part is not finite either then.
+    """
+    own = {part: _taken_from_itself(part) for part in parts}
+    stack = [part for part, number in own.items() if number is None]
+    carried = set(stack)
+    while stack:
+        node = stack.pop()
+        below = [x for x in node.arguments if x not in carried] if node.operation in CARRYING else []
+        carried.update(below)
+        stack += below
+    return [part for part, number in own.items() if number is None or number not in carried]
+
+
+def _taken_from_itself(part: Node) -> Node | None:
+    """The number x of |x - x| or |x - (0 + x)|; None of any other part."""
+    if part.operation != "abs" or part.arguments[0].operation != "subtract":
+        return None
+    x, y = part.arguments[0].arguments
+    if y.operation == "add":
+        zeros = [z for z in y.arguments if z.operation == CONSTANT and float(z.detail) == 0.0]
+        y = next((z for z in y.arguments if zeros and z is not zeros[0]), y)
+    return x if x is y else None
 
 
 @dataclass(frozen=True)
@@ -398,7 +429,7 @@ class EachForItself:
 
     @cached_property
     def _residual(self) -> ResidualParts:
-        return ResidualParts.of(self.asked.judges[RESIDUAL])
+        return ResidualParts.of(self.asked.judges[RESIDUAL], self.asked.varied.scale)
 
     @cached_property
     def _scan(self) -> Scan:
