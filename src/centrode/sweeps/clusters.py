@@ -13,6 +13,7 @@ import importlib.util
 import json
 import logging
 import queue
+import signal
 import socket
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -67,6 +68,7 @@ OF_CONNECTION = ("ClosedClientError", "CancelledError", "FutureCancelledError", 
 # heavy, an extra
 _distributed = functools.partial(importlib.import_module, "distributed")
 _dask = functools.partial(importlib.import_module, "dask")
+_resource_tracker = functools.partial(importlib.import_module, "multiprocessing.resource_tracker")
 
 
 # What workers must have.
@@ -357,14 +359,29 @@ def open_cluster(cluster: ClusterSource) -> Iterator[Cluster]:
             yield Cluster(cluster, str(getattr(cluster.scheduler, "address", "") or _("the scheduler")))
 
 
-def _local(count: int) -> Any:
+@contextmanager
+def _local(count: int) -> Iterator[Any]:
     # imported first: its own settings come with it, and would go with the block
     distributed = _distributed()
     with _dask().config.set(OF_WORKERS):
-        return distributed.LocalCluster(
-            n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", host="127.0.0.1",
+        machines = distributed.LocalCluster(
+            n_workers=0, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", host="127.0.0.1",
             silence_logs=logging.CRITICAL,
         )  # fmt: skip
+    with machines:
+        machines.sync(_leave_interrupts_to_the_client)
+        with _dask().config.set(OF_WORKERS):
+            machines.scale(count)
+            machines.wait_for_workers(count)
+        yield machines
+
+
+async def _leave_interrupts_to_the_client() -> None:
+    """Ctrl-C reaches all processes of a terminal: workers, begun by this thread, take the mask of it and go on."""
+    if hasattr(signal, "pthread_sigmask"):
+        # where it is begun by the first worker it takes the mask away from the thread
+        _resource_tracker().ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
 CERTIFICATES = "DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ..._CLIENT__CERT, ..._CLIENT__KEY"
