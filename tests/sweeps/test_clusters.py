@@ -294,7 +294,7 @@ mechanism = "crank-rocker"
 outputs = "angle"
 samples = 19
 [grid]
-links.AB.length = { from = "3.2 m", to = "3.8 m", count = 300 }
+links.AB.length = { from = "3.2 m", to = "3.8 m", count = 60 }
 """
 
 INTERRUPTED = """
@@ -326,7 +326,10 @@ def test_ctrl_c_ends_the_command_and_the_store_goes_on(
         [sys.executable, "interrupted.py"], start_new_session=True, capture_output=True, encoding="utf-8", check=False
     )  # fmt: skip
     assert ended.returncode == 130
-    assert "finished results stay in study.zarr; the same command resumes from there\ninterrupted\n" in ended.stderr
+    assert (
+        "finished results stay in study.zarr; the same command resumes from there\ninterrupted\n"
+        in ended.stderr
+    )
     # workers end without a word of their own
     assert "Traceback" not in ended.stderr
     assert main(["sweep", "study.toml", "--scheduler", cluster.scheduler.address]) == 0
@@ -357,7 +360,7 @@ def test_a_scheduler_behind_certificates(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("study.toml").write_text(STUDY.replace("300", "7"), encoding="utf-8")
+    Path("study.toml").write_text(STUDY.replace("60", "7"), encoding="utf-8")
     authority, certificate, key = certificates.values()
     security = distributed.Security(
         tls_ca_file=authority, require_encryption=True,

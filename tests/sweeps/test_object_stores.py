@@ -143,7 +143,11 @@ def test_workers_write_to_a_store_that_fails_now_and_then(tmp_path: Path, server
     try:
         # a worker in this process: what fails is the server
         with distributed.Client(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0", set_as_default=False
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            dashboard_address="127.0.0.1:0",
+            set_as_default=False,
         ) as client:
             found = swept(url, cluster=client)
     finally:
