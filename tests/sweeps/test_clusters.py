@@ -338,7 +338,8 @@ def test_ctrl_c_ends_the_command_and_the_store_goes_on(
     assert "wrote study.zarr" in captured.out
     assert main(["sweep", "study.toml", "--workers", "2", "--scheduler", "tcp://x:1"]) == 2
     assert "give one of the two options" in capsys.readouterr().err
-    assert main(["sweep", "study.toml", "--workers", "1", "--out", "x.csv"]) == 2
+    Path("reduced.toml").write_text('reduce = "mean"\n' + STUDY, encoding="utf-8")
+    assert main(["sweep", "reduced.toml", "--workers", "1", "--out", "x.csv"]) == 2
     assert "workers write to a store" in capsys.readouterr().err
 
 
