@@ -290,6 +290,10 @@ def content(marked: str) -> str:
     return f"[{''.join(parts)}]"
 
 
+_EQUAL = re.compile(r"= (?=[−+-]?\d)")
+"""Before a number, which is not parted from its sign of equality."""
+
+
 @functools.cache
 def _measured_quantity(language: str) -> re.Pattern[str]:
     """A number, the blank behind it, and its unit."""
@@ -305,6 +309,7 @@ def _whole_quantities(text: str) -> list[str]:
     """Pieces of a text as typst's strings: a number stays on one line with its unit, a unit whole."""
     found: list[str] = []
     end = 0
+    text = _EQUAL.sub(f"={NO_BREAK}", text)
     for one in _measured_quantity(chosen_language()).finditer(text):
         quantity = _kept_together(one)
         before = text[end : one.start()]
@@ -324,7 +329,7 @@ def _kept_together(quantity: re.Match[str]) -> str:
 
 def _with_units(text: str) -> str:
     """A text whose numbers keep their units."""
-    return _measured_quantity(chosen_language()).sub(_kept_together, text)
+    return _measured_quantity(chosen_language()).sub(_kept_together, _EQUAL.sub(f"={NO_BREAK}", text))
 
 
 def _joined(text: str) -> str:
