@@ -65,7 +65,8 @@ def _place(fig: Any, panels: Sequence[Any], renderer: Any, above: float) -> None
     beside_columns, beside_rows = np.zeros((2, columns)), np.zeros((2, rows))
     for axes in panels:
         row, column = _cell(axes)
-        inner, outer = axes.get_position(original=True), _outer_box(axes, renderer).transformed(to_figure)
+        inner = axes.get_position(original=True)
+        outer = _outer_box(axes, renderer, _is_last_with_legend(axes, panels)).transformed(to_figure)
         for side, beside in enumerate((inner.x0 - outer.x0, outer.x1 - inner.x1)):
             beside_columns[side, column] = max(beside_columns[side, column], beside)
         for side, beside in enumerate((outer.y1 - inner.y1, inner.y0 - outer.y0)):
@@ -97,10 +98,28 @@ def _put(axes: Any, place: tuple[float, float, float, float]) -> None:
     axes.set_in_layout(True)  # who gives axes a place of their own takes them out of it
 
 
-def _outer_box(axes: Any, renderer: Any) -> Any:
-    """A panel with its ticks, labels, legend and what else is not cut at its edges; the frame is the panel's own."""
+def _outer_box(axes: Any, renderer: Any, may_hang: bool) -> Any:
+    """A panel with its ticks, labels, legend and what else is not cut at its edges; the frame is the panel's own.
+
+    A legend beside a panel that `may_hang` stands beside the panels below it too, as far as the figure goes.
+    """
     others = [one for one in axes.get_default_bbox_extra_artists() if not isinstance(one, Spine)]
-    return axes.get_tightbbox(renderer, bbox_extra_artists=others, for_layout_only=True)
+    legend = axes.get_legend()
+    if legend not in others or not may_hang:
+        return axes.get_tightbbox(renderer, bbox_extra_artists=others, for_layout_only=True)
+    others.remove(legend)
+    own = axes.get_tightbbox(renderer, bbox_extra_artists=others, for_layout_only=True)
+    box = legend.get_tightbbox(renderer)
+    if box is None or box.x0 < axes.bbox.x1 or box.y0 < 0.0:
+        return own if box is None else Bbox.union([own, box])
+    return Bbox.from_extents(own.x0, own.y0, max(own.x1, box.x1), own.y1)
+
+
+def _is_last_with_legend(axes: Any, panels: Sequence[Any]) -> bool:
+    """Whether there are panels below one, and none of them has a legend."""
+    row, column = _cell(axes)
+    below = [one for one in panels if _cell(one)[1] == column and _cell(one)[0] > row]
+    return bool(below) and all(one.get_legend() is None for one in below)
 
 
 def _title_height(fig: Any, renderer: Any) -> float:
