@@ -97,10 +97,8 @@ class ProcessRunner:
         """The answer of a message; TimedOut after so many seconds, and the process is stopped."""
         async with self._turn:
             content = json.dumps(message).encode()
-            connection = self._started()
-            waiting = asyncio.get_running_loop().run_in_executor(
-                self._threads, _exchange, connection, content
-            )
+            # a process begins in the thread too: the server answers others meanwhile
+            waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
             try:
                 reply = await asyncio.wait_for(asyncio.shield(waiting), limit)
             except (TimeoutError, asyncio.CancelledError):
@@ -111,12 +109,12 @@ class ProcessRunner:
             except (EOFError, OSError):
                 # it made room, or the system stopped it: once more in a new one
                 self.stop()
-                connection = self._started()
-                waiting = asyncio.get_running_loop().run_in_executor(
-                    self._threads, _exchange, connection, content
-                )
+                waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
                 reply = await asyncio.wait_for(waiting, limit)
             return reply
+
+    def _asked(self, content: bytes) -> Reply:
+        return _exchange(self._started(), content)
 
     def _started(self) -> Connection:
         if self._connection is not None and self._process is not None and self._process.is_alive():
