@@ -10,7 +10,7 @@ const out = at > 0 ? resolve(process.argv[at + 1]) : resolve(here, "../static");
 await mkdir(out, { recursive: true });
 await esbuild.build({
   absWorkingDir: here,
-  entryPoints: { app: "app.tsx", editor: "editor.ts", app_style: "app.css" },
+  entryPoints: [{ in: "app.tsx", out: "app" }, { in: "editor.ts", out: "editor" }, { in: "app.css", out: "app" }],
   bundle: true,
   minify: true,
   charset: "utf8",
@@ -21,8 +21,8 @@ await esbuild.build({
   legalComments: "inline",
   external: ["./editor.js"],
   outdir: out,
-  entryNames: "[name]",
   loader: { ".woff": "file" },
   assetNames: "[name]",
   logLevel: "warning",
 });
+await copyFile(join(here, "index.html"), join(out, "index.html"));

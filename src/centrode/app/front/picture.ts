@@ -90,7 +90,7 @@ export class Picture {
         guide,
         joint: make("path", { class: `joint${hue}` }, behind),
         line: make("path", { class: frame ? "ground" : guide.link ? `link rail${hue}` : `shape slot${hue}` }, frame ? this.layers.back : behind),
-        block: guide.link || guide.slider ? make("path", { class: `shape block${guide.link ? ` hue-${this.colour(guide.link)}` : ""}`, d: BLOCK }, links) : null,
+        block: guide.link || frame ? make("path", { class: `shape block${guide.link ? ` hue-${this.colour(guide.link)}` : ""}`, d: BLOCK }, links) : null,
         grip: make("path", { class: "grip guide" }, grips),
         ends: null,
       };
@@ -160,7 +160,7 @@ export class Picture {
       put(rim, "display", place && !(paper instanceof Globe) ? "inline" : "none");
       if (!place || paper instanceof Globe) continue;
       put(rim, "d", circle(radius * (paper as Plane).scale * U, true));
-      put(rim, "transform", at(place, -(where.angle(link) || 0)));
+      put(rim, "transform", at(place, -this.turn(link, where)));
     }
     for (const { ends, body, rod } of this.barrels) this.showBarrel(flat.get(ends[0]) ?? null, flat.get(ends[1]) ?? null, body, rod);
     for (const drive of this.drives) {
@@ -202,11 +202,20 @@ export class Picture {
     put(fill, "d", known.length > 2 && places.every((place) => this.paper.front(place)) ? near : "");
   }
 
+  // The line of a guide in axes of its link: about the link's first point, turned as the link is.
+  private lineOf(guide: SceneGuide): { through: Place; direction: number } | null {
+    if (guide.direction === null || !guide.through) return null;
+    if (guide.on === "frame") return { through: guide.through, direction: guide.direction };
+    const link = this.scene!.links.find((one) => one.name === guide.on), angle = link?.angle ?? 0;
+    const origin = this.origin(guide.on, (name) => this.scene!.points.find((one) => one.name === name)?.at ?? null);
+    return origin && { through: turned(minus(guide.through, origin), -angle), direction: guide.direction - angle };
+  }
+
   // The part of a guide that its point travels: from the motion where there is one, else around where it stands.
   private travel(guide: SceneGuide): [number, number] | null {
-    const { motion } = this;
-    if (!motion) return null;
-    const way = [Math.cos(guide.direction), Math.sin(guide.direction)];
+    const { motion } = this, own = this.lineOf(guide);
+    if (!motion || !own) return null;
+    const way = [Math.cos(own.direction), Math.sin(own.direction)];
     let least = Infinity, most = -Infinity;
     for (let k = 0; k < motion.samples; k += 1) {
       const place = motion.place(guide.point, k);
@@ -217,7 +226,7 @@ export class Picture {
         if (!origin || !Number.isFinite(angle)) continue;
         local = turned(minus(place, origin), -angle);
       }
-      const reach = (local[0]! - guide.through[0]!) * way[0]! + (local[1]! - guide.through[1]!) * way[1]!;
+      const reach = (local[0]! - own.through[0]!) * way[0]! + (local[1]! - own.through[1]!) * way[1]!;
       if (reach < least) least = reach;
       if (reach > most) most = reach;
     }
@@ -228,10 +237,15 @@ export class Picture {
     return first ? place(first) : null;
   }
 
+  private turn(link: string, where: Where): number {
+    const angle = where.angle(link);
+    return Number.isFinite(angle) ? angle : this.scene!.links.find((one) => one.name === link)?.angle ?? 0;
+  }
+
   rails(): void {
     for (const sign of this.guides) {
-      const travel = this.travel(sign.guide), way = [Math.cos(sign.guide.direction), Math.sin(sign.guide.direction)];
-      sign.ends = travel && travel.map((reach) => plus(sign.guide.through, way, reach));
+      const travel = this.travel(sign.guide), own = this.lineOf(sign.guide);
+      sign.ends = travel && own && travel.map((reach) => plus(own.through, [Math.cos(own.direction), Math.sin(own.direction)], reach));
     }
   }
 
@@ -239,10 +253,11 @@ export class Picture {
     const { guide, line, block, joint, grip } = sign, { paper } = this;
     if (paper instanceof Globe) return;
     const place = now.get(guide.point) ?? null, frame = guide.on === "frame";
-    const origin = frame ? [0, 0] : this.origin(guide.on, (name) => now.get(name) ?? null), angle = frame ? 0 : where.angle(guide.on) || 0;
-    if (!origin) return;
-    const way = turned([Math.cos(guide.direction), Math.sin(guide.direction)], angle);
-    const local = sign.ends ?? [guide.through, guide.through];
+    const origin = frame ? [0, 0] : this.origin(guide.on, (name) => now.get(name) ?? null), angle = frame ? 0 : this.turn(guide.on, where);
+    const own = this.lineOf(guide);
+    if (!origin || !own) return;
+    const way = turned([Math.cos(own.direction), Math.sin(own.direction)], angle);
+    const local = sign.ends ?? [own.through, own.through];
     let ends = local.map((end) => plus(origin, turned(end, angle)));
     if (!sign.ends) {
       const middle = place ?? ends[0]!, half = 60 / (paper as Plane).scale;
@@ -378,7 +393,7 @@ export class Picture {
         .map((other) => Math.atan2(other[1]! - place[1]!, other[0]! - place[0]!));
       if (point.kind === "fixed" && this.scene!.kind === "plane") lines.push(Math.PI / 2, Math.PI / 2 - 0.6, Math.PI / 2 + 0.6);
       const guide = sliders.get(point.name);
-      if (guide) lines.push(-guide.direction, Math.PI - guide.direction);
+      if (guide && guide.direction !== null) lines.push(-guide.direction, Math.PI - guide.direction);
       const room = (turn: number): number => lines.reduce((least, line) => {
         const apart = Math.abs(turn - line) % (2 * Math.PI);
         return Math.min(least, apart, 2 * Math.PI - apart);

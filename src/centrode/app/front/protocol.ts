@@ -35,6 +35,7 @@ export interface SceneLink {
   name: string;
   points: string[];
   length?: number | null;
+  angle?: number | null;
   locked?: boolean;
   drive?: boolean;
 }
@@ -42,8 +43,8 @@ export interface SceneGuide {
   name: string;
   point: string;
   on: string;
-  through: Place;
-  direction: number;
+  through: Place | null; // both in axes of the frame, at the initial position
+  direction: number | null;
   link?: string | null;
   slider?: boolean;
 }
