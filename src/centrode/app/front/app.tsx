@@ -111,6 +111,7 @@ function App() {
       <main>
         {editing.value && <TextPane />}
         <StageView />
+        <div class="right">
         <aside class="side" aria-label={say("selection")}>
           <SelectionCard />
           {scene.value?.kind !== "cam" && (
@@ -121,6 +122,7 @@ function App() {
           )}
         </aside>
         <PanelCard />
+        </div>
       </main>
       <Dialogs />
       <div class={busy.value ? "busy on" : "busy"} aria-hidden="true" />

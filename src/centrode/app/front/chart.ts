@@ -107,7 +107,7 @@ export class Chart {
   private range(): [number, number] {
     const values = this.data!.x.values, first = values[0] ?? 0, last = values[values.length - 1] ?? 1;
     this.rising = first <= last;
-    return this.rising ? [first, last] : [last, first];
+    return [first, last]; // a drive that turns back has its way from left to right all the same
   }
 
   private draw(): void {
@@ -143,8 +143,8 @@ export class Chart {
       make("line", { class: `mark ${mark.kind}`, x1: at, x2: at, y1: UPPER, y2: TALL - LOWER }, svg);
     }
     const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), named = 8 * symbol.length + 22;
-    const vertical = steps(low, high, wide / 80, data.x.unit === "°");
-    for (const tick of ticks(low, high, vertical)) {
+    const [first, last] = [Math.min(low, high), Math.max(low, high)], vertical = steps(first, last, wide / 80, data.x.unit === "°");
+    for (const tick of ticks(first, last, vertical)) {
       make("line", { class: "grid", x1: x(tick), x2: x(tick), y1: UPPER, y2: TALL - LOWER }, svg);
       if (wide - RIGHT - x(tick) < named) continue;
       make("text", { x: x(tick), y: TALL - 6, "text-anchor": "middle" }, svg).textContent = tickText(tick, vertical);

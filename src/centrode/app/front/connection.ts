@@ -17,10 +17,14 @@ interface Waiting {
 export const online = signal<"connecting" | "open" | "lost">("connecting");
 export const busy = signal(false);
 
+// What is quick never waits for what is slow: each has its own way to the server.
+const SLOW = new Set(["panel"]);
+type Lane = "quick" | "slow";
+
 export class Connection {
   private socket: WebSocket | null = null;
-  private queue: Waiting[] = [];
-  private flying: Waiting | null = null;
+  private queues: Record<Lane, Waiting[]> = { quick: [], slow: [] };
+  private flying: Record<Lane, Waiting | null> = { quick: null, slow: null };
   private number = 0;
   private tries = 0;
   private texts = new Map<string, string>();
@@ -38,25 +42,28 @@ export class Connection {
   }
 
   ask(request: Request, channel: string | null = null): Promise<Answer> {
+    const lane: Lane = SLOW.has(request.do) ? "slow" : "quick", queue = this.queues[lane];
     return new Promise((resolve) => {
-      if (channel) {
-        const kept = this.queue.findIndex((one) => one.channel === channel);
-        if (kept >= 0) {
-          this.queue[kept]!.resolve(SUPERSEDED);
-          this.queue.splice(kept, 1);
-        }
+      const kept = channel ? queue.findIndex((one) => one.channel === channel) : -1;
+      if (kept >= 0) queue.splice(kept, 1)[0]!.resolve(SUPERSEDED);
+      const one = { request, channel, resolve, id: ++this.number };
+      queue.push(one);
+      // A sheet of another description is not waited for: the server stops it.
+      if (lane === "slow" && this.flying.slow && this.socket?.readyState === WebSocket.OPEN) {
+        this.flying.slow.resolve(SUPERSEDED);
+        this.flying.slow = null;
       }
-      this.queue.push({ request, channel, resolve, id: ++this.number });
-      this.next();
+      this.next(lane);
     });
   }
 
-  private next(): void {
-    if (this.flying || !this.queue.length || this.socket?.readyState !== WebSocket.OPEN) return;
-    // What a hand waits for goes first.
-    const urgent = this.queue.findIndex((one) => one.channel === "drag");
-    this.flying = this.queue.splice(Math.max(0, urgent), 1)[0]!;
-    this.send(this.flying);
+  private next(lane: Lane): void {
+    const queue = this.queues[lane];
+    if (this.flying[lane] || !queue.length || this.socket?.readyState !== WebSocket.OPEN) return;
+    const urgent = queue.findIndex((one) => one.channel === "drag"); // a hand waits for it
+    const one = queue.splice(Math.max(0, urgent), 1)[0]!;
+    this.flying[lane] = one;
+    this.send(one);
   }
 
   private send(one: Waiting): void {
@@ -65,9 +72,9 @@ export class Connection {
   }
 
   private take(answer: any): void {
-    const one = this.flying;
-    const id = isFrame(answer) ? answer.id : answer.id;
-    if (!one || (id !== undefined && id !== null && id !== one.id)) return;
+    const lane = (["quick", "slow"] as const).find((name) => this.flying[name]?.id === answer.id);
+    const one = lane && this.flying[lane];
+    if (!lane || !one) return; // of a request that nobody waits for any more
     if (!isFrame(answer) && answer.unknown && !one.request.text) {
       const text = this.texts.get(String(answer.unknown));
       if (text !== undefined) {
@@ -76,10 +83,10 @@ export class Connection {
         return;
       }
     }
-    this.flying = null;
-    busy.value = false;
-    one.resolve(answer);
-    this.next();
+    this.flying[lane] = null;
+    busy.value = Boolean(this.flying.quick);
+    one.resolve(answer.superseded ? SUPERSEDED : answer);
+    this.next(lane);
   }
 
   private open(): void {
@@ -89,8 +96,10 @@ export class Connection {
     socket.onopen = () => {
       this.tries = 0;
       online.value = "open";
-      if (this.flying) this.send(this.flying);
-      else this.next();
+      for (const lane of ["quick", "slow"] as const) {
+        if (this.flying[lane]) this.send(this.flying[lane]);
+        else this.next(lane);
+      }
       this.onopen();
     };
     socket.onmessage = (event) => this.take(typeof event.data === "string" ? JSON.parse(event.data) : readFrame(event.data));

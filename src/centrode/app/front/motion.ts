@@ -44,7 +44,7 @@ export class Motion {
     return this.frame.header.unit ?? "";
   }
   get symbol(): string {
-    return this.frame.header.symbol ?? "";
+    return this.frame.header.symbol || ({ angle: "φ", length: "s", time: "t" } as Record<string, string>)[this.frame.header.kind] || "";
   }
   get start(): number {
     return this.frame.header.start ?? 0;
@@ -57,7 +57,7 @@ export class Motion {
     return this.frame.header.reached ? this.frame.header.reached[code] !== false : true;
   }
   word(sample: number): string {
-    return this.frame.header.status_words?.[String(this.status[sample])] ?? "";
+    return this.status[sample] ? this.frame.header.status_words?.[String(this.status[sample])] ?? "" : "";
   }
   point(name: string): number {
     return this.pointIndex.get(name) ?? -1;

@@ -38,12 +38,12 @@ export function slot(start: Place, end: Place): string {
 }
 
 // The arc of a drive around its hinge, above the ground rather than in it; y points down.
-export function turningArc(angle: number, forward: boolean): { arc: string; tip: Place; way: number } {
+export function turningArc(angle: number, forward: boolean): { arc: string; tip: Place; way: number; middle: number } {
   const middles = [angle + 1.75, angle - 1.75], middle = Math.sin(middles[0]!) >= Math.sin(middles[1]!) ? middles[0]! : middles[1]!;
   const turns = Array.from({ length: 15 }, (_, k) => middle + (forward ? 1 : -1) * (-0.75 + (1.5 * k) / 14));
   const places = turns.map((turn) => [4.2 * SIGN * Math.cos(turn), -4.2 * SIGN * Math.sin(turn)]);
   const tip = places[14]!, before = places[12]!;
-  return { arc: drawn(places.slice(0, 14)), tip, way: Math.atan2(tip[1]! - before[1]!, tip[0]! - before[0]!) };
+  return { arc: drawn(places.slice(0, 14)), tip, way: Math.atan2(tip[1]! - before[1]!, tip[0]! - before[0]!), middle };
 }
 
 // The hatched line under a slider, on the side that points down or away from the middle.

@@ -168,7 +168,8 @@ export function ReadinessView() {
       )}
       {!now.missing.length && !now.loose.length && <p class="good">{say("ready")}</p>}
       {now.limit && <p class="limit">{now.limit}</p>}
-      <Facts facts={now.facts} />
+      <Facts facts={now.facts.slice(0, 1)} />
+      {now.facts.length > 1 && <details class="more"><summary>{say("more")}</summary><Facts facts={now.facts.slice(1)} /></details>}
     </div>
   );
 }

@@ -45,7 +45,7 @@ export class Picture {
   private guides: { guide: SceneGuide; line: SVGPathElement; block: SVGPathElement | null; joint: SVGPathElement; grip: SVGPathElement; ends: Place[] | null }[] = [];
   private wheels: { link: string; centre: string; radius: number; rim: SVGPathElement }[] = [];
   private barrels: { ends: [string, string]; body: SVGPathElement; rod: SVGPathElement }[] = [];
-  private drives: { point: string; link: string; forward: boolean; arc: SVGPathElement; head: SVGPathElement }[] = [];
+  private drives: { point: string; link: string; forward: boolean; arc: SVGPathElement; head: SVGPathElement; middle: number }[] = [];
   private tracks: { name: string; near: SVGPathElement; far: SVGPathElement }[] = [];
   private arrows: { kind: string; group: SVGGElement; shaft: SVGPathElement; head: SVGPathElement }[] = [];
   private globe: SVGCircleElement;
@@ -105,7 +105,7 @@ export class Picture {
       const link = scene.links.find((one) => one.name === drive.link);
       const pivot = drive.at ?? link?.points.find((name) => scene.points.find((one) => one.name === name)?.kind === "fixed");
       if (!link || !pivot || scene.kind !== "plane") return [];
-      return [{ point: pivot, link: link.name, forward: (drive.speed ?? 1) >= 0, arc: make("path", { class: "drive" }, signs), head: make("path", { class: "drive-head", d: "M0 0L-70 30L-70 -30Z" }, signs) }];
+      return [{ point: pivot, link: link.name, forward: (drive.speed ?? 1) >= 0, middle: -1.57, arc: make("path", { class: "drive" }, signs), head: make("path", { class: "drive-head", d: "M0 0L-70 30L-70 -30Z" }, signs) }];
     });
     this.points = scene.points.map((point) => {
       const group = make("g", { class: `point ${point.kind}`, "data-point": point.name }, signs);
@@ -168,7 +168,8 @@ export class Picture {
       put(drive.arc, "display", place ? "inline" : "none");
       put(drive.head, "display", place ? "inline" : "none");
       if (!place) continue;
-      const { arc, tip, way: turn } = turningArc(way, drive.forward);
+      const { arc, tip, way: turn, middle } = turningArc(way, drive.forward);
+      drive.middle = -middle;
       put(drive.arc, "d", arc);
       put(drive.arc, "transform", at(place));
       put(drive.head, "transform", at(plus(place, tip), turn));
@@ -392,6 +393,8 @@ export class Picture {
         .filter((other): other is Place => Boolean(other) && Math.hypot(other![0]! - place[0]!, other![1]! - place[1]!) > 1)
         .map((other) => Math.atan2(other[1]! - place[1]!, other[0]! - place[0]!));
       if (point.kind === "fixed" && this.scene!.kind === "plane") lines.push(Math.PI / 2, Math.PI / 2 - 0.6, Math.PI / 2 + 0.6);
+      const drive = this.drives.find((one) => one.point === point.name);
+      if (drive) lines.push(drive.middle - 0.7, drive.middle, drive.middle + 0.7);
       const guide = sliders.get(point.name);
       if (guide && guide.direction !== null) lines.push(-guide.direction, Math.PI - guide.direction);
       const room = (turn: number): number => lines.reduce((least, line) => {

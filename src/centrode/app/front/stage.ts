@@ -105,7 +105,8 @@ export class Stage {
       if (focused && kind) this.svg.querySelector<SVGGElement>(`[data-kind="${kind}"][data-name="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
     }
     if (this.fitted !== fits) {
-      if (now.points.length) this.fitted = fits;
+      // once more when it is known how far it moves
+      if (now.points.length && (this.picture.motion || state.still.value)) this.fitted = fits;
       this.fit();
     }
     this.picture.showTracks();

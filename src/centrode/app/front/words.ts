@@ -41,4 +41,4 @@ export const tickText = (value: number, step: number): string => {
   return marked(value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
 };
 
-export const withUnit = (text: string, unit?: string | null): string => (unit && unit !== "1" ? `${text}${unit === "°" ? "" : "\u202f"}${unit}` : text);
+export const withUnit = (text: string, unit?: string | null): string => (unit && unit !== "1" ? `${text}${unit === "°" ? "" : "\u00a0"}${unit}` : text);
