@@ -6,7 +6,7 @@ import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
 import { ask, BLANK, fileName, hello, link, load, options, refused, saved, scene, tell, text, token, topic, unsaved } from "./state";
-import { language, say, spelled } from "./words";
+import { language, say, sentences, spelled } from "./words";
 
 export const dialog = signal<"" | "open" | "save" | "export" | "photo" | "keys" | "discard">("");
 let onward: (() => void) | null = null; // what follows when changes may be lost
@@ -63,7 +63,7 @@ async function openFile(name: string): Promise<void> {
 }
 async function importLink(): Promise<void> {
   const answer = await ask({ do: "import", url: address.value.trim() });
-  if (answer.error || answer.missing) wrong.value = [answer.error?.message ?? answer.missing, answer.error?.repair ?? answer.repair].filter(Boolean).join(" ");
+  if (answer.error || answer.missing) wrong.value = sentences(answer.error?.message ?? answer.missing, answer.error?.repair ?? answer.repair);
   else take(answer.text, null, false);
 }
 
@@ -123,7 +123,7 @@ async function write(name: string): Promise<boolean> {
   const expected = name === fileName.value && saved.value !== null ? await sha(saved.value) : undefined, sent = text.value;
   const answer = await ask({ do: "save", name, text: sent, ...(expected ? { expected } : {}) });
   if (answer.error) {
-    wrong.value = [answer.error.message, answer.error.repair].filter(Boolean).join(" ");
+    wrong.value = sentences(answer.error.message, answer.error.repair);
     return false;
   }
   fileName.value = answer.name ?? name;
@@ -169,7 +169,7 @@ async function exported(topicName: string, format: string): Promise<void> {
     });
     if (!answer.ok) {
       const told = await answer.json().catch(() => ({ message: answer.statusText }));
-      wrong.value = [told.error?.message ?? told.message, told.error?.repair ?? told.repair].filter(Boolean).join(" ");
+      wrong.value = sentences(told.error?.message ?? told.message, told.error?.repair ?? told.repair);
       return;
     }
     const name = /filename\*?=(?:UTF-8'')?"?([^";]+)/i.exec(answer.headers.get("Content-Disposition") ?? "")?.[1] ?? `${topicName}.${format}`;

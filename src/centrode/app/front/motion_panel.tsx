@@ -5,7 +5,7 @@ import { Chart, type ChartData } from "./chart";
 import { Icon } from "./icons";
 import type { Motion } from "./motion";
 import { motion, place, playing, scene, selection, still, tell } from "./state";
-import { fixed, say, withUnit } from "./words";
+import { fixed, say, sentence, withUnit } from "./words";
 
 interface Course {
   key: string;
@@ -173,7 +173,7 @@ export function MotionPanel() {
   if (!now) return <Missing message={still.value?.message || say("no_motion")} repair={still.value?.repair ?? ""} />;
   return (
     <>
-      {now.limits.map((sentence) => <p class="limit">{sentence}</p>)}
+      {now.limits.map((one) => <p class="limit">{sentence(one)}</p>)}
       <div class="charts">{chosen.value.map((_key, k) => <CourseChart key={k} at={k} />)}</div>
       <div class="buttons">
         <button type="button" onClick={() => {
@@ -191,7 +191,7 @@ export function MotionPanel() {
 }
 
 export function Missing({ message, repair }: { message: string; repair?: string | null }) {
-  return <p class="missing"><b>{message}</b>{repair ? ` ${repair}` : ""}</p>;
+  return <p class="missing"><b>{sentence(message)}</b>{repair ? ` ${sentence(repair)}` : ""}</p>;
 }
 
 async function copyTable(): Promise<void> {

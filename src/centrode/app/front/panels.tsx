@@ -5,7 +5,7 @@ import { CamPanel } from "./cam";
 import { ChartView, Missing, MotionPanel, signed } from "./motion_panel";
 import type { Block, Panel, TopicOption } from "./protocol";
 import { arrows, available, hello, motion, options, panelKey, panels, readiness, scene, selection, show, topic, waits } from "./state";
-import { fixed, say, spelled } from "./words";
+import { fixed, say, sentence, spelled } from "./words";
 
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
@@ -162,12 +162,12 @@ export function ReadinessView() {
   if (!now) return null;
   return (
     <div class="readiness">
-      {now.missing.map((sentence) => <p class="lacks">{sentence}</p>)}
+      {now.missing.map((one) => <p class="lacks">{sentence(one)}</p>)}
       {now.loose.length > 0 && (
         <p class="lacks">{say("loose_points")} {now.loose.map((name) => <button type="button" class="name" onClick={() => { selection.value = [name]; }}>{name}</button>)}</p>
       )}
-      {!now.missing.length && !now.loose.length && <p class="good">{say("ready")}</p>}
-      {now.limit && <p class="limit">{now.limit}</p>}
+      {(now.ready ?? (!now.missing.length && !now.loose.length)) && <p class="good">{say("ready")}</p>}
+      {now.limit && <p class="limit">{sentence(now.limit)}</p>}
       <Facts facts={now.facts.slice(0, 1)} />
       {now.facts.length > 1 && <details class="more"><summary>{say("more")}</summary><Facts facts={now.facts.slice(1)} /></details>}
     </div>

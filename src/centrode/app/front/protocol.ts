@@ -130,6 +130,7 @@ export interface Fact {
 export interface Readiness {
   mobility?: number | null;
   facts: Fact[];
+  ready?: boolean;
   loose: string[];
   missing: string[];
   limit?: string | null;
@@ -141,6 +142,7 @@ export interface Reading {
   problems: Problem[];
   readiness: Readiness | null;
   changed?: string[];
+  named?: string[]; // what an edit made
   error?: Refusal;
 }
 export interface TopicOption {

@@ -4,7 +4,7 @@ import { Icon } from "./icons";
 import { signed } from "./motion_panel";
 import { type Dimension, ROWS, type Row, type RowName } from "./protocol";
 import { edit, readiness, scene, selection } from "./state";
-import { say } from "./words";
+import { say, sentence } from "./words";
 
 const why = signal<string>(""); // of the row under pointer or focus
 
@@ -25,11 +25,11 @@ export async function mirrorSelected(upright: boolean): Promise<void> {
   const at = now.points.filter((point) => names.has(point.name) && point.at).map((point) => point.at!);
   if (!at.length) return;
   const middle = [0, 1].map((axis) => (Math.min(...at.map((one) => one[axis]!)) + Math.max(...at.map((one) => one[axis]!))) / 2);
-  await edit({ do: "mirror", objects: selection.value, axis: { at: middle, direction: upright ? [0, 1] : [1, 0] } });
+  await edit({ do: "mirror", objects: selection.value, axis: [middle, [middle[0]! + (upright ? 0 : 1), middle[1]! + (upright ? 1 : 0)]] });
 }
 
 function StateRow({ name, row, of }: { name: RowName; row: Row | undefined; of: string[] }) {
-  const allowed = row?.allowed ?? false, on = row?.on ?? false, reason = allowed ? "" : row?.why || say("row_no_object");
+  const allowed = row?.allowed ?? false, on = row?.on ?? false, reason = allowed ? "" : sentence(row?.why) || say("row_no_object");
   const valued = on && row && row.value !== undefined && row.value !== null && allowed && of.length === 1;
   const put = (value?: unknown): void => void edit(...of.map((object) => ({ do: "set_row", object, row: name, on: value !== undefined ? true : !on, ...(value !== undefined ? { value } : {}) })));
   const numbers = valued ? (Array.isArray(row.value) ? row.value : [row.value]) : [];

@@ -5,7 +5,7 @@ import { U, digits, minus, plus, roundStep, size } from "./outlines";
 import { Globe, Plane } from "./paper";
 import { Picture, make } from "./picture";
 import { photo, scalePhoto } from "./photo";
-import { type Frame, type Place, isFrame } from "./protocol";
+import { type Frame, type Place, type Reading, isFrame } from "./protocol";
 import * as state from "./state";
 import { ask, digest, edit, mode, motion, place, playing, scene, selection, tell } from "./state";
 import { say, spelled, withUnit } from "./words";
@@ -47,6 +47,7 @@ export class Stage {
   private built: unknown = null;
   private fitted = -1;
   private space = false;
+  private fits = true; // until somebody zooms or draws
 
   constructor(private readonly holder: HTMLElement) {
     this.svg = make("svg", { class: "drawing", tabindex: 0, role: "application", "data-updates": 0 });
@@ -106,7 +107,7 @@ export class Stage {
     }
     if (this.fitted !== fits) {
       // once more when it is known how far it moves
-      if (now.points.length && (this.picture.motion || state.still.value)) this.fitted = fits;
+      if (!now.points.length || this.picture.motion || state.still.value) this.fitted = fits;
       this.fit();
     }
     this.picture.showTracks();
@@ -128,12 +129,13 @@ export class Stage {
 
   private resize(): void {
     const wide = Math.max(100, this.holder.clientWidth), high = Math.max(100, this.holder.clientHeight);
+    if (wide === this.plane.wide && high === this.plane.high) return;
     Object.assign(this.plane, { wide, high });
     this.globe.centre = [(wide * U) / 2, (high * U) / 2];
     this.globe.radius = 0.42 * Math.min(wide, high) * U;
     this.svg.setAttribute("viewBox", `0 0 ${wide * U} ${high * U}`);
-    if (this.fitted >= 0) this.fit();
-    this.view();
+    if (this.fits) this.fit();
+    else this.view();
   }
 
   private view(): void {
@@ -143,6 +145,7 @@ export class Stage {
   }
 
   fit(): void {
+    this.fits = true;
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     const take = (at: Place | null): void => at?.slice(0, 2).forEach((value, axis) => {
       if (!Number.isFinite(value)) return;
@@ -170,6 +173,7 @@ export class Stage {
   }
 
   zoom(by: number, about: Place = [(this.plane.wide * U) / 2, (this.plane.high * U) / 2]): void {
+    this.fits = false;
     if (this.spherical) this.globe.radius = Math.min(60000, Math.max(500, this.globe.radius * by));
     else this.plane.zoom(by, about);
     this.view();
@@ -344,6 +348,7 @@ export class Stage {
     let last = from;
     return {
       move: (at) => {
+        this.fits = false;
         if (this.spherical) this.globe.turn(at[0]! - last[0]!, last[1]! - at[1]!);
         else this.plane.pan(minus(at, last));
         last = at;
@@ -427,32 +432,33 @@ export class Stage {
 
   // A line that was drawn becomes a link or a guide; a place on a link becomes a point of it first.
   private async finish(line: Line): Promise<void> {
+    this.fits = false;
     const way = minus(line.to, line.from);
     if (!(size(way) > 0)) return;
     if (line.guide) {
       const point = line.target?.kind === "point" ? line.target.name : undefined;
       const answer = await edit({ do: "add_guide", at: line.from, direction: way, ...(point ? { point } : {}) });
-      if (answer) this.added(answer.scene?.guides.map((one) => one.name));
+      this.select(answer, "guides");
       return;
     }
     const ends: (string | undefined)[] = [];
     for (const [target, at] of [[line.target, line.from], [line.end, line.to]] as const) {
       if (target?.kind === "point") ends.push(target.name);
       else if (target?.kind === "link") {
-        const before = new Set(scene.value?.points.map((one) => one.name));
         const answer = await edit({ do: "add_point", link: target.name, at });
         if (!answer) return;
-        ends.push(answer.scene?.points.find((one) => !before.has(one.name))?.name);
+        ends.push(answer.named?.[0]);
       } else ends.push(undefined);
     }
     if (ends[0] !== undefined && ends[0] === ends[1]) return;
     const answer = await edit({ do: "add_link", at: line.from, to: line.to, ...(ends[0] ? { from_point: ends[0] } : {}), ...(ends[1] ? { to_point: ends[1] } : {}) });
-    if (answer) this.added(answer.scene?.links.map((one) => one.name));
+    this.select(answer, "links");
   }
 
-  private added(names: string[] | undefined): void {
-    const last = names?.[names.length - 1];
-    if (last) selection.value = [last];
+  // Selects what an edit has made, so that its state rows are at hand.
+  private select(answer: Reading | null, kind: "points" | "links" | "guides"): void {
+    const made = answer?.scene?.[kind].map((one) => one.name).filter((name) => answer.named?.includes(name)) ?? [];
+    if (made.length) selection.value = made.slice(-1);
   }
 
   private double(event: MouseEvent): void {
@@ -462,10 +468,7 @@ export class Stage {
   }
 
   async addPoint(link: string, at: Place): Promise<void> {
-    const before = new Set(scene.value?.points.map((one) => one.name));
-    const answer = await edit({ do: "add_point", link, at });
-    const added = answer?.scene?.points.find((one) => !before.has(one.name));
-    if (added) selection.value = [added.name];
+    this.select(await edit({ do: "add_point", link, at }), "points");
   }
 
   // --- dragging what is there ------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ import { History } from "./history";
 import { type Motion, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
 import { packed, unpacked } from "./share";
-import { decimal, language, say, words } from "./words";
+import { decimal, language, say, sentences, words } from "./words";
 
 export type Mode = "draw" | "guide" | "edit" | "move";
 
@@ -47,7 +47,7 @@ export const tell = (message: string, bad = false): void => {
   said.value = { text: message, bad };
 };
 export const refused = (error: { message: string; repair?: string | null }): void =>
-  tell([error.message, error.repair].filter(Boolean).join(" "), true);
+  tell(sentences(error.message, error.repair), true);
 
 export const ask = (request: Request, channel: string | null = null): Promise<any> =>
   connection.ask({ language: language.value, ...request }, channel);

@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { TextEditor } from "./editor";
 import type { Completion } from "./protocol";
 import { ask, editing, problems, text, write } from "./state";
-import { say } from "./words";
+import { say, sentence } from "./words";
 
 let typed = 0;
 let last = 0;
@@ -47,7 +47,7 @@ export function TextPane() {
       <div class="editor" ref={holder} />
       {problems.value.length > 0 && (
         <ul class="problems">{problems.value.slice(0, 6).map((problem) => (
-          <li><span class="bad">{problem.line ? `${say("line", { number: problem.line })}: ` : ""}{problem.message}</span>{problem.repair ? ` ${problem.repair}` : ""}</li>
+          <li><span class="bad">{problem.line ? `${say("line", { number: problem.line })}: ` : ""}{sentence(problem.message)}</span>{problem.repair ? ` ${sentence(problem.repair)}` : ""}</li>
         ))}</ul>
       )}
     </section>

@@ -42,3 +42,10 @@ export const tickText = (value: number, step: number): string => {
 };
 
 export const withUnit = (text: string, unit?: string | null): string => (unit && unit !== "1" ? `${text}${unit === "°" ? "" : "\u00a0"}${unit}` : text);
+
+// A clause of the server's as a sentence.
+export const sentence = (text: string | null | undefined): string => {
+  const plain = (text ?? "").trim();
+  return plain && plain[0]!.toLocaleUpperCase() + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
+};
+export const sentences = (...texts: (string | null | undefined)[]): string => texts.map(sentence).filter(Boolean).join(" ");
