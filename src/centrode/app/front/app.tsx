@@ -10,7 +10,7 @@ import { PanelCard, ReadinessView } from "./panels";
 import { Player, step, toggle } from "./player";
 import { SelectionCard, duplicateSelected, removeSelected } from "./selection_card";
 import { Stage } from "./stage";
-import { type Mode, editing, fileName, follow, hello, keepNow, mode, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, undo, unsaved } from "./state";
+import { type Mode, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, undo, unsaved } from "./state";
 import { TextPane } from "./text_pane";
 import { language, say } from "./words";
 
@@ -159,7 +159,9 @@ effect(() => {
   if (scene.value?.kind === "sphere" && mode.value !== "move") mode.value = "move";
 });
 effect(() => {
-  if (mode.value === "draw" || mode.value === "guide" || mode.value === "edit") playing.value = false;
+  if (mode.value === "move") return;
+  playing.value = false; // what is drawn is the initial position
+  if (scene.peek()?.kind === "plane") place.value = motion.peek()?.start ?? 0;
 });
 effect(() => {
   document.title = `${unsaved.value ? "• " : ""}${scene.value?.title || fileName.value || "centrode"}`;
