@@ -19,6 +19,7 @@ from centrode.app.serving import bound_socket, run_server, work_folder_of
 if __name__ == "__main__":
     port = int(sys.argv[1])
     listener = bound_socket(port)
+    listener.listen(16)  # who comes before it answers waits
     print("listening", flush=True)
     run_server(ServerSettings(work_folder_of(None), port, token=sys.argv[2]), listener, browser=False)
 """

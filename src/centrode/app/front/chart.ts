@@ -8,6 +8,8 @@ const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22;
 export interface ChartLine {
   label: string;
   values: ArrayLike<number>;
+  x?: ArrayLike<number>; // its own abscissa
+  dashed?: boolean;
 }
 export interface ChartData {
   title: string;
@@ -16,6 +18,7 @@ export interface ChartData {
   lines: ChartLine[];
   bands?: { from: number; to: number }[]; // samples that are not reached
   marks?: { at: number; kind: string }[]; // samples of limits and change points
+  places?: { at: number; label: string }[]; // values of the abscissa that have a name
 }
 
 const steps = (least: number, most: number, count: number, turns: boolean): number => {
@@ -105,6 +108,8 @@ export class Chart {
   }
 
   private range(): [number, number] {
+    const own = this.data!.lines.flatMap((line) => Array.from(line.x ?? [])).filter(Number.isFinite);
+    if (own.length) return [own.reduce((a, b) => Math.min(a, b)), own.reduce((a, b) => Math.max(a, b))];
     const values = this.data!.x.values, first = values[0] ?? 0, last = values[values.length - 1] ?? 1;
     this.rising = first <= last;
     return [first, last]; // a drive that turns back has its way from left to right all the same
@@ -142,6 +147,10 @@ export class Chart {
       const at = x(between(abscissa, mark.at));
       make("line", { class: `mark ${mark.kind}`, x1: at, x2: at, y1: UPPER, y2: TALL - LOWER }, svg);
     }
+    for (const one of data.places ?? []) {
+      make("line", { class: "mark change", x1: x(one.at), x2: x(one.at), y1: UPPER, y2: TALL - LOWER }, svg);
+      make("text", { class: "axis", x: x(one.at), y: 13, "text-anchor": "middle" }, svg).textContent = one.label;
+    }
     const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), named = 8 * symbol.length + 22;
     const [first, last] = [Math.min(low, high), Math.max(low, high)], vertical = steps(first, last, wide / 80, data.x.unit === "°");
     for (const tick of ticks(first, last, vertical)) {
@@ -160,11 +169,11 @@ export class Chart {
     data.lines.forEach((line, k) => {
       let d = "", pen = false;
       for (let sample = 0; sample < line.values.length; sample += 1) {
-        const value = line.values[sample]!, known = Number.isFinite(value) && Number.isFinite(abscissa[sample]!);
-        if (known) d += `${pen ? "L" : "M"}${digits(x(abscissa[sample]!))} ${digits(y(value))}`;
+        const value = line.values[sample]!, across = (line.x ?? abscissa)[sample]!, known = Number.isFinite(value) && Number.isFinite(across);
+        if (known) d += `${pen ? "L" : "M"}${digits(x(across))} ${digits(y(value))}`;
         pen = known;
       }
-      make("path", { class: `line line-${k % 6}`, d }, svg);
+      make("path", { class: `line line-${k % 6}${line.dashed ? " dashed" : ""}`, d }, svg);
     });
     this.cursor = this.seek ? make("line", { class: "cursor", y1: UPPER, y2: TALL - LOWER }, svg) : null;
     this.dots = this.seek ? data.lines.map((_line, k) => make("circle", { class: `spot line-${k % 6}`, r: 3.5 }, svg)) : [];

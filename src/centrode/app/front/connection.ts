@@ -106,7 +106,7 @@ export class Connection {
     socket.onclose = () => {
       if (online.value === "open" || this.tries > 1) online.value = "lost";
       this.tries += 1;
-      setTimeout(() => this.open(), Math.min(3000, 250 * 2 ** Math.min(this.tries, 4)));
+      setTimeout(() => this.open(), Math.min(2000, 250 * 2 ** Math.min(this.tries, 4)));
     };
   }
 }

@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
-import { ask, BLANK, fileName, hello, link, load, options, refused, saved, scene, tell, text, token, topic, unsaved } from "./state";
+import { BLANK, ask, available, fileName, hello, link, load, options, refused, saved, scene, tell, text, token, unsaved } from "./state";
 import { language, say, sentences, spelled } from "./words";
 
 export const dialog = signal<"" | "open" | "save" | "export" | "photo" | "keys" | "discard">("");
@@ -184,17 +184,16 @@ async function exported(topicName: string, format: string): Promise<void> {
 
 function ExportWindow() {
   const kind = scene.value?.kind === "cam" ? "cam" : "mechanism";
-  const listed = hello.value?.exports ?? (hello.value?.topics ?? []).flatMap((one) => (one.formats ?? []).map((format) => ({ topic: one.name, format, label: one.title, for: one.for })));
-  const all = listed.filter((one) => !one.for || one.for === kind);
-  const groups = [...new Set(all.map((one) => one.label))].sort((a, b) => Number(all.find((one) => one.label === b)!.topic === topic.value) - Number(all.find((one) => one.label === a)!.topic === topic.value));
+  const all = [...(hello.value?.exports ?? []), ...(hello.value?.topics ?? []).map((one) => ({ name: one.name, title: one.title, formats: one.formats ?? [], for: one.for }))]
+    .filter((one) => one.formats.length && (!one.for || one.for === kind) && available(one.name) === true);
   return (
     <Window name="export" title={say("export")} onClose={() => { wrong.value = ""; }}>
       {wrong.value && <p class="bad" role="alert">{wrong.value}</p>}
       <div class="exports">
-        {groups.map((label) => (
-          <div class="export"><span>{label}</span>
-            <span class="formats">{all.filter((one) => one.label === label).map((one) => (
-              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.topic} ${one.format}`} aria-label={`${label}: ${one.format.toUpperCase()}`} onClick={() => void exported(one.topic, one.format)}>{one.format.toUpperCase()}</button>
+        {all.map((one) => (
+          <div class="export"><span>{one.title}</span>
+            <span class="formats">{one.formats.map((format) => (
+              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exported(one.name, format)}>{format.toUpperCase()}</button>
             ))}</span>
           </div>
         ))}

@@ -7,7 +7,7 @@ import { type Diagnostic, lintGutter, setDiagnostics } from "@codemirror/lint";
 import { Annotation, EditorState, Text } from "@codemirror/state";
 import { EditorView, drawSelection, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
-import type { Completion, Problem } from "./protocol";
+import type { Completions, Problem } from "./protocol";
 
 const OUTSIDE = Annotation.define<boolean>(); // a change that did not come from the keyboard
 
@@ -33,7 +33,7 @@ const look = EditorView.theme({
 export interface EditorHost {
   label: string;
   changed: (text: string) => void;
-  complete: (text: string, line: number, column: number) => Promise<Completion[]>;
+  complete: (text: string, line: number, column: number) => Promise<Completions | null>;
 }
 
 export class TextEditor {
@@ -48,7 +48,7 @@ export class TextEditor {
           lineNumbers(), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), lintGutter(),
           StreamLanguage.define(toml), syntaxHighlighting(colours), look, EditorView.lineWrapping,
           ...(text.includes("\r\n") ? [EditorState.lineSeparator.of("\r\n")] : []), // ends of lines stay as the file has them
-          EditorView.contentAttributes.of({ "aria-label": host.label }),
+          EditorView.contentAttributes.of({ "aria-label": host.label, tabindex: "0" }),
           autocompletion({ override: [(context) => this.complete(context)] }),
           keymap.of([...closeBracketsKeymap, ...completionKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab]),
           EditorView.updateListener.of((update) => {
@@ -82,12 +82,13 @@ export class TextEditor {
   }
 
   private async complete(context: CompletionContext): Promise<CompletionResult | null> {
-    const word = context.matchBefore(/[\w.\-"]*/);
+    const word = context.matchBefore(/[\w\-"[]*/);
     if (!context.explicit && (!word || word.from === word.to)) return null;
     const line = context.state.doc.lineAt(context.pos);
     const found = await this.host.complete(context.state.sliceDoc(), line.number, context.pos - line.from + 1);
-    if (!found.length) return null;
-    return { from: word?.from ?? context.pos, options: found.map((one) => ({ label: one.label, detail: one.detail, info: one.info || undefined, apply: one.apply })), validFor: /^[\w.\-"]*$/ };
+    if (!found?.options.length) return null;
+    const types: Record<string, string> = { key: "property", heading: "namespace", name: "variable", word: "enum" };
+    return { from: line.from + found.from - 1, options: found.options.map((one) => ({ label: one.label, detail: one.detail, type: types[one.type ?? ""] })), validFor: /^[\w.\-"[\]]*$/ };
   }
 
   end(): void {

@@ -64,9 +64,9 @@ function BlockView({ block }: { block: Block }) {
     case "heading":
       return <h3>{block.text}</h3>;
     case "paragraph":
-      return <p>{block.text}</p>;
+      return <p class={block.item ? "item" : ""}>{sentence(block.text)}</p>;
     case "formula":
-      return <Markup className="formula" text={block.mathml} />;
+      return block.mathml ? <Markup className="formula" text={block.mathml} /> : <pre class="formula" tabindex={0} role="region" aria-label={say("formula")}>{block.text}</pre>;
     case "picture":
       return (
         <figure>
@@ -83,14 +83,15 @@ function BlockView({ block }: { block: Block }) {
         kept.current = {
           block,
           data: units.map((unit) => ({
-            title: block.title ?? "", unit: signed(unit), x: { values: numbers(block.x.values), label: block.x.label, unit: signed(block.x.unit) },
-            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label, values: numbers(curve.values) })),
+            title: [block.title, block.y?.label].filter(Boolean).join(": "), unit: signed(unit), x: { values: numbers(block.x.values), label: block.x.label, unit: signed(block.x.unit) },
+            places: (block.marks ?? []).flatMap((mark) => (mark.at === null ? [] : [{ at: mark.at, label: mark.label }])),
+            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, ...(curve.x ? { x: numbers(curve.x) } : {}) })),
           })),
         };
       }
       return (
         <figure class="chart">
-          {block.title && <figcaption class="head">{block.title}</figcaption>}
+          {(block.title || block.y?.label) && <figcaption class="head"><span>{block.title}</span>{block.y?.label && block.y.label !== block.title && <span class="unit">{block.y.label}</span>}</figcaption>}
           {kept.current.data.map((data) => <ChartView data={data} cursor={follows} key={String(follows)} />)}
         </figure>
       );
@@ -120,10 +121,15 @@ function Options({ of, name }: { of: TopicOption[]; name: string }) {
     <div class="options">
       {of.map((option) => {
         const value = now[option.name] ?? option.value ?? "";
-        if (option.kind === "flag") return <label class="choice"><input type="checkbox" checked={Boolean(value)} onChange={(event) => put(option, event.currentTarget.checked)} /> {option.label}</label>;
-        if (option.kind === "choice") return (
-          <label><span>{option.label}</span>
-            <select value={String(value)} onChange={(event) => put(option, event.currentTarget.value)}>{(option.choices ?? []).map((choice) => <option value={choice.value}>{choice.label}</option>)}</select>
+        const label = option.label, hint = option.hint;
+        if (option.kind === "flag") return <label class="choice" title={hint}><input type="checkbox" checked={Boolean(value)} onChange={(event) => put(option, event.currentTarget.checked)} /> {label}</label>;
+        const choices = option.of === "link" ? (scene.value?.links ?? []).map((one) => ({ value: one.name, label: one.name })) : option.kind === "choice" ? option.choices ?? [] : null;
+        if (choices) return (
+          <label title={hint}><span>{label}</span>
+            <select value={String(value)} onChange={(event) => put(option, event.currentTarget.value || null)}>
+              {(option.value === null || option.value === undefined) && <option value="">—</option>}
+              {choices.map((choice) => <option value={choice.value}>{choice.label}</option>)}
+            </select>
           </label>
         );
         if (option.kind === "number" && option.least !== undefined && option.most !== undefined) return (
@@ -132,7 +138,7 @@ function Options({ of, name }: { of: TopicOption[]; name: string }) {
             <output>{spelled(Number(value), 4)}</output>
           </label>
         );
-        return <label><span>{option.label}</span><input type="text" value={String(value)} onChange={(event) => put(option, event.currentTarget.value)} /></label>;
+        return <label title={hint}><span>{label}</span><input type="text" value={String(value)} onChange={(event) => put(option, event.currentTarget.value.trim() || null)} /></label>;
       })}
     </div>
   );

@@ -48,7 +48,7 @@ effect(() => {
 const told = computed(() => {
   const now = motion.value;
   if (scene.value?.kind === "cam") {
-    const angles = scene.value.cam?.displacement.angle ?? [], angle = scene.value.display?.angle ?? { unit: "rad", factor: 1 };
+    const angles = scene.value.cam?.displacement?.angle ?? [], angle = scene.value.display?.angle ?? { unit: "rad", factor: 1 };
     return { text: `φ = ${withUnit(fixed((angles[Math.round(place.value)] ?? NaN) * angle.factor, 360, 4), signed(angle.unit))}`, bad: false };
   }
   if (!now) return { text: "", bad: false };

@@ -83,17 +83,16 @@ export interface Segment {
   law?: string | null;
   laws?: string[];
   names?: Record<string, string>;
-  shown: { angle: string; lift?: string | null };
-  paths: { angle?: string; lift?: string; law?: string };
 }
 export interface CamScene {
   profile: Place[];
   pitch?: Place[] | null;
-  base: number;
+  base: number | null;
   roller?: number | null;
-  displacement: Record<string, number[]>;
-  labels?: Record<string, { label: string; unit: string; factor: number }>;
+  displacement: { missing?: string; repair?: string; unit?: string; angle?: number[]; lift?: (number | null)[]; velocity?: (number | null)[]; acceleration?: (number | null)[] } | null;
   segments: Segment[];
+  missing?: string;
+  repair?: string;
 }
 export interface Display {
   length: { unit: string; factor: number };
@@ -152,7 +151,9 @@ export interface TopicOption {
   choices?: { value: string; label: string }[];
   least?: number;
   most?: number;
-  value?: string | number | boolean;
+  value?: string | number | boolean | null;
+  hint?: string;
+  of?: string | null; // kind of the objects that it names
 }
 export interface Topic {
   name: string;
@@ -167,9 +168,9 @@ export interface Template {
   kind: string;
 }
 export interface Export {
-  topic: string;
-  format: string;
-  label: string;
+  name: string;
+  title: string;
+  formats: string[];
   for?: string;
 }
 export interface Hello {
@@ -194,14 +195,16 @@ export interface Curve {
   label: string;
   unit: string;
   values: (number | null)[];
+  x?: (number | null)[];
+  dashed?: boolean;
 }
 export type Block =
   | { kind: "facts"; facts: Fact[] }
   | { kind: "table"; title?: string; columns: Column[]; rows: (string | number | null)[][] }
-  | { kind: "plot"; title?: string; x: Curve; curves: Curve[]; cursor?: string | null }
+  | { kind: "plot"; title?: string; x: Curve; y?: { label: string; unit: string }; curves: Curve[]; cursor?: string | null; marks?: { label: string; at: number | null }[] }
   | { kind: "picture"; title?: string; svg: string; dark?: string; alt?: string }
-  | { kind: "formula"; mathml: string }
-  | { kind: "paragraph"; text: string }
+  | { kind: "formula"; text?: string; mathml?: string }
+  | { kind: "paragraph"; text: string; item?: boolean }
   | { kind: "heading"; text: string }
   | { kind: "arrows"; title?: string; unit: string; at: string[]; labels?: string[]; vectors: (number | null)[][][] };
 export interface Panel {
@@ -215,9 +218,11 @@ export interface Panel {
 export interface Completion {
   label: string;
   detail?: string;
-  info?: string;
-  apply?: string;
-  kind?: string;
+  type?: string;
+}
+export interface Completions {
+  from: number; // column, from 1
+  options: Completion[];
 }
 
 // A binary frame: length of the header, the header as JSON, float32 numbers.

@@ -171,7 +171,7 @@ export async function show(): Promise<void> {
   const key = panelKey(name);
   if (panels.value.has(key) || waits.value === key || available(name) !== true) return;
   waits.value = key;
-  const answer = await ask({ do: "panel", digest: digest.value, topic: name, options: options.value[name] ?? {} }, "panel");
+  const answer = await ask({ do: "panel", digest: digest.value, topic: name, options: options.value[name] ?? {}, samples: SAMPLES }, "panel");
   if (waits.value === key) waits.value = null;
   if (answer === SUPERSEDED) return;
   const panel: Panel = answer.error ? { topic: name, title: name, blocks: [], missing: answer.error.message, repair: answer.error.repair } : answer;

@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { TextEditor } from "./editor";
-import type { Completion } from "./protocol";
+import type { Completions } from "./protocol";
 import { ask, editing, problems, text, write } from "./state";
 import { say, sentence } from "./words";
 
@@ -29,7 +29,7 @@ export function TextPane() {
         },
         complete: async (value, line, column) => {
           const answer = await ask({ do: "complete", text: value, line, column }, "complete");
-          return (answer?.completions ?? []) as Completion[];
+          return Array.isArray(answer?.options) ? (answer as Completions) : null;
         },
       });
       stops.push(effect(() => editor!.put(text.value)), effect(() => editor!.mark(problems.value)));
