@@ -67,7 +67,7 @@ export class Connection {
   }
 
   private send(one: Waiting): void {
-    busy.value = one.channel !== "drag";
+    if (!SLOW.has(one.request.do)) busy.value = one.channel !== "drag";
     this.socket!.send(JSON.stringify({ id: one.id, ...one.request }));
   }
 

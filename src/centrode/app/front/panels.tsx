@@ -1,11 +1,11 @@
 // Sheets of topics: facts, tables, curves and pictures as the server sends them.
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { CamPanel } from "./cam";
 import { ChartView, Missing, MotionPanel, signed } from "./motion_panel";
 import type { Block, Panel, TopicOption } from "./protocol";
 import { arrows, available, hello, motion, options, panelKey, panels, readiness, scene, selection, show, topic, waits } from "./state";
-import { fixed, say, sentence, spelled } from "./words";
+import { fixed, say, sentence, spelled, typeset } from "./words";
 
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
@@ -31,7 +31,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 function Facts({ facts }: { facts: { label: string; text: string }[] }) {
   return (
     <dl class="facts">
-      {facts.map((fact) => <div><dt>{fact.label}</dt><dd>{fact.text}</dd></div>)}
+      {facts.map((fact) => <div><dt>{fact.label}</dt><dd>{typeset(fact.text)}</dd></div>)}
     </dl>
   );
 }
@@ -46,7 +46,7 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
         <table>
           <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}>{column.head}{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
           <tbody>
-            {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : cell ?? ""}</td>)}</tr>)}
+            {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : typeset(cell ?? "")}</td>)}</tr>)}
           </tbody>
         </table>
       </div>
@@ -64,7 +64,7 @@ function BlockView({ block }: { block: Block }) {
     case "heading":
       return <h3>{block.text}</h3>;
     case "paragraph":
-      return <p class={block.item ? "item" : ""}>{sentence(block.text)}</p>;
+      return <p class={block.item ? "item" : ""}>{typeset(sentence(block.text))}</p>;
     case "formula":
       return block.mathml ? <Markup className="formula" text={block.mathml} /> : <pre class="formula" tabindex={0} role="region" aria-label={say("formula")}>{block.text}</pre>;
     case "picture":
@@ -108,7 +108,7 @@ function BlockView({ block }: { block: Block }) {
 // Arrows on the drawing belong to the description that they were computed of.
 effect(() => {
   const now = topic.value, open = panels.value.get(panelKey(now));
-  const found = open?.blocks.find((block) => block.kind === "arrows") ?? null;
+  const found = open?.blocks?.find((block) => block.kind === "arrows") ?? null;
   if (arrows.peek() !== found) arrows.value = found;
 });
 
@@ -144,6 +144,8 @@ function Options({ of, name }: { of: TopicOption[]; name: string }) {
   );
 }
 
+const opened = signal(new Set<string>()); // topics whose options are shown
+
 // While a new sheet is computed the last one of its topic stays, so that nothing jumps.
 const last = new Map<string, Panel>();
 
@@ -155,7 +157,17 @@ function ServerPanel({ name }: { name: string }) {
   const own = shown?.options ?? hello.value?.topics.find((one) => one.name === name)?.options ?? [];
   return (
     <div class={panel ? "sheet" : "sheet waits"} aria-busy={!panel}>
-      {own.length > 0 && <Options of={own} name={name} />}
+      {own.length > 0 && (
+        <details class="more" open={opened.value.has(name)} onToggle={(event) => {
+          const next = new Set(opened.value);
+          if (event.currentTarget.open) next.add(name);
+          else next.delete(name);
+          if (next.size !== opened.value.size) opened.value = next;
+        }}>
+          <summary>{say("options")}</summary>
+          <Options of={own} name={name} />
+        </details>
+      )}
       {!shown && <p class="hint">{say("computing")}</p>}
       {shown?.missing && <Missing message={shown.missing} repair={shown.repair} />}
       {shown?.blocks?.map((block, k) => <BlockView block={block} key={`${name} ${k} ${block.kind}`} />)}
@@ -188,7 +200,8 @@ export const tabs = (): Tab[] => {
   const cam = scene.value?.kind === "cam", kind = cam ? "cam" : "mechanism";
   const own: Tab[] = cam ? [{ name: "cam", title: say("panel_cam") }] : [{ name: "motion", title: say("panel_motion") }];
   const known = (hello.value?.topics ?? []).filter((one) => (!one.for || one.for === kind) && one.name !== "motion" && one.name !== "readiness" && one.name !== "cam");
-  return [...own, ...known.map((one) => ({ name: one.name, title: one.title }))];
+  const there = (one: Tab): number => Number(available(one.name) !== true); // what does not apply stands behind
+  return [...own, ...known.map((one) => ({ name: one.name, title: one.title })).sort((a, b) => there(a) - there(b))];
 };
 
 export function PanelCard() {
@@ -206,6 +219,9 @@ export function PanelCard() {
   };
   return (
     <section class="card panel" aria-label={say("panels")}>
+      <select class="tab-list" aria-label={say("panels")} value={now} onChange={(event) => { topic.value = event.currentTarget.value; }}>
+        {all.map((one) => <option value={one.name} disabled={available(one.name) !== true}>{one.title}</option>)}
+      </select>
       <div class="tabs" role="tablist" aria-label={say("panels")} onKeyDown={go}>
         {all.map((one) => (
           <button type="button" role="tab" id={`tab-${one.name}`} aria-controls="panel" aria-selected={one.name === now} tabindex={one.name === now ? 0 : -1}

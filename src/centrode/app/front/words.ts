@@ -49,3 +49,8 @@ export const sentence = (text: string | null | undefined): string => {
   return plain && plain[0]!.toLocaleUpperCase() + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
 };
 export const sentences = (...texts: (string | null | undefined)[]): string => texts.map(sentence).filter(Boolean).join(" ");
+
+// What a terminal spells with the signs of a keyboard, with those of print.
+export const typeset = (text: string): string =>
+  text.replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
+    .replace(/(?<![\p{L}\d_)\]])-(?=\d)/gu, "−").replace(/(?<=\d) - (?=\d)/g, " − ");
