@@ -189,9 +189,9 @@ function ExportWindow() {
   return (
     <Window name="export" title={say("export")} onClose={() => { wrong.value = ""; }}>
       {wrong.value && <p class="bad" role="alert">{wrong.value}</p>}
-      <div class="exports">
+      <div class="export-list">
         {all.map((one) => (
-          <div class="export"><span>{one.title}</span>
+          <div class="export-row"><span>{one.title}</span>
             <span class="formats">{one.formats.map((format) => (
               <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exported(one.name, format)}>{format.toUpperCase()}</button>
             ))}</span>
@@ -266,7 +266,7 @@ const KEYS: [string, string][] = [
 function KeysWindow() {
   return (
     <Window name="keys" title={say("keys")}>
-      <dl class="keys">{KEYS.map(([keys, what]) => <div><dt>{keys.split("  ").map((key) => <kbd>{key}</kbd>)}</dt><dd>{say(what)}</dd></div>)}</dl>
+      <dl class="key-list">{KEYS.map(([keys, what]) => <div><dt>{keys.split("  ").map((key) => <kbd>{key}</kbd>)}</dt><dd>{say(what)}</dd></div>)}</dl>
     </Window>
   );
 }

@@ -53,7 +53,10 @@ export const ask = (request: Request, channel: string | null = null): Promise<an
   connection.ask({ language: language.value, ...request }, channel);
 
 // --- texts and what they mean ------------------------------------------------------------------------------------------
+let known = ""; // the text that the digest is of
+const named = (): { digest: string } | { text: string } => (known === text.value ? { digest: digest.value } : { text: text.value });
 function take(answer: Reading): void {
+  known = answer.text;
   digest.value = answer.digest;
   connection.know(answer.digest, answer.text);
   scene.value = answer.scene ?? scene.value;
@@ -102,9 +105,6 @@ export function load(next: string, name: string | null, onDisk: boolean): void {
   selection.value = [];
   place.value = 0;
   playing.value = false;
-  motion.value = null;
-  still.value = null;
-  scene.value = null;
   fits.value += 1;
   settle();
   void read();
@@ -114,7 +114,7 @@ export const fits = signal(0); // counts up when the view has to hold everything
 export async function edit(...operations: Record<string, unknown>[]): Promise<Reading | null> {
   reads += 1;
   const before = text.value;
-  const answer = await ask({ do: "edit", digest: digest.value, operations });
+  const answer = await ask({ do: "edit", ...named(), operations });
   if (answer.error) {
     refused(answer.error);
     return null;
