@@ -8,11 +8,15 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from centrode.app.cam_scene import cam_scene
+from centrode.app.completion import completions
 from centrode.app.documents import TEXT_SIZE, Document, digest_of, read_document
+from centrode.app.exports import export_list, exported_file
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import frame_bytes
 from centrode.app.moving import motion_answer, place_on_way, way_of
 from centrode.app.operations import Patch, apply_operations
+from centrode.app.panels import panel_of, topic_list, topics_of
 from centrode.app.readiness import readiness_of
 from centrode.app.reshaping import reshape
 from centrode.app.scene import scene_of
@@ -22,6 +26,8 @@ from centrode.app.words import spoken_words
 from centrode.errors import CentrodeError, InputError
 from centrode.locale import LANGUAGES, _, chosen_language, decimal_mark, speaking
 from centrode.model.examples import example_text
+from centrode.model.files import mechanism_text
+from centrode.model.pmks import from_pmks
 from centrode.version import __version__
 
 import numpy as np  # isort: skip
@@ -31,6 +37,7 @@ Answer: TypeAlias = dict[str, Any] | bytes
 
 KEPT_TEXTS = 64
 """Texts that are known by their digest."""
+CAM_READINESS: Mapping[str, Any] = {"mobility": None, "facts": [], "loose": [], "missing": [], "limit": None}
 OPERATIONS = 200
 """Operations of one message."""
 LANGUAGE_NAMES = {"en": "English", "ru": "Русский", "uk": "Українська"}
@@ -65,6 +72,11 @@ class Workbench:
             "files": self.files,
             "open": self.open,
             "save": self.save,
+            "panel": self.panel,
+            "complete": self.complete,
+            "import": self.imported,
+            "export": self.export,
+            "page": self.page,
         }
 
     def answer(self, message: Message) -> Answer:
@@ -143,7 +155,8 @@ class Workbench:
             "templates": template_list(),
             "file": self.work.first_file(),
             "folder": True,
-            "topics": [],
+            "topics": topic_list(),
+            "exports": export_list(),
             "decimal": decimal_mark(),
         }
 
@@ -153,13 +166,17 @@ class Workbench:
 
     def _described(self, document: Document) -> dict[str, Any]:
         digest = self._keep(document.text)
-        sketch = Sketch(document)
+        if document.is_cam:
+            scene, readiness = cam_scene(document), {"ready": document.cam is not None, **CAM_READINESS}
+        else:
+            sketch = Sketch(document)
+            scene, readiness = scene_of(sketch), readiness_of(sketch)
         return {
             "text": document.text,
             "digest": digest,
-            "scene": scene_of(sketch),
+            "scene": {**scene, "topics": topics_of(document)},
             "problems": [problem.as_dict() for problem in document.problems],
-            "readiness": readiness_of(sketch),
+            "readiness": readiness,
         }
 
     def edit(self, message: Message) -> Answer:
@@ -225,6 +242,37 @@ class Workbench:
             raise InputError("", _("the message names no built-in mechanism"))
         text = example_text(name)
         return {"name": name, "text": text, "digest": self._keep(text)}
+
+    def imported(self, message: Message) -> Answer:
+        """The text of a description from a link of PMKS+."""
+        url = message.get("url")
+        if not isinstance(url, str):
+            raise InputError("", _("a link is a text"))
+        text = mechanism_text(from_pmks(url))
+        return {"text": text, "digest": self._keep(text)}
+
+    def panel(self, message: Message) -> Answer:
+        """What a topic has to say about the description."""
+        return panel_of(
+            self.document(message), message.get("topic"), message.get("options"), message.get("samples")
+        )
+
+    def complete(self, message: Message) -> Answer:
+        """What may stand at a place of the text."""
+        line, column = message.get("line"), message.get("column")
+        if not all(isinstance(one, int) and not isinstance(one, bool) for one in (line, column)):
+            raise InputError("", _("a place in a text is a line and a column"))
+        assert isinstance(line, int) and isinstance(column, int)
+        return completions(self.document(message), line, column)
+
+    def export(self, message: Message) -> Answer:
+        """A file of a topic or of the whole description."""
+        document = self.document(message)
+        return exported_file(document, message.get("topic"), message.get("format"), message.get("options"))
+
+    def page(self, message: Message) -> Answer:
+        """The description as one page that computes itself."""
+        return exported_file(self.document(message), "page", "html", {})
 
     # files
 

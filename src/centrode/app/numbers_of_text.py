@@ -80,12 +80,8 @@ def _literal(sketch: Sketch, path: str) -> Place:
     for word in path.split("."):
         key: Any = int(word) if isinstance(value, list) and word.isdecimal() else word
         place.append(key)
-        known = (
-            (isinstance(value, dict)
-            and key in value)
-            or (isinstance(value, list)
-            and isinstance(key, int)
-            and key < len(value))
+        known = (isinstance(value, dict) and key in value) or (
+            isinstance(value, list) and isinstance(key, int) and key < len(value)
         )
         value = value[key] if known else None
     if value is None and value_at_place(sketch.tables, tuple(place[:-1])) is None and len(place) > 1:

@@ -11,7 +11,7 @@ from typing import Any
 
 from centrode.app.documents import Document, read_document
 from centrode.app.numbers_of_text import place_of_path, written_like
-from centrode.app.quantity_texts import read_field, written_quantity
+from centrode.app.quantity_texts import is_number, read_field, typed_quantity, written_quantity
 from centrode.app.references import key_places, references
 from centrode.app.reshaping import (
     Assignment,
@@ -19,6 +19,7 @@ from centrode.app.reshaping import (
     follows_from_points,
     local_place,
     reshape,
+    reshaped_by,
     value_at_place,
     written_position,
 )
@@ -456,7 +457,7 @@ class Patch:
             old = value_at_place(sketch.tables, place)
             if old is None:
                 raise InputError(name, _("this drive has a law of its own: change it in the text"))
-            self._write((place, value if isinstance(value, str) and not _is_number(value) else speed))
+            self._write((place, value if isinstance(value, str) and not is_number(value) else speed))
             return
         if key == "link":
             self._ground_pivot(name)
@@ -470,7 +471,7 @@ class Patch:
             slide = self._slide(sketch, guide)
             if abs(slide) > 1e-9 * sketch.size:
                 entries["start"] = self._length(slide)
-        entries["speed"] = value if isinstance(value, str) and not _is_number(value) else speed
+        entries["speed"] = value if isinstance(value, str) and not is_number(value) else speed
         self._add_entry("drives", entries)
 
     def _slide(self, sketch: Sketch, guide: int) -> float:
@@ -513,11 +514,11 @@ class Patch:
         mass = MASS if value is None else read_field(sketch, value, "mass")
         place: Place = ("links", link, "mass")
         if "mass" in table:
-            text = isinstance(value, str) and not _is_number(value)
+            text = isinstance(value, str) and not is_number(value)
             self._write((place, value if text else written_quantity(sketch, table["mass"], mass, "mass")))
             return
         entries: list[Assignment] = [
-            (place, value if isinstance(value, str) and not _is_number(value) else mass)
+            (place, value if isinstance(value, str) and not is_number(value) else mass)
         ]
         if len(sketch.links[link]) == 2 and not isinstance(table.get("points"), Mapping):
             entries.append((("links", link, "shape"), "rod"))
@@ -574,7 +575,7 @@ class Patch:
             self._stretch(sketch, str(place[1]), number)
             return
         old = value_at_place(sketch.tables, place)
-        text = isinstance(value, str) and not _is_number(value)
+        text = isinstance(value, str) and not is_number(value)
         self._write(
             (place, value.strip() if text else written_quantity(sketch, old, number, kind, exactly=True))
         )
@@ -595,7 +596,7 @@ class Patch:
         old = value_at_place(sketch.tables, place)
         prepared = follow(sketch, path, number)
         own: tuple[Assignment, ...] = ()
-        text = isinstance(value, str) and not _is_number(value)
+        text = isinstance(value, str) and not is_number(value)
         if old is not None or place[0] == "drives":
             own = (
                 (place, value.strip() if text else written_quantity(sketch, old, number, kind, exactly=True)),
@@ -682,7 +683,7 @@ class Patch:
         sketch = self.sketch
         for link in sketch.owners(point):
             rest = [one for one in sketch.links[link] if one != point]
-            if len(rest) < 2 or two_points(link):
+            if len(rest) < 2 or not sketch.tables["links"][link].get("points"):
                 self._delete_link(link)
                 continue
             place: Place = ("links", link, "points")
@@ -778,27 +779,18 @@ class Patch:
     def _mirror(self, operation: Operation) -> None:
         sketch = self._plane()
         _links, points = self._chosen(self._objects(operation))
-        if not self._is_short():
-            what = _("only a description with coordinates of its points is mirrored here")
-            raise InputError("", what, _("change the angles in the text"))
-        (x, y), direction = self._axis(
-            operation.get("axis"), [sketch.places[one] for one in points if one in sketch.places]
-        )
+        known = [sketch.places[one] for one in points if one in sketch.places]
+        if len(known) < len(points):
+            raise InputError("", _("its place is not known: correct the description first"))
+        (x, y), direction = self._axis(operation.get("axis"), known)
         cosine, sine = math.cos(2.0 * direction), math.sin(2.0 * direction)
-        assignments: list[Assignment] = []
+        moved: dict[str, Vector] = {}
         for point in points:
             if point in sketch.marks["fixed"]:
                 raise InputError(point, _("this joint is held: switch Fixed off to drag it"))
-            if point not in sketch.tables["points"]:
-                raise InputError(point, _("its place is not known: correct the description first"))
             u, v = sketch.places[point][0] - x, sketch.places[point][1] - y
-            place = (x + u * cosine + v * sine, y + u * sine - v * cosine)
-            old = sketch.tables["points"][point]
-            for axis in range(2):
-                value = written_quantity(sketch, old[axis], place[axis], "length")
-                if value != old[axis]:
-                    assignments.append((("points", point, axis), value))
-        self._write(*assignments)
+            moved[point] = (x + u * cosine + v * sine, y + u * sine - v * cosine)
+        self._write(*reshaped_by(sketch, moved, self.folder).assignments)
 
     def _axis(self, axis: Any, places: Sequence[Vector]) -> tuple[Vector, float]:
         """A place on the axis of a mirror, and its direction."""
@@ -918,11 +910,3 @@ class Patch:
                 changes.remove(place)
         self.text = marked_names(changes.text, {old: None})
         self.changed.append(kept)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text.replace(",", "."))
-    except ValueError:
-        return False
-    return True

@@ -100,3 +100,27 @@ def read_field(sketch: Sketch, text: object, kind: str) -> float:
         factor = (LENGTHS | ANGLES)[str(unit)]
         return scaled(to_si(float(typed), kind), 1.0 / factor)
     return to_si(float(typed), kind)
+
+
+def is_number(text: str) -> bool:
+    """Whether a text is a number without a unit; a comma may stand before its decimals."""
+    return _NUMBER.fullmatch(text.strip()) is not None
+
+
+def typed_quantity(sketch: Sketch, old: Any, typed: object, value: float, kind: str) -> Any:
+    """What somebody has typed into a field as a file holds it: with the unit that was typed, or that of the display.
+
+    `value` is what it means [SI].
+    """
+    if isinstance(typed, str) and not is_number(typed):
+        return typed.strip()
+    display = sketch.tables.get("display")
+    display = display if isinstance(display, dict) else {}
+    unit = {"length": display.get("length", "m"), "angle": display.get("angle", "rad")}.get(kind)
+    number = float(typed.replace(",", ".")) if isinstance(typed, str) else None
+    known = _unit_of(old) if isinstance(old, str) else None
+    if number is not None and unit not in (None, "m", "rad") and (old is None or known == unit):
+        return f"{plain(number)} {unit}"
+    if known is None and unit in (None, "m", "rad"):
+        return value
+    return written_quantity(sketch, old, value, kind, exactly=True)

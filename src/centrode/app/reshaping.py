@@ -68,17 +68,26 @@ def reshape(sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bo
     if len(to) != 2 or not all(map(math.isfinite, to)):
         raise InputError(point, _("a place is two numbers"))
     allowed, held = allowed_place(sketch, point, (to[0], to[1]))
-    moved = moved_with(sketch, point, allowed)
+    return reshaped_by(sketch, moved_with(sketch, point, allowed), folder, held=held, exactly=exactly)
+
+
+def reshaped_by(
+    sketch: Sketch, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
+) -> Reshaped:
+    """The description with some points at other places, everything else standing.
+
+    Raises InputError where it would not assemble so.
+    """
     assignments = tuple(
         (place, value)
         for place, value in reshaping_assignments(sketch, moved, exactly=exactly)
         if value != value_at_place(sketch.tables, place)
     )
     tables = with_assignments(sketch.tables, assignments)
-    if sketch.document.mechanism is None or sketch.document.prepared is None:
+    if sketch.document.prepared is None:
         places = {**sketch.places, **moved}
         return Reshaped(assignments, tables, None, places, _values(sketch, places, moved), held)
-    prepared, assignments, tables = _assembled(sketch, assignments, tables, point, allowed, folder)
+    prepared, assignments, tables = _assembled(sketch, assignments, tables, moved, folder)
     at = prepared.assembled.positions.points
     places = {name: (float(at[name][0]), float(at[name][1])) for name in sketch.points if name in at}
     return Reshaped(assignments, tables, prepared, places, _values(sketch, places, moved), held)
@@ -88,25 +97,27 @@ def _assembled(
     sketch: Sketch,
     assignments: tuple[Assignment, ...],
     tables: Mapping[str, Any],
-    point: str,
-    place: Vector,
+    moved: Mapping[str, Vector],
     folder: Path,
 ) -> tuple[Ready, tuple[Assignment, ...], Mapping[str, Any]]:
-    """The reshaped mechanism in its initial position, on the side on which the joint stands where it was put."""
-    prepared = prepared_from(tables, folder)
-    if _stands(sketch, prepared, point, place):
-        return prepared, assignments, tables
+    """The reshaped mechanism in its initial position, on the sides on which the points stand where they were put."""
     sides = sketch.tables.get("assembly", {}).get("sides", {})
-    for key, side in sides.items():
-        turned = (*assignments, (("assembly", "sides", key), OTHER_SIDE.get(side, side)))
-        other = with_assignments(sketch.tables, turned)
+    turned = [(("assembly", "sides", key), OTHER_SIDE.get(side, side)) for key, side in sides.items()]
+    failure: CentrodeError | None = None
+    # as it is, with one group on its other side, with all of them
+    for others in ((), *((one,) for one in turned), tuple(turned)):
+        changed = with_assignments(sketch.tables, (*assignments, *others)) if others else tables
         try:
-            prepared = prepared_from(other, folder)
-        except CentrodeError:
+            prepared = prepared_from(changed, folder)
+        except CentrodeError as error:
+            failure = failure or error
             continue
-        if _stands(sketch, prepared, point, place):
-            return prepared, turned, other
-    raise InputError(point, _("with these lengths the joint would not stand there"), _("drag it another way"))
+        if all(_stands(sketch, prepared, point, place) for point, place in moved.items()):
+            return prepared, (*assignments, *others), changed
+    if failure is not None:
+        raise failure
+    what = _("with these lengths the joint would not stand there")
+    raise InputError(next(iter(moved)), what, _("drag it another way"))
 
 
 def _stands(sketch: Sketch, prepared: Ready, point: str, place: Vector) -> bool:

@@ -73,13 +73,13 @@ class Sketch:
     @cached_property
     def points(self) -> tuple[str, ...]:
         """Points in the order of a motion where there is one, else of the text."""
+        spare = _table(self.tables, "points")  # points that nothing has
         if self.document.mechanism is not None:
             mechanism = self.document.mechanism
-            return tuple(dict.fromkeys((*mechanism.frame.points, *mechanism.points)))
+            return tuple(dict.fromkeys((*mechanism.frame.points, *mechanism.points, *spare)))
         named = [*self.fixed, *(point for link in self.links.values() for point in link)]
         named += [str(guide["point"]) for guide in self.guides if isinstance(guide.get("point"), str)]
-        named += list(_table(self.tables, "points"))
-        return tuple(dict.fromkeys(named))
+        return tuple(dict.fromkeys((*named, *spare)))
 
     def owners(self, point: str) -> list[str]:
         """Moving links that have a point."""
@@ -106,6 +106,10 @@ class Sketch:
         if prepared is not None:
             at = prepared.assembled.positions
             points = {name: tuple(map(float, place)) for name, place in at.points.items()}
+            for name, value in _table(self.tables, "points").items():
+                place = coordinates(value)
+                if name not in points and place is not None:
+                    points[name] = place
             if self.on_sphere:
                 return points, {}
             poses = {
