@@ -90,7 +90,7 @@ export class Picture {
         guide,
         joint: make("path", { class: `joint${hue}` }, behind),
         line: make("path", { class: frame ? "ground" : guide.link ? `link rail${hue}` : `shape slot${hue}` }, frame ? this.layers.back : behind),
-        block: guide.link || frame ? make("path", { class: `shape block${guide.link ? ` hue-${this.colour(guide.link)}` : ""}`, d: BLOCK }, links) : null,
+        block: scene.kind === "plane" && (guide.link || frame) ? make("path", { class: `shape block${guide.link ? ` hue-${this.colour(guide.link)}` : ""}`, d: BLOCK }, links) : null,
         grip: make("path", { class: "grip guide" }, grips),
         ends: null,
       };

@@ -60,6 +60,11 @@ function take(answer: Reading): void {
   digest.value = answer.digest;
   connection.know(answer.digest, answer.text);
   scene.value = answer.scene ?? scene.value;
+  if (awaited) {
+    awaited = false;
+    still.value = null;
+    fits.value += 1;
+  }
   problems.value = answer.problems ?? [];
   readiness.value = answer.readiness ?? null;
   const now = answer.scene;
@@ -105,10 +110,11 @@ export function load(next: string, name: string | null, onDisk: boolean): void {
   selection.value = [];
   place.value = 0;
   playing.value = false;
-  fits.value += 1;
+  awaited = true;
   settle();
   void read();
 }
+let awaited = false; // whether the next scene is another mechanism
 export const fits = signal(0); // counts up when the view has to hold everything again
 
 export async function edit(...operations: Record<string, unknown>[]): Promise<Reading | null> {
@@ -272,8 +278,8 @@ async function greet(): Promise<void> {
     text.value = kept.text;
     fileName.value = kept.name;
     saved.value = kept.saved;
+    awaited = true;
     settle();
-    fits.value += 1;
     void read();
   } else {
     const blank = answer.blank ?? BLANK;
