@@ -24,7 +24,11 @@ from playwright.sync_api import sync_playwright
 from tools.report_picture import BROWSERS
 
 FOLDER = Path(__file__).parents[1] / "docs" / "images"
-SIZES: Mapping[str, tuple[int, int]] = {"app": (1600, 900), "app-drawing": (1180, 720), "app-text": (1600, 900)}
+SIZES: Mapping[str, tuple[int, int]] = {
+    "app": (1600, 900),
+    "app-drawing": (1180, 720),
+    "app-text": (1600, 900),
+}
 PATIENCE = 120_000
 """Milliseconds in which the server has to answer."""
 SETTLED = "!document.querySelector('.busy.on') && !document.querySelector('.waiting')"
@@ -140,7 +144,9 @@ def main() -> None:
             settle(window)
             scene(window)
             shown = Image.open(io.BytesIO(window.screenshot())).convert("RGB")
-            shown.quantize(64, dither=Image.Dither.NONE).save(FOLDER / f"{name}.png", format="png", optimize=True)
+            shown.quantize(64, dither=Image.Dither.NONE).save(
+                FOLDER / f"{name}.png", format="png", optimize=True
+            )
             window.close()
         browser.close()
 

@@ -75,12 +75,13 @@ class Bench:
             frames(self.page)
         raise AssertionError(f"it never came to hold; the page says: {self.said()}")
 
-    def gesture(self, act: Callable[[], None]) -> None:
-        """Do something that changes the description, and wait for what follows from it."""
+    def gesture(self, act: Callable[[], None], *, settle: bool = True) -> None:
+        """Do something that changes the description, and wait for what follows from it, or for the text alone."""
         before = self.text
         act()
         self.until(lambda: self.text != before)
-        self.settle()
+        if settle:
+            self.settle()
 
     def settle(self) -> None:
         """Wait until nothing is computed any more."""

@@ -21,7 +21,19 @@ export function Markup({ text, className, label }: { text: string; className: st
       picture.setAttribute("role", "img");
       picture.setAttribute("aria-label", label);
     }
-    holder.current!.replaceChildren(...parsed.body.childNodes);
+    const element = holder.current!;
+    element.replaceChildren(...parsed.body.childNodes);
+    if (className !== "formula") return undefined;
+    // What is wider than its place is scrolled, by keyboard too.
+    const watch = new ResizeObserver(() => {
+      const wide = element.scrollWidth > element.clientWidth + 1;
+      for (const [name, value] of [["tabindex", "0"], ["role", "region"], ["aria-label", say("formula")]] as const) {
+        if (wide) element.setAttribute(name, value);
+        else element.removeAttribute(name);
+      }
+    });
+    watch.observe(element);
+    return () => watch.disconnect();
   }, [text, label]);
   return <div class={className} ref={holder} />;
 }
