@@ -1,4 +1,4 @@
-"""Completions of a text of a description, from the schema: keys of the table at the cursor, words of a value, headings."""
+"""Completions of a description's text, from the schema: keys of the table at the cursor, words, headings."""
 
 from __future__ import annotations
 

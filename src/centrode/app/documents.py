@@ -127,6 +127,9 @@ def _kept_document(text: str, folder: Path, _language: str) -> Document:
     except InputError as error:
         return Document(text, _mended(text), None, None, None, (_at_line(error, text),))
     try:
+        if tables.get("kind") == "gear pair":
+            repair = _("compute it with: centrode gears; in Python with gear_pair")
+            raise InputError("", _("this describes a pair of gears, not a linkage"), repair)
         if is_cam(tables):
             cam: AnyCam = validated_tables(kind_of_cam(tables), tables, folder, bare_angles_of(tables))
             return Document(text, tables, None, cam, None, ())

@@ -84,10 +84,10 @@ def exported_file(document: Document, topic: object, kind: object, options: obje
     with tempfile.TemporaryDirectory(prefix="centrode-") as folder:
         spelling = TableSpelling(xlsx=kind == "xlsx", comma=False)
         spelling.check()
-        for table_name, table in sheet.tables.items():
+        for table_name, rows in sheet.tables.items():
             path = Path(folder) / f"{table_name}.csv"
             path.parent.mkdir(parents=True, exist_ok=True)
-            render.write_table(table, path, description.display, spelling)
+            render.write_table(rows, path, description.display, spelling)
         files = sorted(Path(folder).rglob(f"*.{kind}"))
         if not files:
             raise InputError("", _("this topic has no tables here"))

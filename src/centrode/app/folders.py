@@ -1,4 +1,4 @@
-"""The one folder whose descriptions the workbench reads and writes: nothing outside it, nothing but text of a bounded size."""
+"""The one folder whose descriptions the workbench reads and writes: text of a bounded size, and nothing outside."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class WorkFolder:
     file: str = ""
 
     def checked_name(self, name: object) -> str:
-        """A name of a file of the folder; InputError for a path, another kind of file and names that systems reserve."""
+        """A name of a file of the folder; InputError for a path, another kind of file, a name that systems reserve."""
         if not isinstance(name, str) or not _NAME.fullmatch(name) or _DEVICES.match(name):
             what = _("{name} is no name of a description").format(name=value_text(name))
             raise InputError("", what, _("use letters, digits, spaces and hyphens, and end it in .toml"))

@@ -91,7 +91,7 @@ def _literal(sketch: Sketch, path: str) -> Place:
 
 
 def written_like(old: Any, value: Any) -> Any:
-    """What somebody writes into a field, as a value of the kind that stands there: a number keeps the unit of the old one."""
+    """What somebody writes into a field, as a value of the kind that stands there; a number keeps the old unit."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise InputError("", _("a number is needed"))
     if isinstance(value, str):

@@ -23,7 +23,7 @@ from centrode.app.reshaping import (
     value_at_place,
     written_position,
 )
-from centrode.app.scene import FORCE, guide_name, load_name, rows_of
+from centrode.app.scene import FORCE, guide_line, guide_name, load_name, rows_of
 from centrode.app.sketch import Sketch, Vector, list_of_tables, marked_names, with_mark
 from centrode.app.text_changes import TextChanges
 from centrode.errors import InputError
@@ -91,10 +91,14 @@ class Patch:
             raise InputError("", what, _("correct it in the text first"))
         try:
             change(operation)
+            if before.prepared is not None and self.document.prepared is None:
+                self._keep_places(Sketch(before))
             after = self.document
-            if before.mechanism is not None and after.mechanism is None and after.tables.get("links"):
+            broken = before.mechanism is not None and after.mechanism is None and after.tables.get("links")
+            # a drawing is unfinished on the way; a number or a name that does not fit is a mistake
+            if broken and name in ("set", "rename", "move_point", "mirror", "join"):
                 first = after.problems[0]
-                raise InputError("", first.message, first.repair)
+                raise InputError(first.path, first.message, first.repair)
         except (KeyError, IndexError, TypeError, ValueError, AttributeError) as fault:
             self.text = text
             what = _("this part of the text is written in a way that cannot be changed here")
@@ -112,6 +116,24 @@ class Patch:
     def sketch(self) -> Sketch:
         """What is drawn of it."""
         return Sketch(self.document)
+
+    def _keep_places(self, before: Sketch) -> None:
+        """Write the angles of links that no position gives any more, so that they stay where they were drawn."""
+        while True:
+            sketch = self.sketch
+            lost = [
+                name
+                for name in sketch.links
+                if name not in sketch.poses and name in before.poses and sketch.local(name)
+            ]
+            # an angle may place the links behind it too
+            for name in lost[:1]:
+                place: Place = ("links", name, "angle")
+                if value_at_place(sketch.tables, place) is not None:
+                    return
+                self._write((place, self._angle(before.poses[name][1])))
+            if not lost:
+                return
 
     def _write(self, *assignments: Assignment) -> None:
         changes = TextChanges(self.text)
@@ -203,7 +225,7 @@ class Patch:
     # drawing
 
     def _is_short(self) -> bool:
-        """Whether what is drawn has its coordinates in the table of points: in a new text and where others have them."""
+        """Whether what is drawn gets coordinates in the table of points: in a new text, and where others have them."""
         sketch = self.sketch
         return sketch.is_short_form or not (sketch.links or sketch.fixed)
 
@@ -231,11 +253,11 @@ class Patch:
         names: list[str | None] = []
         for key in ("from_point", "to_point"):
             names.append(None if operation.get(key) is None else self._point_of(operation, key))
-        for k, name in enumerate(names):
-            if name is not None:
-                if name not in sketch.places:
-                    raise InputError(name, _("its place is not known: correct the description first"))
-                ends[k] = sketch.places[name]
+        for k, end_name in enumerate(names):
+            if end_name is not None:
+                if end_name not in sketch.places:
+                    raise InputError(end_name, _("its place is not known: correct the description first"))
+                ends[k] = sketch.places[end_name]
         if names[0] is not None and names[0] == names[1]:
             raise InputError("", _("a link joins two different points"), _("drop it on another point"))
         for link, points in sketch.links.items():
@@ -260,14 +282,14 @@ class Patch:
         if names[0] is None and names[1] is not None:
             names, ends = names[::-1], ends[::-1]
         free = self._free_names()
-        if names[0] is None:
-            names[0] = next(free)
-            self._write((("frame", "points", names[0]), self._pair(ends[0])))
-            self.named.append(names[0])
-        if names[1] is None:
-            names[1] = next(name for name in free if name != names[0])
-            self.named.append(names[1])
-        first, second = (str(name) for name in names)
+        first, second = names
+        if first is None:
+            first = next(free)
+            self._write((("frame", "points", first), self._pair(ends[0])))
+            self.named.append(first)
+        if second is None:
+            second = next(name for name in free if name != first)
+            self.named.append(second)
         (x, y), (u, v) = ends[0][:2], ends[1][:2]
         name = self._link_name(first, second)
         entries: dict[str, Any] = {} if two_points(name) else {"points": [first, second]}
@@ -476,16 +498,9 @@ class Patch:
 
     def _slide(self, sketch: Sketch, guide: int) -> float:
         """Displacement of the point of a guide from the place that its line goes through."""
-        entry = sketch.guides[guide]
-        point, through = str(entry.get("point")), entry.get("through")
-        prepared = sketch.document.prepared
-        del prepared
-        if through is None or point not in sketch.places:
-            return 0.0
-        from centrode.app.scene import guide_line  # noqa: PLC0415
-
+        point = str(sketch.guides[guide].get("point"))
         start, direction = guide_line(sketch, guide)
-        if start is None or direction is None:
+        if start is None or direction is None or point not in sketch.places:
             return 0.0
         x, y = sketch.places[point][0] - start[0], sketch.places[point][1] - start[1]
         return x * math.cos(direction) + y * math.sin(direction)
@@ -575,10 +590,7 @@ class Patch:
             self._stretch(sketch, str(place[1]), number)
             return
         old = value_at_place(sketch.tables, place)
-        text = isinstance(value, str) and not is_number(value)
-        self._write(
-            (place, value.strip() if text else written_quantity(sketch, old, number, kind, exactly=True))
-        )
+        self._write((place, typed_quantity(sketch, old, value, number, kind)))
 
     def _stretch(self, sketch: Sketch, link: str, length: float) -> None:
         """Another length of a link that cannot move yet: its second point goes, or its first where that one is free."""
@@ -596,11 +608,8 @@ class Patch:
         old = value_at_place(sketch.tables, place)
         prepared = follow(sketch, path, number)
         own: tuple[Assignment, ...] = ()
-        text = isinstance(value, str) and not is_number(value)
         if old is not None or place[0] == "drives":
-            own = (
-                (place, value.strip() if text else written_quantity(sketch, old, number, kind, exactly=True)),
-            )
+            own = ((place, typed_quantity(sketch, old, value, number, kind)),)
         self._write(*own, *written_position(sketch, prepared, {place}))
 
     def _move_point(self, operation: Operation) -> None:

@@ -44,7 +44,7 @@ NUMBERS = Lazily("centrode.render.document.numbers", "Numbers")
 
 def shown_topics() -> tuple[Topic, ...]:
     """Topics that the workbench shows, in the order of commands and chapters."""
-    return tuple(topic for topic in TOPICS if topic.title and topic.subject != "mechanisms")
+    return tuple(topic for topic in TOPICS if topic.title and topic.subject in ("mechanism", "cam"))
 
 
 def topic_list() -> list[dict[str, Any]]:
@@ -117,12 +117,20 @@ def topics_of(document: Document) -> dict[str, bool | str]:
             continue
         if description is None or (not document.is_cam and document.prepared is None):
             found[topic.name] = _("the mechanism cannot move yet")
-        elif topic.concerns is not None and not topic.concerns(description):
-            needs = topic.panel.needs if topic.panel is not None else ""
-            found[topic.name] = _(needs) if needs else _(CONCERNS_NOTHING)
         else:
-            found[topic.name] = True
+            found[topic.name] = _concern(topic, description)
     return found
+
+
+def _concern(topic: Topic, description: Described) -> bool | str:
+    """Whether a topic concerns a description that is right, or why it does not."""
+    try:
+        if topic.concerns is None or topic.concerns(description):
+            return True
+    except CentrodeError as failure:
+        return failure.what
+    needs = topic.panel.needs if topic.panel is not None else ""
+    return _(needs) if needs else _(CONCERNS_NOTHING)
 
 
 def topic_named(name: object) -> Topic:

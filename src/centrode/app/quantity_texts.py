@@ -97,7 +97,7 @@ def read_field(sketch: Sketch, text: object, kind: str) -> float:
     display = display if isinstance(display, dict) else {}
     unit = {"length": display.get("length", "m"), "angle": display.get("angle", "rad")}.get(kind)
     if unit in LENGTHS or unit in ANGLES:
-        factor = (LENGTHS | ANGLES)[str(unit)]
+        factor = {**LENGTHS, **ANGLES}[str(unit)]
         return scaled(to_si(float(typed), kind), 1.0 / factor)
     return to_si(float(typed), kind)
 

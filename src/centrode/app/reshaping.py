@@ -83,11 +83,17 @@ def reshaped_by(
         for place, value in reshaping_assignments(sketch, moved, exactly=exactly)
         if value != value_at_place(sketch.tables, place)
     )
-    tables = with_assignments(sketch.tables, assignments)
+    tables: Mapping[str, Any] = with_assignments(sketch.tables, assignments)
     if sketch.document.prepared is None:
         places = {**sketch.places, **moved}
         return Reshaped(assignments, tables, None, places, _values(sketch, places, moved), held)
-    prepared, assignments, tables = _assembled(sketch, assignments, tables, moved, folder)
+    try:
+        prepared, assignments, tables = _assembled(sketch, assignments, tables, moved, folder)
+    except CentrodeError:
+        if exactly:
+            raise
+        # at a limit, and with redundant constraints, rounded numbers may not close
+        return reshaped_by(sketch, moved, folder, held=held, exactly=True)
     at = prepared.assembled.positions.points
     places = {name: (float(at[name][0]), float(at[name][1])) for name in sketch.points if name in at}
     return Reshaped(assignments, tables, prepared, places, _values(sketch, places, moved), held)
@@ -452,7 +458,7 @@ def _starts(
                 ),
                 None,
             )
-            point = None if guide is None else sketch.guides[guide].get("point")
+            point = "" if guide is None else str(sketch.guides[guide].get("point"))
             if guide is not None and point in moved and start is not None:
                 through, direction = guide_line(sketch, guide)
                 if through is not None and direction is not None:

@@ -35,7 +35,8 @@ TIME = "this takes too long: give fewer samples, or a shorter range"
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
-        "connect-src 'self' ws://127.0.0.1:* ws://localhost:*; frame-ancestors 'none'; base-uri 'none'; form-action 'self'"
+        "connect-src 'self' ws://127.0.0.1:* ws://localhost:*; frame-ancestors 'none'; base-uri 'none'; "
+        "form-action 'self'"
     ),
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -154,7 +155,7 @@ def server_application(
         WebSocketRoute("/socket", socket),
     ]
     if STATIC.is_dir():
-        routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))  # type: ignore[arg-type]
+        routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
     return Starlette(routes=routes, lifespan=living)
 
 

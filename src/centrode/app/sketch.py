@@ -19,7 +19,7 @@ Vector: TypeAlias = tuple[float, ...]
 Pose: TypeAlias = tuple[Vector, float]
 
 MARKS = ("fixed", "locked", "traced")
-"""What the workbench notes of a description in a comment: points that hold, lengths that hold, points that are traced."""
+"""What the workbench notes in a comment: points that hold, lengths that hold, points that are traced."""
 
 _MARK = re.compile(r"^[ \t]*#[ \t]*workbench:[ \t]*(\w+)[ \t]+(.*?)[ \t]*$", re.MULTILINE)
 

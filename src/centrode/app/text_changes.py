@@ -9,6 +9,7 @@ import copy
 import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import tomlkit
@@ -76,7 +77,7 @@ class TextChanges:
         container = _entered(expected, place[:-1])
         del container[place[-1]]
         if place[:-1] and isinstance(container, list) and not container and len(place) == 2:
-            del expected[place[0]]
+            del expected[str(place[0])]
         self._become(self._without(place), expected)
 
     def add_table(self, place: Place, entries: Mapping[str, Any]) -> None:
@@ -111,7 +112,7 @@ class TextChanges:
             tables = tomllib.loads(text)
         except (tomllib.TOMLDecodeError, RecursionError):
             tables = {}
-        if tables != expected:
+        if tables != expected and tables != _without_empty(expected, tables):
             what = _("this part of the text is written in a way that cannot be changed here")
             raise InputError("", what, _("change it in the text"))
         self.text, self.tables = text, tables
@@ -232,10 +233,7 @@ class TextChanges:
 
     def _stand_close(self, same: Sequence[Statement]) -> bool:
         """Whether headings of one kind follow each other without a blank line."""
-        pairs = [
-            self.text[self._places.section_end(one) : other.start]
-            for one, other in zip(same[:-1], same[1:], strict=True)
-        ]
+        pairs = [self.text[self._places.section_end(one) : other.start] for one, other in pairwise(same)]
         return bool(pairs) and not any(
             between.strip(" \t\r\n") == "" and "\n" in between for between in pairs
         )
@@ -304,6 +302,11 @@ class TextChanges:
             start, end = _key_span(text, one, depth - skipped)
             text = text[:start] + written + text[end:]
         return text
+
+
+def _without_empty(expected: Mapping[str, Any], tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables without those at the top that have become empty and have no heading of their own."""
+    return {key: value for key, value in expected.items() if value not in ({}, []) or key in tables}
 
 
 ROOMS = (

@@ -48,7 +48,8 @@ WORDS: Mapping[str, str] = {
     "keys": mark("Keyboard"),
     "stage": mark("Drawing"),
     "empty_stage": mark(
-        "Drag here to draw the first link. Later switch Drive on at the link that drives, and Ground at joints that stand still."
+        "Drag here to draw the first link. Later switch Drive on at the link that drives, and "
+        "Ground at joints that stand still."
     ),
     "held_point": mark("{name} cannot be dragged here."),
     "line_begun": mark(
@@ -93,7 +94,7 @@ WORDS: Mapping[str, str] = {
     "ready": mark("The mechanism is complete and moves."),
     "loose_points": mark("Loose points:"),
     "panels": mark("Results"),
-    "panel_motion": mark("Motion"),
+    "panel_motion": mark("Curves"),
     "panel_cam": mark("Cam"),
     "no_motion": mark("The mechanism cannot move yet."),
     "quantity": mark("Quantity"),
@@ -116,17 +117,13 @@ WORDS: Mapping[str, str] = {
     "arrows_on_drawing": mark("Show the forces on the drawing"),
     "cam_picture": mark("Cam and follower"),
     "cam_lift": mark("Lift"),
-    "cam_velocity": mark("Velocity of the follower"),
-    "cam_acceleration": mark("Acceleration of the follower"),
-    "cam_pressure_angle": mark("Pressure angle"),
-    "cam_radius": mark("Radius"),
+    "cam_velocity": mark("First derivative of the lift by the angle of the cam"),
+    "cam_acceleration": mark("Second derivative of the lift by the angle of the cam"),
     "no_cam": mark("The cam cannot be drawn."),
     "segments": mark("Segments"),
     "segment_angle": mark("Angle"),
     "segment_to": mark("Ends at"),
     "segment_law": mark("Curve"),
-    "segment_add": mark("Add a segment behind this one"),
-    "segment_delete": mark("Delete this segment"),
     "from_files": mark("Files"),
     "from_computer": mark("From this computer…"),
     "too_large": mark("This file is too large for a description."),
@@ -156,7 +153,8 @@ WORDS: Mapping[str, str] = {
     "apply": mark("Apply"),
     "server_gone": mark("The server does not answer."),
     "server_gone_repair": mark(
-        "Nothing is lost: the description is kept in this browser. Start the server again; if it prints another address, open that one."
+        "Nothing is lost: the description is kept in this browser. Start the server again; if it "
+        "prints another address, open that one."
     ),
     "line": mark("line {number}"),
     "keys_modes": mark("Draw, guide, edit, move"),
@@ -173,6 +171,8 @@ WORDS: Mapping[str, str] = {
     "keys_play": mark("Play or pause; comma and full stop step"),
     "keys_text": mark("Open or close the text"),
     "more": mark("More about the structure"),
+    "formula": mark("Formula"),
+    "options": mark("Options"),
 }
 """Key of the page -> sentence in English."""
 

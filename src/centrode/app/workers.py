@@ -126,6 +126,7 @@ class ProcessRunner:
         context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         if "forkserver" in methods:
             context.set_forkserver_preload(list(PRELOADED))
+        here: Connection
         here, there = context.Pipe()
         self._process = context.Process(target=serve_messages, args=(there, self.work), daemon=True)
         self._process.start()

@@ -7,7 +7,9 @@ from pathlib import Path
 import click
 
 from centrode.cli import library
+from centrode.errors import InputError
 from centrode.locale import _, mark
+from centrode.optional_packages import how_to_install
 
 
 @click.command(help=mark("Open the workbench: draw a mechanism in a browser and see it move."))
@@ -22,6 +24,13 @@ from centrode.locale import _, mark
 @click.option("--no-browser", is_flag=True, help=mark("Print the address without opening a browser."))
 def app(file: Path | None, port: int, no_browser: bool) -> None:
     """Serve the workbench at 127.0.0.1 until it is interrupted."""
+    try:
+        library.run_server.load()
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").startswith("centrode"):
+            raise
+        what = _("the workbench needs {library}, which is not installed").format(library=missing.name)
+        raise InputError("", what, how_to_install("app")) from missing
     work = library.work_folder_of(file)
     listener = library.bound_socket(port)
     settings = library.server_settings(work, listener.getsockname()[1])

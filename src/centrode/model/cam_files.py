@@ -78,7 +78,10 @@ def cam_from(
 
 
 def kind_of_cam(mapping: Mapping[str, Any], where: str = "") -> type[Cam] | type[PlateCam]:
-    """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage or of both."""
+    """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage."""
+    if mapping.get("kind") == "gear pair":
+        repair = _("compute it with: centrode gears; in Python with gear_pair")
+        raise InputError(where, _("this describes a pair of gears, not a cam"), repair)
     if not is_cam(mapping) and "links" in mapping:
         what = _("this describes a linkage, not a cam")
         raise InputError(

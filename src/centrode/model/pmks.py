@@ -1,7 +1,7 @@
 """Mechanisms that links of PMKS+ hold: the address of a drawing is the drawing itself, in digits of base 64.
 
-An address has sections between full stops: switches, numbers, speed, units; joints; links; forces; what was selected. At
-the end stands a character for the length, and in newer ones a hash. A coordinate is a whole number of thousandths.
+An address has sections between full stops: switches, numbers, speed, units; joints; links; forces; what was selected.
+The end is a character for the length, and in newer ones a hash. A coordinate is a whole number of thousandths.
 """
 
 from __future__ import annotations
@@ -113,8 +113,8 @@ def from_pmks(url: str) -> Mechanism:
     Returns
     -------
     Mechanism
-        In the position that is drawn, with the units of the drawing. A slider drives along its slot from the slot's first
-        joint to the second. Masses are left out where every link has those that PMKS+ begins with (one unit each).
+        In the position that is drawn, with the units of the drawing. A slider drives along its slot from the slot's
+        first joint to the second. Masses are left out where every link has those that PMKS+ begins with (one unit).
 
     Raises
     ------
@@ -323,11 +323,11 @@ def _described(drawing: Drawing) -> Mechanism:
         tables["links"][names.links[body.id]] = {
             "points": [names.points[one] for one in body.joints if one in pins]
         }
-    for joint in drawing.joints.values():
-        if joint.slides:
-            tables["guides"].append(_guide(drawing, bodies, names, joint))
-        if joint.driven:
-            tables["drives"].append(_drive(drawing, bodies, names, joint))
+    for drawn in drawing.joints.values():
+        if drawn.slides:
+            tables["guides"].append(_guide(drawing, bodies, names, drawn))
+        if drawn.driven:
+            tables["drives"].append(_drive(drawing, bodies, names, drawn))
     _check_welds(drawing, bodies)
     _add_masses(drawing, bodies, names, tables)
     for force in drawing.forces:
@@ -472,9 +472,9 @@ def _check_welds(drawing: Drawing, bodies: Mapping[str, DrawnLink]) -> None:
     """A welded pin joins links into one body, or a link to its slider; anything else is not read."""
     mates = {_mate(drawing, joint).id for joint in drawing.joints.values() if joint.slides}
     for joint in drawing.joints.values():
-        if joint.welded and not joint.slides and joint.id not in mates:
-            if len([body for body in bodies.values() if joint.id in body.joints]) > 1 or joint.fixed:
-                raise _unread(_("a welded joint of it joins links that are not one body"))
+        several = joint.fixed or len([body for body in bodies.values() if joint.id in body.joints]) > 1
+        if joint.welded and several and not joint.slides and joint.id not in mates:
+            raise _unread(_("a welded joint of it joins links that are not one body"))
 
 
 def _add_masses(

@@ -30,6 +30,7 @@ COMMANDS = (
     "simulate",
     "balance",
     "cam",
+    "gears",
     "centres",
     "centrodes",
     "diagrams",
@@ -80,6 +81,7 @@ CHAPTERS = (
     "walking",
     "contact",
     "choice",
+    "gear-pair",
     "conclusions",
 )
 """As a document has them."""
