@@ -75,10 +75,10 @@ def press(window: Any) -> None:
     begin(window, "six-bar-press")
     window.click("#tab-reactions")
     settle(window)
-    window.locator('[data-do="seek"]').fill("200")
+    window.locator('[data-do="seek"]').fill("90")
     window.focus('[data-kind="link"][data-name="AB"]')
     window.keyboard.press(" ")
-    window.focus(DRAWING)
+    window.evaluate("document.activeElement.blur()")
     settle(window)
 
 
@@ -101,9 +101,9 @@ def drawing(window: Any) -> None:
             window.mouse.up()
             settle(window)
 
-    draw(spot(0.22, 0.74), spot(0.3, 0.55))
-    draw(at("B"), spot(0.62, 0.3))
-    draw(at("C"), spot(0.72, 0.74))
+    draw(spot(0.24, 0.7), spot(0.28, 0.58))
+    draw(at("B"), spot(0.6, 0.3))
+    draw(at("C"), spot(0.68, 0.7))
     a, b = at("A"), at("B")
     window.mouse.click((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
     window.click('[data-row="drive"]')
@@ -113,7 +113,7 @@ def drawing(window: Any) -> None:
     settle(window)
     window.focus('[data-kind="link"][data-name="BC"]')
     window.keyboard.press(" ")
-    draw(at("C"), spot(0.86, 0.48), drop=False)
+    draw(at("C"), spot(0.87, 0.5), drop=False)
 
 
 def text(window: Any) -> None:
@@ -144,7 +144,7 @@ def main() -> None:
             settle(window)
             scene(window)
             shown = Image.open(io.BytesIO(window.screenshot())).convert("RGB")
-            shown.quantize(64, dither=Image.Dither.NONE).save(
+            shown.quantize(256, dither=Image.Dither.NONE).save(
                 FOLDER / f"{name}.png", format="png", optimize=True
             )
             window.close()

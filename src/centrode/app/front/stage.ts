@@ -425,7 +425,8 @@ export class Stage {
       make("circle", { class: target ? "catch" : "end", cx: spot[0]!, cy: spot[1]!, r: target ? 105 : 45 }, this.hint);
     }
     const way = minus(line.to, line.from), factor = display?.length.factor ?? 1, unit = display?.length.unit ?? "m";
-    const label = make("text", { x: (a[0]! + b[0]!) / 2, y: (a[1]! + b[1]!) / 2 - 120 }, this.hint);
+    const right = way[0]! >= 0; // beside the end that the hand leads, away from the line
+    const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (way[1]! >= 0 ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
     const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI;
     label.textContent = line.guide ? withUnit(spelled(angle, 4), "°") : `${withUnit(spelled(size(way) * factor, 4), unit)} · ${withUnit(spelled(angle, 4), "°")}`;
   }
