@@ -11,16 +11,21 @@ import numpy as np
 
 from benchmarks.table import Promise, Row
 
+PRESENT = all(map(find_spec, ("playwright", "starlette", "uvicorn"))) and any(
+    map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))
+)
+MISSING = "it needs Chromium, playwright, and the extra app"
+if PRESENT:
+    from playwright.sync_api import sync_playwright
+    from tools.app_pictures import begin, settle, workbench
+    from tools.report_picture import BROWSERS
+
 STEPS = 300
 EXAMPLE = "six-bar-press"
 DRAGS = {"move": "A", "edit": "D"}
 """Mode -> joint: the crank's pin drives the mechanism, the rocker's end changes lengths."""
 RATE, LATE = 55.0, 16.0
 """Updates a second, and milliseconds from a step to its drawing for 95 of 100."""
-MISSING = "it needs Chromium, playwright, and the extra app"
-PRESENT = all(map(find_spec, ("playwright", "starlette", "uvicorn"))) and any(
-    map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))
-)
 DRAG = """async ([name, mode, steps]) => {
   const svg = document.querySelector(".stage-holder .drawing");
   const ring = document.querySelector(`[data-point="${name}"] .ring`).getBoundingClientRect();
@@ -52,10 +57,6 @@ DRAG = """async ([name, mode, steps]) => {
 
 def drags() -> Iterator[Row]:
     """A row for each mode; the first drag of each only warms up."""
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415  # the section is left out where it is missing
-    from tools.app_pictures import begin, settle, workbench  # noqa: PLC0415
-    from tools.report_picture import BROWSERS  # noqa: PLC0415
-
     program = next(filter(None, map(shutil.which, BROWSERS)))
     with workbench() as address, sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=program, args=["--no-sandbox"])

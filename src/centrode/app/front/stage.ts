@@ -567,11 +567,11 @@ export class Stage {
       points: new Map(names.map((one, k) => [one.name, Array.from(points.numbers.subarray(k * axes, (k + 1) * axes))] as [string, Place]).filter(([, at]) => at.every(Number.isFinite) && at.length === axes)),
       angles: new Map(angles ? links.map((one, k) => [one.name, angles.numbers[k]!]) : []),
     };
-    const { at, held, values } = frame.header;
+    const { at, held, values } = frame.header, before = place.peek();
     if (typeof at === "number") this.seek(at);
     if (held) tell(String(held), true);
-    else if (values) this.showValues(values);
-    this.draw();
+    else if (values && Object.keys(values).length) this.showValues(values);
+    if (place.peek() === before) this.draw(); // the player's place draws by itself
     this.svg.setAttribute("data-updates", String(Number(this.svg.getAttribute("data-updates")) + 1));
   }
 
