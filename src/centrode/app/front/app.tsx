@@ -112,16 +112,16 @@ function App() {
         {editing.value && <TextPane />}
         <StageView />
         <div class="right">
-        <aside class="side" aria-label={say("selection")}>
-          <SelectionCard />
           {scene.value?.kind !== "cam" && (
-            <section class="card ready" aria-label={say("readiness")}>
-              <h2>{say("readiness")}</h2>
-              <ReadinessView />
-            </section>
+            <aside class="side" aria-label={say("selection")}>
+              <SelectionCard />
+              <section class="card ready" aria-label={say("readiness")}>
+                <h2>{say("readiness")}</h2>
+                <ReadinessView />
+              </section>
+            </aside>
           )}
-        </aside>
-        <PanelCard />
+          <PanelCard />
         </div>
       </main>
       <Dialogs />

@@ -5,7 +5,7 @@ import { Chart, type ChartData } from "./chart";
 import { Icon } from "./icons";
 import type { Motion } from "./motion";
 import { motion, place, playing, scene, selection, still, tell } from "./state";
-import { fixed, say, sentence, withUnit } from "./words";
+import { fixed, say, sentence, unitText, withUnit } from "./words";
 
 interface Course {
   key: string;
@@ -35,7 +35,7 @@ const courses = computed<Course[]>(() => {
       const symbol = SYMBOLS[array]!;
       const lines: Course["lines"] = AXES.slice(0, now.axes).map((axis, k) => ({ label: symbol ? `${symbol}${axis}(${point.name})` : `${axis}(${point.name})`, array, thing, axis: k }));
       if (symbol) lines.push({ label: `${symbol}(${point.name})`, array, thing, axis: "size" });
-      found.push({ key: `point ${point.name} ${kind}`, group: point.name, label: say(`course_${kind}`, { name: point.name }), unit: length.unit === "1" ? (rate ? `1${rate}` : "") : `${length.unit}${rate}`, factor: length.factor, lines });
+      found.push({ key: `point ${point.name} ${kind}`, group: point.name, label: say(`course_${kind}`, { name: point.name }), unit: length.unit === "1" ? (rate ? `1${rate}` : "") : signed(`${length.unit}${rate}`), factor: length.factor, lines });
     }
   }
   for (const link of shown.links) {
@@ -44,12 +44,12 @@ const courses = computed<Course[]>(() => {
     for (const [kind, array, symbol, unit] of OF_LINK) {
       if (!now.has(array)) continue;
       const angle = display?.angle ?? { unit: "rad", factor: 1 };
-      found.push({ key: `link ${link.name} ${kind}`, group: link.name, label: say(`course_${kind}`, { name: link.name }), unit: unit || signed(angle.unit), factor: unit ? 1 : angle.factor, lines: [{ label: `${symbol}(${link.name})`, array, thing, axis: 0 }] });
+      found.push({ key: `link ${link.name} ${kind}`, group: link.name, label: say(`course_${kind}`, { name: link.name }), unit: signed(unit || angle.unit), factor: unit ? 1 : angle.factor, lines: [{ label: `${symbol}(${link.name})`, array, thing, axis: 0 }] });
     }
   }
   return found;
 });
-export const signed = (unit: string): string => (unit === "deg" ? "°" : unit);
+export const signed = unitText;
 
 const series = (now: Motion, line: Course["lines"][number], factor: number): Float64Array => {
   const found = new Float64Array(now.samples);

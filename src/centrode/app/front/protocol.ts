@@ -178,6 +178,7 @@ export interface Hello {
   language?: string;
   languages: { code: string; name: string }[];
   words: Record<string, string>;
+  units?: Record<string, string>;
   templates: Template[];
   file: { name: string; text: string } | null;
   folder?: boolean;

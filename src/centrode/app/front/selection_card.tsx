@@ -32,6 +32,7 @@ function StateRow({ name, row, of }: { name: RowName; row: Row | undefined; of: 
   const allowed = row?.allowed ?? false, on = row?.on ?? false, reason = allowed ? "" : sentence(row?.why) || say("row_no_object");
   const valued = on && row && row.value !== undefined && row.value !== null && allowed && of.length === 1;
   const put = (value?: unknown): void => void edit(...of.map((object) => ({ do: "set_row", object, row: name, on: value !== undefined ? true : !on, ...(value !== undefined ? { value } : {}) })));
+  const angle = scene.value?.display?.angle ?? { unit: "rad", factor: 1 }, shown = name === "guide" ? angle : { unit: row?.unit ?? "", factor: 1 };
   const numbers = valued ? (Array.isArray(row.value) ? row.value : [row.value]) : [];
   return (
     <div class={on ? "state on" : "state"}>
@@ -42,13 +43,13 @@ function StateRow({ name, row, of }: { name: RowName; row: Row | undefined; of: 
         <Icon name={name} /> {say(`row_${name}`)}
       </button>
       {numbers.map((one, k) => (
-        <input type="text" inputMode="decimal" aria-label={`${say(`row_${name}`)}${numbers.length > 1 ? ` ${"xyz"[k]}` : ""}`} value={String(typeof one === "number" ? Number(one.toPrecision(6)) : one ?? "")}
+        <input type="text" inputMode="decimal" aria-label={`${say(`row_${name}`)}${numbers.length > 1 ? ` ${"xyz"[k]}` : ""}`} value={String(typeof one === "number" ? Number((one * shown.factor).toPrecision(6)) : one ?? "")}
           onChange={(event) => {
-            const read = Number(event.currentTarget.value.replace("−", "-").replace(",", ".")), value = Number.isFinite(read) && event.currentTarget.value.trim() ? read : event.currentTarget.value;
+            const read = Number(event.currentTarget.value.replace("−", "-").replace(",", ".")), value = Number.isFinite(read) && event.currentTarget.value.trim() ? read / shown.factor : event.currentTarget.value;
             put(numbers.length > 1 ? numbers.map((other, j) => (j === k ? value : other)) : value);
           }} />
       ))}
-      {numbers.length > 0 && row?.unit && <span class="unit">{row.unit}</span>}
+      {numbers.length > 0 && shown.unit && <span class="unit">{signed(shown.unit)}</span>}
     </div>
   );
 }

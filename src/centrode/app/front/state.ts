@@ -5,7 +5,7 @@ import { History } from "./history";
 import { type Motion, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
 import { packed, unpacked } from "./share";
-import { decimal, language, say, sentences, words } from "./words";
+import { decimal, language, say, sentences, units, words } from "./words";
 
 export type Mode = "draw" | "guide" | "edit" | "move";
 
@@ -256,6 +256,7 @@ async function greet(): Promise<void> {
   if (answer === SUPERSEDED || answer.error) return;
   hello.value = answer as Hello;
   words.value = answer.words;
+  units.value = answer.units ?? {};
   decimal.value = answer.decimal ?? ".";
   language.value = answer.language ?? chosen ?? "en";
   document.documentElement.lang = language.value;

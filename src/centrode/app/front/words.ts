@@ -41,7 +41,13 @@ export const tickText = (value: number, step: number): string => {
   return marked(value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
 };
 
-export const withUnit = (text: string, unit?: string | null): string => (unit && unit !== "1" ? `${text}${unit === "°" ? "" : "\u00a0"}${unit}` : text);
+export const units = signal<Record<string, string>>({}); // as the reader's language spells them
+export const unitText = (unit?: string | null): string =>
+  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part));
+export const withUnit = (text: string, unit?: string | null): string => {
+  const told = unitText(unit);
+  return told ? `${text}${told === "°" ? "" : "\u00a0"}${told}` : text;
+};
 
 // A clause of the server's as a sentence.
 export const sentence = (text: string | null | undefined): string => {
