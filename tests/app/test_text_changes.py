@@ -78,7 +78,10 @@ def test_texts_of_windows_keep_their_ends_of_lines():
 
 
 def test_dotted_keys_and_tables_in_one_line_are_changed_where_they_stand():
-    text = 'links.OA.length = 1 # crank\nlinks.AB = { length = 3, "mass" = 2 } # coupler\n\n[frame.points]\nO = [0, 0]\n'
+    text = (
+        'links.OA.length = 1 # crank\nlinks.AB = { length = 3, "mass" = 2 } # coupler\n'
+        "\n[frame.points]\nO = [0, 0]\n"
+    )
     changes = TextChanges(text)
     changes.set(("links", "OA", "length"), 2)
     changes.set(("links", "AB", "mass"), 4)

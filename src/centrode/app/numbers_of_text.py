@@ -10,6 +10,7 @@ from centrode.app.reshaping import value_at_place
 from centrode.app.sketch import Sketch
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.description import coordinate_of_drive
 from centrode.model.reading import Place, value_text
 
 AXES = {"x": 0, "y": 1}
@@ -44,11 +45,8 @@ def place_of_path(sketch: Sketch, path: str) -> tuple[Place, str | None]:
             name, _dot, key = rest.rpartition(".")
             for k, drive in enumerate(sketch.drives):
                 if name in (drive.get("link"), drive.get("guide"), "-".join(drive.get("distance") or ())):
-                    angle = bool(drive.get("link"))
-                    kinds = {
-                        "start": "angle" if angle else "length",
-                        "speed": "angular speed" if angle else "speed",
-                    }
+                    coordinate = coordinate_of_drive(drive, sketch.space)
+                    kinds = {"start": str(coordinate.kind), "speed": str(coordinate.speed_kind)}
                     if key in kinds:
                         return ("drives", k, key), kinds[key]
         case "guides":

@@ -28,6 +28,7 @@ from centrode.app.sketch import Sketch, Vector, list_of_tables, marked_names, wi
 from centrode.app.text_changes import TextChanges
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.description import coordinate_of_drive
 from centrode.model.reading import FRAME, Place, read_link_name, read_name, two_points, value_text
 
 Operation = Mapping[str, Any]
@@ -472,7 +473,7 @@ class Patch:
         if not on:
             self._remove(*(("drives", k) for k in present))
             return
-        kind = "angular speed" if key == "link" else "speed"
+        kind = coordinate_of_drive({key: subject}, sketch.space).speed_kind
         speed = SPEED if value is None else read_field(sketch, value, kind)
         if present:
             place: Place = ("drives", present[0], "speed")

@@ -15,6 +15,7 @@ from centrode.app.sketch import Pose, Sketch, Vector, number
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
+from centrode.model.description import coordinate_of_drive
 from centrode.model.files import value_at, with_values
 from centrode.model.mechanism import Mechanism
 from centrode.model.placement import rotate_vector
@@ -438,7 +439,7 @@ def _starts(
     for k, drive in enumerate(sketch.drives):
         link, base = drive.get("link"), drive.get("relative_to", FRAME)
         place: Place = ("drives", k, "start")
-        start = number(drive.get("start"), "angle" if link else "length")
+        start = number(drive.get("start"), coordinate_of_drive(drive, sketch.space).kind)
         if isinstance(link, str) and (link in turned or base in turned):
             own, other = angle_of(link), angle_of(str(base))
             stated = start is not None or not (

@@ -9,6 +9,7 @@ from typing import Any
 from centrode.app.dimensions import dimension_rows
 from centrode.app.sketch import Sketch, Vector, coordinates, list_of_tables, number
 from centrode.locale import _
+from centrode.model.description import coordinate_of_drive
 from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME
 from centrode.quantities import ANGLES, LENGTHS
@@ -180,16 +181,16 @@ def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
         name = next((drive[key] for key in ("link", "guide") if isinstance(drive.get(key), str)), "")
         points = drive.get("distance")
         name = name or "-".join(points or ())
-        kind = "angle" if drive.get("link") else "length"
+        coordinate = coordinate_of_drive(drive, sketch.space)
         start = None if prepared is None else prepared.assembled.positions.drives.get(name)
         yield {
             "name": name,
-            "kind": kind,
+            "kind": coordinate.kind,
             "link": drive.get("link"),
             "guide": drive.get("guide"),
             "points": points,
             "start": None if start is None else float(start),
-            "speed": number(drive.get("speed"), "angular speed" if kind == "angle" else "speed"),
+            "speed": number(drive.get("speed"), coordinate.speed_kind),
             "law": next(
                 (key for key in ("speed", "law", "table", "segments", "cam") if drive.get(key) is not None),
                 None,

@@ -41,6 +41,11 @@ class Sketch:
         return self.tables.get("space") == "sphere"
 
     @property
+    def space(self) -> str:
+        """The space of the mechanism."""
+        return "sphere" if self.on_sphere else "plane"
+
+    @property
     def is_short_form(self) -> bool:
         """Whether points have coordinates in the initial position, from which links follow."""
         return isinstance(self.tables.get("points"), Mapping)

@@ -49,7 +49,7 @@ WORDS: Mapping[str, str] = {
     "stage": mark("Drawing"),
     "empty_stage": mark(
         "Drag here to draw the first link. Later switch Drive on at the link that drives, and "
-        "Ground at joints that stand still."
+        "Ground at joints that are at rest."
     ),
     "held_point": mark("{name} cannot be dragged here."),
     "line_begun": mark(

@@ -12,7 +12,7 @@ from centrode.locale import _, mark
 from centrode.optional_packages import how_to_install
 
 
-@click.command(help=mark("Open the workbench: draw a mechanism in a browser and see it move."))
+@click.command(help=mark("Draw a mechanism in a browser."))
 @click.argument("file", required=False, type=click.Path(path_type=Path), metavar=mark("[FILE]"))
 @click.option(
     "--port",

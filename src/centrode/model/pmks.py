@@ -142,7 +142,7 @@ def _refusal(what: str, repair: str = "") -> InputError:
 
 
 def _unread(what: str) -> InputError:
-    return InputError("PMKS+", what, _("take it out in PMKS+, and copy the link again"))
+    return InputError("PMKS+", what, _("remove it in PMKS+, and copy the link again"))
 
 
 # The address.
@@ -168,7 +168,7 @@ def _payload(url: str) -> str:
             raise _refusal(_("the link is damaged: its hash does not fit"))
         text = body
     if len(text) < 2 or text[-1] != LENGTH_MARKS[(len(text) - 1) % len(LENGTH_MARKS)]:
-        raise _refusal(_("this is no link of PMKS+, or it is damaged: its length does not fit"))
+        raise _refusal(_("this is not a link of PMKS+, or it is damaged: its length does not fit"))
     return text[:-1]
 
 
@@ -187,7 +187,7 @@ def _hash_of(body: str) -> str:
 def _decoded(payload: str) -> Drawing:
     sections = payload.split(".")
     if len(sections) < 7:
-        raise _refusal(_("this is no link of PMKS+: parts of it are missing"))
+        raise _refusal(_("this is not a link of PMKS+: parts of it are missing"))
     switches = _whole(sections[0], signed=False)
     decimals = [_decimal(one) for one in sections[1].split(",")]
     numbers = sections[2].split(",")
@@ -198,7 +198,7 @@ def _decoded(payload: str) -> Drawing:
     parts, rest = [], sections[4:]
     for _kind in range(3):
         if "" not in rest:
-            raise _refusal(_("this is no link of PMKS+: parts of it are missing"))
+            raise _refusal(_("this is not a link of PMKS+: parts of it are missing"))
         end = rest.index("")
         if end > PARTS:
             raise _refusal(_("it has too many parts"), _("simplify the mechanism"))
