@@ -18,7 +18,7 @@ from centrode.locale import _, mark
 from centrode.optional_packages import how_to_install
 
 
-@click.command(help=mark("Compute a pair of gears: dimensions, contact ratio, sliding, true teeth."))
+@click.command(help=mark("Compute a pair of gears: dimensions, sliding, true teeth."))
 @click.argument("pair", metavar=mark("FILE_OR_EXAMPLE"))
 @written_option
 @tables_options

@@ -170,7 +170,7 @@ class GearPair(DescriptionPart):
     helix_angle : beta [rad]
     rack : Rack
     width : of the rims [m]
-    pin : diameter for the dimension over pins [m]; 1.7 modules if left out
+    pin : diameter for the dimension over pins [m]; 1.7 modules by default
     speed : of the pinion [rad/s]
     moment : on the pinion [N m]
 

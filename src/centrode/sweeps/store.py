@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import importlib
 import importlib.util
 import json
 import math
@@ -22,7 +23,6 @@ from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any, Protocol, TypeAlias
 
-import lazy_loader
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -35,8 +35,8 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import MECHANISM, Design, path_digests
 from centrode.sweeps.drawn_designs import Drawn, lazy_values
 from centrode.sweeps.executors import bare
-from centrode.sweeps.machine import StreamedColumns, columns_for
 from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
+from centrode.sweeps.result_columns import StreamedColumns, columns_for
 from centrode.sweeps.storage import DONE, GREATEST, METADATA, PROGRESS, Storage, place_refusals, table_of
 
 # The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.
@@ -91,16 +91,22 @@ class Blocks:
         end = (outer * self.shape[self.axis] + min((piece + 1) * self.step, self.shape[self.axis])) * inner
         return first, end
 
-    def region(self, block: int) -> tuple[slice, ...]:
-        """Where a block stands in an array of the shape."""
+    def place(self, block: int) -> tuple[int, ...]:
+        """Number of a block along each dimension."""
         outer, piece = divmod(block, self.pieces)
-        places: list[slice] = []
-        # the place of a block in the outer dimensions, the last one fastest
+        places: list[int] = []
+        # the outer dimensions, the last one fastest
         for extent in reversed(self.shape[: self.axis]):
             outer, place = divmod(outer, extent)
-            places.insert(0, slice(place, place + 1))
-        along = slice(piece * self.step, min((piece + 1) * self.step, self.shape[self.axis]))
-        return (*places, along, *[slice(0, extent) for extent in self.shape[self.axis + 1 :]])
+            places.insert(0, place)
+        return (*places, piece, *[0] * (len(self.shape) - self.axis - 1))
+
+    def region(self, block: int) -> tuple[slice, ...]:
+        """Where a block stands in an array of the shape."""
+        return tuple(
+            slice(place * step, min((place + 1) * step, extent))
+            for place, step, extent in zip(self.place(block), self.chunk, self.shape, strict=True)
+        )
 
 
 # What a sweep came to: mechanisms by how far they move, worst residual, extremes; added up block by block.
@@ -246,6 +252,8 @@ class SweepFrame:
             for path in self.units
             if path not in self.design.coordinates
         }
+        if not drawn:
+            return self.empty.coords
         return xr.Dataset(coords={**self.empty.coords, **drawn}).coords
 
     @property
@@ -263,32 +271,89 @@ class SweepFrame:
         )
 
 
+@dataclass(frozen=True)
+class MotionLabels:
+    """Words and labels of results of one task, taken from a motion of the mechanism; made once.
+
+    Attributes
+    ----------
+    coordinates : the motion's that results have
+    attributes : what results say of the mechanism
+    """
+
+    coordinates: xr.Dataset
+    attributes: Mapping[str, Any]
+    _designs: dict[Any, xr.Dataset] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, motion: xr.Dataset, asked: SweepOutputs) -> MotionLabels:
+        """The labels of what is requested."""
+        used = {dimension for column in asked.columns for dimension in column.dimensions}
+        labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
+        if SAMPLE in used:
+            labels += ["time", "drive", "drive_value"]
+        coordinates: dict[Any, Any] = {name: motion[name] for name in labels}
+        if SAMPLE in used:
+            # what formulas compare the motion with stands beside it
+            coordinates |= {
+                name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
+            }
+        told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
+        attributes = {**told, "samples": motion.sizes["sample"]}
+        found = xr.Dataset(coords=coordinates)
+        # the drive along the samples is a label of a motion, and a number beside it here
+        return cls(
+            found.drop_indexes([name for name in found.xindexes if name not in found.dims]), attributes
+        )
+
+    def with_design(
+        self, design: Design, units: Mapping[str, str], asked: SweepOutputs, attributes: Mapping[str, Any]
+    ) -> xr.Dataset:
+        """The coordinates of a result: these, the paths that vary, and the values of a design."""
+        given = {path: (along, x, {"units": units[path]}) for path, (along, x) in design.coordinates.items()}
+        key = tuple((path, along, x.shape, x.dtype) for path, (along, x, _units) in given.items())
+        kept = self._designs.get(key)
+        if kept is None:
+            added: dict[Any, Any] = {}
+            if any(PATH in column.dimensions for column in asked.columns):
+                # texts of any length, as all other labels: a store has no standard for those of one length
+                added[PATH] = (PATH, np.array(list(design.paths), dtype=object))
+            # values of a grid are indexes, and stay what they are
+            is_grid = any(along == path for path, (along, _x, _units) in given.items())
+            added |= given if is_grid else {path: _in_its_place(*one) for path, one in given.items()}
+            kept = self.coordinates.assign_coords(added)
+            if not is_grid:
+                self._designs.clear()
+                self._designs[key] = kept
+        # to align coordinates takes as long as hundreds of motions: those of designs of one shape are put together
+        # once, and values take their places
+        found = kept.copy()
+        for name, variable in found.variables.items():
+            if isinstance(variable, xr.IndexVariable):
+                continue
+            # whoever writes to a result must not write to the next one
+            variable.data = given[str(name)][1] if name in given else variable.data.copy()
+        found.attrs = {**self.attributes, **attributes}
+        return found
+
+
+def _in_its_place(
+    along: str, values: AnyArray, told: Mapping[str, str]
+) -> tuple[str, AnyArray, Mapping[str, str]]:
+    """A coordinate of that shape without its values, which takes no memory."""
+    return along, np.broadcast_to(np.zeros(1, values.dtype), values.shape), told
+
+
 def frame_of(
-    motion: xr.Dataset, design: Design, units: Mapping[str, str], asked: SweepOutputs, executor: str
+    labels: MotionLabels, design: Design, units: Mapping[str, str], asked: SweepOutputs, executor: str
 ) -> SweepFrame:
-    """The frame of a sweep; `motion` is a motion of the mechanism, and gives it words and labels."""
-    used = {dimension for column in asked.columns for dimension in column.dimensions}
-    labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
-    if SAMPLE in used:
-        labels += ["time", "drive", "drive_value"]
-    # the motion may be kept for the next sweep: whoever writes to a result must not write to it
-    coordinates: dict[Any, Any] = {name: motion[name].copy() for name in labels}
-    if SAMPLE in used:
-        # what formulas compare the motion with stands beside it
-        coordinates |= {
-            name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
-        }
-    if PATH in used:
-        # texts of any length, as all other labels: a store has no standard for those of one length
-        coordinates[PATH] = (PATH, np.array(list(design.paths), dtype=object))
-    for path, (dimension, values) in design.coordinates.items():
-        coordinates[path] = ((dimension,), values, {"units": units[path]})
-    told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
-    attributes = {**told, "samples": motion.sizes["sample"], "executor": executor}
+    """The frame of a sweep."""
+    attributes = {"executor": executor}
     if isinstance(design, Drawn):
         # values of a drawn design are in no store: this says what they are
         attributes["drawn"] = design.text
-    return SweepFrame(design, asked, xr.Dataset(coords=coordinates, attrs=attributes), dict(units))
+    empty = labels.with_design(design, units, asked, attributes)
+    return SweepFrame(design, asked, empty, dict(units))
 
 
 class InMemory:
@@ -345,8 +410,9 @@ def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
         ends = [(math.nan, math.nan) if pair is None else tuple(pair) for pair in extremes]
         least, greatest = [end[0] for end in ends], [end[1] for end in ends]
         single = not column.shape
-        data[column.name].attrs["least"] = least[0] if single else least
-        data[column.name].attrs["greatest"] = greatest[0] if single else greatest
+        told = data.variables[column.name].attrs
+        told["least"] = least[0] if single else least
+        told["greatest"] = greatest[0] if single else greatest
     return data
 
 
@@ -372,15 +438,17 @@ class Marks:
 
     def chunks(self, block: int) -> Iterator[tuple[str, int]]:
         """Name of a block's chunk in each column, and the bytes that it has if it is there."""
-        extents = self.blocks.chunk
-        place = [
-            str(along.start // extent)
-            for along, extent in zip(self.blocks.region(block), extents, strict=True)
+        place = "/".join(map(str, self.blocks.place(block)))
+        for column, behind, size in self._columns:
+            yield f"{column}/c/{place}{behind}", size
+
+    @functools.cached_property
+    def _columns(self) -> list[tuple[str, str, int]]:
+        """Of each column its name, what a chunk's name ends with, and the bytes of a chunk."""
+        lanes = math.prod(self.blocks.chunk)
+        return [
+            (column.name, "/0" * len(column.shape), lanes * column.bytes + CHECK) for column in self.columns
         ]
-        for column in self.columns:
-            inner = ["0"] * len(column.shape)
-            size = math.prod(extents) * column.bytes + CHECK
-            yield "/".join((column.name, "c", *place, *inner)), size
 
     def write(self, block: int, tally: Tally, contents: Mapping[str, bytes | None]) -> None:
         """Mark a block whose chunks are written; `contents` are what was written by the names of the chunks."""
@@ -404,7 +472,7 @@ class Marks:
         """
         # any file may lie there: names that are no block's are left alone
         for name, told in self.storage.marks(f"{PROGRESS}/{DONE}"):
-            block = self._block(PurePosixPath(name))
+            block = self._block(*name.split("/")[-2:])
             # no mark at all: the block is simply not done
             if block is None or told is None or not isinstance(told.get("sha256"), str):
                 continue
@@ -416,14 +484,15 @@ class Marks:
             )
             yield block, tally if whole else None
 
-    def _block(self, file: PurePosixPath) -> int | None:
-        """The block whose mark has this name, if any has."""
+    def _block(self, folder: str, file: str) -> int | None:
+        """The block whose mark has this name in a folder of this name, if any has."""
+        stem = file.removesuffix(".json")
         # digits of other scripts, and numbers longer than any block's, are refused before they are read
-        if not (file.stem.isascii() and file.stem.isdigit()) or len(file.stem) > len(str(len(self.blocks))):
+        if not (stem.isascii() and stem.isdigit()) or len(stem) > len(str(len(self.blocks))):
             return None
-        block = int(file.stem)
-        own = block < len(self.blocks) and file.parent.name == str(block // TOGETHER)
-        return block if own and file.stem == str(block) else None
+        block = int(stem)
+        own = block < len(self.blocks) and folder == str(block // TOGETHER)
+        return block if own and stem == str(block) else None
 
     def _tally(self, block: int, told: object) -> Tally | None:
         """The tally in a mark; None where it is none of this block."""
@@ -490,9 +559,9 @@ FORMAT = 3
 NAMED = 5
 """Damaged blocks that a warning names at most."""
 
-_zarr = functools.partial(lazy_loader.load, "zarr")  # an extra, and slower to import than NumPy
-_codecs = functools.partial(lazy_loader.load, "zarr.codecs")
-_storage = functools.partial(lazy_loader.load, "zarr.storage")
+_zarr = functools.partial(importlib.import_module, "zarr")  # an extra, and slower to import than NumPy
+_codecs = functools.partial(importlib.import_module, "zarr.codecs")
+_storage = functools.partial(importlib.import_module, "zarr.storage")
 
 
 class BlockWriter:

@@ -314,7 +314,7 @@ def _failure(results: GearPairResults) -> Failure | None:
     pair = results.geometry
     names = (PINION, _second(pair))
     advice = Sentence(
-        "choose other shifts: the purpose of least sliding keeps all bounds where they can be kept"
+        "choose other shifts: those of least sliding satisfy all bounds where that is possible"
     )
     if not pair.contact_ratio >= 1:
         what = Sentence(
