@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 import tomllib
 from collections.abc import Iterator
@@ -11,13 +12,15 @@ import numpy as np
 import pytest
 
 from centrode.model.examples import example_text
-from report.browser import browser
+from report.browser import browser, frames
 
 from .bench import Bench, bench, opened
 from .served import Served, served
 
 SIX_DIGITS = 1e-4
 """Curves say five digits of their greatest value."""
+GREY = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAAAAABX3VL4AAAADklEQVR4nGNoaGBoaAAABgYCASzBUNcAAAAASUVORK5CYII="
+"""A picture of four points."""
 
 
 @pytest.fixture(scope="module")
@@ -304,4 +307,41 @@ def test_the_text_and_the_drawing_follow_each_other(running: Any, server: Served
         one.gesture(lambda: field.press("Enter"))
         assert "3.75" in one.text
         one.wait("document.querySelector('.cm-content').innerText.includes('3.75')")
+        assert one.messages == []
+
+
+def test_the_profile_follows_the_segments_of_a_cam(running: Any, server: Served) -> None:
+    """The greatest lift that the curve shows is the one that was written; the outline is another one."""
+    with bench(running, server.address) as one:
+        one.template("indexing-cam")
+        one.motion()
+        before = one.page.get_attribute(".cam-body", "d")
+        field = one.page.locator(".segment").first.locator("input").nth(1)
+        assert field.input_value() == "24"
+        field.fill("30")
+        one.gesture(lambda: field.press("Enter"))
+        assert one.tables["segments"][0]["to"] == "30 deg"
+        one.until(lambda: one.page.get_attribute(".cam-body", "d") != before)
+        one.page.locator('[data-do="seek"]').fill("150")  # where the follower waits
+        frames(one.page)
+        assert one.page.locator(".legend .entry").first.inner_text().split(" = ")[1] == "30.000°"
+        assert one.messages == []
+
+
+def test_a_photo_gets_the_scale_of_a_known_length(running: Any, server: Served) -> None:
+    with bench(running, server.address) as one:
+        one.page.click('[data-do="photo"]')
+        one.page.locator("dialog input[type=file]").set_input_files(
+            {"name": "grey.png", "mimeType": "image/png", "buffer": base64.b64decode(GREY)}
+        )
+        one.wait("document.querySelector('.photo').getAttribute('display') === 'inline'")
+        wide = float(one.page.get_attribute(".photo", "width"))
+        one.page.locator("dialog .buttons button", has_text="scale").click()
+        one.drag((0.4, 0.5), (0.6, 0.5))
+        one.page.wait_for_selector("#photo-length")
+        drawn = float(one.page.input_value("#photo-length"))
+        one.page.fill("#photo-length", str(2 * drawn))
+        one.page.press("#photo-length", "Enter")
+        one.until(lambda: float(one.page.get_attribute(".photo", "width")) > 1.5 * wide)
+        assert float(one.page.get_attribute(".photo", "width")) == pytest.approx(2 * wide, rel=1e-3)
         assert one.messages == []
