@@ -12,13 +12,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 STARTED = """
+import socket
 import sys
 from pathlib import Path
 from centrode.app.server import ServerSettings
-from centrode.app.serving import bound_socket, run_server, work_folder_of
+from centrode.app.serving import run_server, work_folder_of
 if __name__ == "__main__":
     port = int(sys.argv[1])
-    listener = bound_socket(port)
+    listener = socket.socket()
+    if sys.platform != "win32":  # the port of a server that was killed just now
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listener.bind(("127.0.0.1", port))
     listener.listen(16)  # who comes before it answers waits
     print("listening", flush=True)
     run_server(ServerSettings(work_folder_of(None), port, token=sys.argv[2]), listener, browser=False)

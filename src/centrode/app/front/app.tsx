@@ -4,13 +4,13 @@ import { render } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { CamStage } from "./cam";
 import { busy, online } from "./connection";
-import { Dialogs, dialog, fresh, saveNow, share, viewIs } from "./dialogs";
+import { Dialogs, dialog, download, fresh, saveNow, share, viewIs } from "./dialogs";
 import { Icon } from "./icons";
 import { PanelCard, ReadinessView } from "./panels";
 import { Player, step, toggle } from "./player";
 import { SelectionCard, duplicateSelected, removeSelected } from "./selection_card";
 import { Stage } from "./stage";
-import { type Mode, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, undo, unsaved } from "./state";
+import { type Mode, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved } from "./state";
 import { TextPane } from "./text_pane";
 import { language, say } from "./words";
 
@@ -99,7 +99,7 @@ function StageView() {
 
 function Lost() {
   if (online.value !== "lost") return null;
-  return <div class="lost" role="alert"><b>{say("server_gone")}</b> {say("server_gone_repair")}</div>;
+  return <div class="lost" role="alert"><b>{say("server_gone")}</b> {say("server_gone_repair")} <button type="button" onClick={() => download(text.value, fileName.value ?? "mechanism.toml")}>{say("download")}</button></div>;
 }
 
 function App() {

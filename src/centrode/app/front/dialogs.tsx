@@ -137,7 +137,7 @@ export async function saveNow(): Promise<void> {
   wished.value = fileName.value ?? `${(scene.value?.title ?? "").toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "") || "mechanism"}.toml`;
   dialog.value = "save";
 }
-function download(content: BlobPart, name: string, type = "text/plain"): void {
+export function download(content: BlobPart, name: string, type = "text/plain"): void {
   const url = URL.createObjectURL(new Blob([content], { type })), anchor = document.createElement("a");
   Object.assign(anchor, { href: url, download: name });
   anchor.click();
