@@ -81,7 +81,6 @@ CHAPTERS = (
     "walking",
     "contact",
     "choice",
-    "gear-pair",
     "conclusions",
 )
 """As a document has them."""
