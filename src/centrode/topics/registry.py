@@ -12,6 +12,7 @@ from centrode.topics.topic import (
     InstantsOption,
     Lazily,
     NumbersOption,
+    Panel,
     RangeOptions,
     Topic,
     ValueOption,
@@ -77,6 +78,7 @@ INTEGRATE = Topic(
         instants=False,
         options=("rk4_steps",),
     ),
+    panel=Panel(needs=mark("these equations are integrated in the plane only")),
 )
 
 LIMITS = Topic(
@@ -104,6 +106,7 @@ LIMITS = Topic(
         kinds=("json", "csv"),
         samples=False,
     ),
+    panel=Panel(mark("Limits of a drive"), mark("this takes one drive by a link, a guide or a distance")),
 )
 
 REGION = Topic(
@@ -146,6 +149,7 @@ REGION = Topic(
         folder="region",
         samples=False,
     ),
+    panel=Panel(mark("Reachable region of two drives"), mark("this takes two drives")),
 )
 
 ANGLES = Topic(
@@ -157,6 +161,7 @@ ANGLES = Topic(
     command=Command(
         help=mark("Compute transmission and pressure angles over the motion."), folder="angles", dark=True
     ),
+    panel=Panel(mark("Transmission angles")),
 )
 
 REDUCTION = Topic(
@@ -173,6 +178,7 @@ REDUCTION = Topic(
     document=InDocuments(
         chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive"), code="ct.reduce(mechanism)"),)
     ),
+    panel=Panel(needs=mark("no link has a mass, and there is no load: switch Mass or Load on")),
 )
 
 FLYWHEEL = Topic(
@@ -207,6 +213,7 @@ FLYWHEEL = Topic(
         ),
         may_be_left_out=True,
     ),
+    panel=Panel(needs=mark("the description has no [machine] with a mean speed")),
 )
 
 SIMULATION = Topic(
@@ -240,6 +247,7 @@ SIMULATION = Topic(
         chapters=(ChapterOfTopic("simulation", mark("Motion under loads"), code="ct.simulate(mechanism)"),),
         instants=False,
     ),
+    panel=Panel(needs=mark("the description has no [simulation] with a motor or a driving moment")),
 )
 
 REACTIONS = Topic(
@@ -281,6 +289,7 @@ REACTIONS = Topic(
         may_be_left_out=True,
         may_be_incomplete=True,
     ),
+    panel=Panel(needs=mark("no link has a mass, and there is no load: switch Mass or Load on")),
 )
 
 BALANCE = Topic(
@@ -337,6 +346,7 @@ BALANCE = Topic(
         arguments=Lazily("centrode.cli.option_values", "balance_arguments"),
         dark=True,
     ),
+    panel=Panel(mark("Balancing"), mark("no link has a mass: switch Mass on")),
 )
 
 SHAKING = Topic(
@@ -436,6 +446,7 @@ CENTRODES = Topic(
         animation=Lazily("centrode.animation.animate", "animate_rolling"),
         animation_help=mark("Also write an animation: one centrode rolls on the other."),
     ),
+    panel=Panel(mark("Centrodes")),
 )
 
 FOLLOWER_MOTION = Topic(
@@ -452,6 +463,7 @@ FOLLOWER_MOTION = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Motion of the follower"), mark("a curvature law gives this cam: it has no lift")),
 )
 
 MOTION_LAWS = Topic(
@@ -567,6 +579,7 @@ FORCE_POLYGONS = Topic(
         arguments={"paper": "A5", "complete": False},
         motion=True,
     ),
+    panel=Panel(needs=mark("no link has a mass, and there is no load: switch Mass or Load on")),
 )
 
 PLAN = Topic(
@@ -597,6 +610,7 @@ PLAN = Topic(
         options=("positions",),
         points=True,
     ),
+    panel=Panel(needs=mark("this is drawn in the plane only")),
 )
 
 DIAGRAMS = Topic(
@@ -654,6 +668,7 @@ DIAGRAMS = Topic(
         arguments={"incomplete": True},
         options=("angle_step",),
     ),
+    panel=Panel(needs=mark("this is drawn in the plane only")),
 )
 
 RUN = Topic(
@@ -693,6 +708,7 @@ RUN = Topic(
         wished=True,
         points=True,
     ),
+    panel=Panel(pictures=False),
 )
 
 CHECK = Topic(
@@ -712,6 +728,7 @@ CHECK = Topic(
         ),
         instants=False,
     ),
+    panel=Panel(mark("Structure")),
 )
 
 CHAIN = Topic(
@@ -842,6 +859,7 @@ BASE_RADIUS = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Choice of the base radius"), mark("the cam has no size to choose")),
 )
 
 FOLLOWER_PROFILE = Topic(
@@ -866,6 +884,7 @@ FOLLOWER_PROFILE = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Profile of the cam"), mark("the cam has no size yet: its base radius is missing")),
 )
 
 ROLLER_PATH = Topic(
@@ -883,6 +902,9 @@ ROLLER_PATH = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(
+        mark("Path of the roller's centre"), mark("a follower gives this cam: it has no curvature law")
+    ),
 )
 
 PATH_ROUTES = Topic(
@@ -908,6 +930,7 @@ PATH_ROUTES = Topic(
     ),
     document=InDocuments(chapters=(ChapterOfTopic("routes", mark("Three routes to the path")),)),
     subject="cam",
+    panel=Panel(needs=mark("a follower gives this cam: it has no curvature law")),
 )
 
 CAM_SERIES = Topic(
@@ -945,6 +968,7 @@ FOLLOWER_FORCES = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Forces on the cam and the follower"), mark("the follower has no mass, spring or load")),
 )
 
 CAM_PROFILE = Topic(
@@ -966,6 +990,7 @@ CAM_PROFILE = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(needs=mark("a follower gives this cam: it has no curvature law")),
 )
 
 WALKING_WHEEL = Topic(
@@ -990,6 +1015,7 @@ WALKING_WHEEL = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Walking wheel"), mark("the cam has no mover")),
 )
 
 CAM_CONTACT = Topic(
@@ -1004,6 +1030,7 @@ CAM_CONTACT = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(mark("Contact of roller and cam"), mark("the cam has no materials in contact")),
 )
 
 CAM_CHOICE = Topic(
@@ -1023,6 +1050,7 @@ CAM_CHOICE = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(needs=mark("the cam has nothing to choose"), arguments={"front": False}),
 )
 
 GEAR_PAIR = Topic(
