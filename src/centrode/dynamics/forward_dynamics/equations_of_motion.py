@@ -255,10 +255,13 @@ class EquationsOfMotion:
         chosen: dict[int, Number] = {}
 
         def reciprocal(row: int, pivot: Number) -> Number:
+            if is_zero(pivot):
+                # an equation that holds by itself
+                return 0.0
             if row not in self.dependent:
                 return 1.0 / pivot
             if flags is None:
-                chosen[row] = m.less(DEPENDENT * schur[row, row], pivot)
+                chosen[row] = m.less(DEPENDENT * schur.get((row, row), 0.0), pivot)
             else:
                 chosen[row] = flags[row]
             # what is left out is divided by one: no infinity comes near
