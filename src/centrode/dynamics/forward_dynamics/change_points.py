@@ -10,7 +10,7 @@ then there is nothing to pass, and the motion is integrated straight on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -71,9 +71,17 @@ class Detour:
 
 
 def around(
-    integration: PythonIntegration, parameters: Array, time: float, carried: Array, ahead: float
+    integration: PythonIntegration,
+    parameters: Array,
+    time: float,
+    carried: Array,
+    ahead: float,
+    measured: Sequence[tuple[slice, Array]],
 ) -> Detour:
-    """The motion from a time along a half circle to twice `ahead` later, as a detour; `integration` is complex."""
+    """The motion from a time along a half circle to twice `ahead` later, as a detour.
+
+    `integration` is complex; `measured` are parts of what is followed, one kind each, with what they are compared with.
+    """
     centre, radius = time + ahead, ahead
     count = len(integration.problem.followed)
     given = [float(x) for x in parameters]
@@ -91,24 +99,28 @@ def around(
         values[k + 1] = found
         if not np.all(np.isfinite(values[k + 1])):
             return Detour(centre, radius, np.zeros((count, 1)), np.inf, np.inf)
-    return _detour(centre, radius, values)
+    return _detour(centre, radius, values, measured)
 
 
 def _entry(slopes: list[complex]) -> Callable[[int], complex]:
     return lambda stage: slopes[stage]
 
 
-def _detour(centre: float, radius: float, values: Complex) -> Detour:
+def _detour(centre: float, radius: float, values: Complex, measured: Sequence[tuple[slice, Array]]) -> Detour:
     """Taylor's coefficients from values on the half circle, which begins on the left."""
     upper = values[::-1]  # from the right, over the top, to the left
     lower = np.conj(upper[1:-1])[::-1]
     circle = np.concatenate([upper, lower])
     coefficients = np.fft.fft(circle, axis=0).T / len(circle)
     half = len(circle) // 2
-    # what moves is compared with how much it moves, and with 1 where it hardly does
-    moved = np.max(np.abs(coefficients[:, 1:half]), axis=1) + 1e-3 * np.abs(coefficients[:, 0]) + 1e-6
-    negative = np.max(np.abs(coefficients[:, half + 1 :]), axis=1)
-    imaginary = np.max(np.abs(coefficients[:, :half].imag), axis=1)
-    last = np.max(np.abs(coefficients[:, half - 6 : half]), axis=1)
-    singular = float(np.max(np.maximum(negative, imaginary) / moved))
-    return Detour(centre, radius, coefficients[:, :half].real.copy(), singular, float(np.max(last / moved)))
+    singular = unresolved = 0.0
+    for part, units in measured:
+        sizes = np.abs(coefficients[part]) / units[:, None]
+        if not len(sizes):
+            continue
+        # what stands is compared with what moves
+        moved = float(np.max(sizes[:, 1:half])) or 1.0
+        imaginary = np.abs(coefficients[part, :half].imag) / units[:, None]
+        singular = max(singular, float(np.max(sizes[:, half + 1 :])) / moved, float(np.max(imaginary)) / moved)
+        unresolved = max(unresolved, float(np.max(sizes[:, half - 6 : half])) / moved)
+    return Detour(centre, radius, coefficients[:, :half].real.copy(), singular, unresolved)

@@ -537,7 +537,9 @@ class FreeMotion:
             float(state[row[AHEAD], 0]),
             float(state[row[INDEPENDENCE], 0]),
         )
-        detour = around(self._off_axis, parameters[:, 0], time, state[HEADER:, 0], ahead)
+        units = units_of(self.tree, self.equations.numbers)
+        measured = [(self.names.part(kind), units) for kind in (self.names.coordinates, self.names.speeds)]
+        detour = around(self._off_axis, parameters[:, 0], time, state[HEADER:, 0], ahead, measured)
         if not detour.is_passed:
             if near < LOST:
                 what = _("a change point at {time:.9g} s through which no smooth motion leads")
@@ -711,8 +713,9 @@ def _least_energy(mass: Array, matrix: Array, targets: Array) -> Array:
     """The speeds of least kinetic energy that keep equations as well as can be."""
     factor = np.linalg.cholesky(mass).T
     turned = matrix @ np.linalg.inv(factor)
-    scales = np.linalg.norm(turned, axis=1)
-    scales[scales == 0.0] = 1.0
+    sizes = np.linalg.norm(turned, axis=1)
+    # a row of rounding asks for nothing
+    scales = np.where(sizes > RANK * np.max(sizes, initial=0.0), sizes, np.inf)
     found = np.linalg.lstsq(turned / scales[:, None], targets / scales, rcond=RANK)[0]
     return np.asarray(np.linalg.solve(factor, found))
 
