@@ -359,6 +359,7 @@ class FreeMotion:
                 _("write links.NAME, guides.NAME, drives.NAME or points.NAME"),
             )
         columns = []
+        found: tuple[Jet, ...]
         for k in range(len(coordinates)):
             values = self.tree.values(ARRAYS, list(coordinates))
             jets = [Jet((x, float(i == k), 0.0)) for i, x in enumerate(coordinates)]

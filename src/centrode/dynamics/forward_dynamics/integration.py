@@ -166,8 +166,10 @@ def _closing(
     if equations.equations:
         terms = equations.terms(m, values, speeds, time)
         system = equations.system(m, terms)
-        q, w, shift = equations.projected(coordinates, speeds, terms, system)
+        shift = equations.shift_to_close(terms, system)
+        q = [x if is_zero(shift.get(k, 0.0)) else x + shift[k] for k, x in enumerate(coordinates)]
         rotors = {k: turned_rotor(rotors[k], shift.get(k, 0.0)) for k in tree.angles}
+        w = equations.changed_to_fit(m, Values(q, rotors), speeds, time, system)
         counted = {
             name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
             for row, name in zip(sorted(equations.dependent), names.flags, strict=True)
