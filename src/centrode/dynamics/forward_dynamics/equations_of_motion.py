@@ -302,7 +302,9 @@ class EquationsOfMotion:
         laws = {kept.name: _law_jet(jets, kept, time, 1) for kept in self.kept}
         moving = jets_along(self.tree, values, speeds, 1)
         at = self.tree.positions(jets, self.numbers, moving, laws)
-        residuals = [x for constraint in self.constraints for x in constraint.residual(jets, self.numbers, at)]
+        residuals = [
+            x for constraint in self.constraints for x in constraint.residual(jets, self.numbers, at)
+        ]
         errors = [x.coefficients[1] if isinstance(x, Jet) else 0.0 for x in residuals]
         # the elimination is that of the place before: what is left is of the second order
         change, _impulses = system.solve({}, errors)
