@@ -296,7 +296,7 @@ class FreeMotion:
         starts = {path.removeprefix("drives."): float(value) for path, value in values.items()}
         # followed there in small steps, so that the branch is that of the description
         constraints = [*self.tree.closures, *(driven[path] for path in values)]
-        here = self._drive_values(self.position.coordinates)
+        here = self.drive_values(self.position.coordinates)
         place = self.position.coordinates
         farthest = max((abs(starts[name] - here[name]) for name in starts), default=0.0)
         count = max(1, int(np.ceil(farthest / (0.05 * float(min(1.0, self.equations.numbers.scale))))))
@@ -305,7 +305,8 @@ class FreeMotion:
             place = close_position(self.tree, self.equations.numbers, constraints, place, part)
         return place
 
-    def _drive_values(self, coordinates: Array) -> dict[str, float]:
+    def drive_values(self, coordinates: Array) -> dict[str, float]:
+        """Values of all drives [rad or m; on the sphere of guides rad] at joint coordinates."""
         state = self.equations.state(
             ARRAYS,
             self.tree.values(ARRAYS, list(coordinates)),
