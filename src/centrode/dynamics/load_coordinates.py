@@ -156,7 +156,7 @@ class Component:
         size = hypot(*self.direction)
         unit = tuple(x / size for x in self.direction)
         if self.axes == FRAME:
-            return tuple(Jet((x, 0.0, 0.0)) for x in unit)
+            return tuple(state.constant(x) for x in unit)
         if state.on_sphere:
             return state.heading(self.axes, unit)  # type: ignore[arg-type]
         x, y = unit
@@ -218,7 +218,7 @@ class Spin:
             unit = 1.0 / state.mechanism.sphere_radius
             return tuple(x * unit for x in state.point(self.axis))
         size = hypot(*self.axis)
-        return tuple(Jet((x / size, 0.0, 0.0)) for x in self.axis)
+        return tuple(state.constant(x / size) for x in self.axis)
 
 
 @dataclass(frozen=True)

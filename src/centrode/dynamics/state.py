@@ -16,7 +16,7 @@ from centrode.kinematics.samples import Samples
 from centrode.kinematics.solve import Solved
 from centrode.model.links import Link
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.jets import Jet, JetFunctions, integral
 
 # What a mass is to the computation: centre of mass and inertia about it, in the plane and on the sphere.
 
@@ -152,6 +152,7 @@ class State:
         The greatest length, by which velocities of zero are distinguished from rounding.
     columns : kind -> what gives value and two derivatives of its k-th number
     m : functions of jets, over arrays or over expressions
+    order : of the jets
     """
 
     mechanism: Mechanism
@@ -165,6 +166,7 @@ class State:
     m: JetFunctions = JETS
     known: dict[str, Place | Jet] = field(default_factory=dict)
     attitudes: dict[str, Attitude] = field(default_factory=dict)
+    order: int = 2
 
     @classmethod
     def of_samples(
@@ -203,6 +205,10 @@ class State:
                     Jet((x if unit == 1.0 else x * unit, 0.0, 0.0)) for x in numbers
                 )
 
+    def constant(self, value: Number) -> Jet:
+        """A number without derivatives."""
+        return Jet((value, *([0.0] * self.order)))
+
     @property
     def on_sphere(self) -> bool:
         """Whether places have three coordinates, and links axes in place of one angle."""
@@ -223,8 +229,8 @@ class State:
             if self.on_sphere:
                 radius = self.mechanism.sphere_radius
                 # over plain numbers: a point of the frame has no derivatives
-                return tuple(_constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
-            return tuple(_constant(x) for x in fixed)
+                return tuple(self.constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
+            return tuple(self.constant(x) for x in fixed)
         if place is None:
             axes = self.layout.axes
             first, unit = axes * self.layout.points.index(name), length_unit(self.mechanism)
@@ -246,14 +252,14 @@ class State:
     def heading(self, link: str, direction: Vector3) -> Place:
         """On the sphere: a direction of a link's own axes, or of the frame's, as it stands in the frame."""
         if link == FRAME:
-            return tuple(_constant(float(x)) for x in direction)
+            return tuple(self.constant(float(x)) for x in direction)
         x, y, z = vector_in_frame(self.attitude(link), direction)
         return x, y, z
 
     def spin(self, link: str) -> Place:
         """On the sphere: angular velocity of a link by the parameter, with its derivative; of first order."""
         if link == FRAME:
-            return tuple(Jet((0.0, 0.0)) for _axis in range(3))
+            return tuple(self.constant(0.0).slope() for _axis in range(3))
         spin = self.known.get(f"spin {link}")
         if spin is None:
             # half the sum of a x a' over the axes
@@ -270,13 +276,13 @@ class State:
         """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
         axis = tuple(x.lower_order() for x in self.heading(link, direction))
         along = dot(self.spin(link), axis)  # type: ignore[arg-type]
-        # of a first-order jet (rate, its derivative) the turning is (., rate, half of that derivative)
-        return Jet((0.0, along.coefficients[0], along.coefficients[1] * 0.5))
+        # the turning is the integral of its rate
+        return integral(along.coefficients, 0.0)
 
     def angle(self, link: str) -> Jet:
         """Angle of a link or of the frame [rad]; on the sphere that from its reference."""
         if link == FRAME:
-            return _constant(0.0)
+            return self.constant(0.0)
         return self._jet("angle", link, self.layout.angles)
 
     def slide(self, guide: str) -> Jet:
@@ -353,7 +359,3 @@ def _scale_jet(jet: Jet, unit: float) -> Jet:
 def _jet(orders: Array) -> Jet:
     # second derivatives to second Taylor coefficients
     return Jet((orders[0], orders[1], 0.5 * orders[2]))
-
-
-def _constant(value: float) -> Jet:
-    return Jet((value, 0.0, 0.0))

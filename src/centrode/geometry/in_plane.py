@@ -97,8 +97,12 @@ class Plane:
         return Line(*_line(pose, curve))
 
     def stop(self, m: Namespace, pose: PlanePose, curve: Curve, displacement: Number) -> Line:
+        direction = rotate_vector(curve[1], pose.rotor)
+        return Line(self.place_at_slide(m, pose, curve, displacement), (-direction[1], direction[0]))
+
+    def place_at_slide(self, m: Namespace, pose: PlanePose, curve: Curve, displacement: Number) -> Vector:
         through, direction = _line(pose, curve)
-        return Line(along(through, direction, displacement), (-direction[1], direction[0]))
+        return along(through, direction, displacement)
 
     def meet(self, one: PlaneCircle | Line, other: PlaneCircle | Line, root: Root, divisor: Root) -> Vector:
         if isinstance(one, Line):

@@ -134,12 +134,15 @@ class Sphere:
         return SphereCircle(self.place(m, pose, pole), sphere.half(m, radius))
 
     def stop(self, m: Namespace, pose: Attitude, curve: Curve, displacement: Number) -> SphereCircle:
+        # a circle of no arc: a place
+        return SphereCircle(self.place_at_slide(m, pose, curve, displacement), (0.0, 1.0))
+
+    def place_at_slide(self, m: Namespace, pose: Attitude, curve: Curve, displacement: Number) -> Vector:
         pole, (radius,) = curve
         # a displacement is an arc along the circle: over the sine of its radius it is the angle about the
         # pole
         inside = sphere.place_on_circle(m, pole, radius, displacement / m.sin(radius))
-        # a circle of no arc: a place
-        return SphereCircle(vector_in_frame(pose, inside), (0.0, 1.0))
+        return vector_in_frame(pose, inside)
 
     def meet(self, one: SphereCircle, other: SphereCircle, root: Root, divisor: Root) -> Vector:
         for locus in (one, other):

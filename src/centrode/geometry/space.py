@@ -122,6 +122,9 @@ class Space(Protocol):
     def stop(self, m: Namespace, pose: Pose, curve: Curve, displacement: Number) -> Locus:
         """Where a point can be that has a displacement along a guide."""
 
+    def place_at_slide(self, m: Namespace, pose: Pose, curve: Curve, displacement: Number) -> Place:
+        """Place of a point that has a displacement along a guide."""
+
     def meet(self, one: Locus, other: Locus, root: Root, divisor: Root) -> Place:
         """Where two loci meet; circles of links stand first."""
 

@@ -1,0 +1,1 @@
+"""Forward dynamics: the motion of any number of degrees of freedom under forces."""

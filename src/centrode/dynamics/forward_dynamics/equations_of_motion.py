@@ -1,0 +1,381 @@
+"""Equations of motion in joint coordinates: M a = F - G' lambda with G a + b = 0, over any algebra.
+
+M is the sum over masses of the products of their Jacobian's columns, F the loads along theirs less what the motion
+itself asks for, G and b come from the closures: all are jets of the one list of constraints and of the coordinates
+that loads work along. The accelerations follow by a Schur complement (J. Wittenburg, Dynamics of Multibody Systems,
+2nd ed., 2008, chapter 5; E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., 1996,
+section VII.1 for the index-1 form):
+
+    S = G M^-1 G',   S lambda = G M^-1 F + b,   a = M^-1 (F - G' lambda)
+
+No coordinate is chosen to drive the others, so a limit position is an ordinary place. Where M itself has no inverse
+because links are without mass, M + G' W G and F - G' W b take the places of M and F: on the constraints that changes
+nothing but lambda, by W times what G a + b is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeAlias
+
+from centrode.dynamics.forward_dynamics.elimination import Elimination, Entries, Vector, added, is_zero, times
+from centrode.dynamics.forward_dynamics.joint_state import JointState
+from centrode.dynamics.forward_dynamics.spanning_tree import (
+    SpanningTree,
+    Values,
+    jets_along,
+    rotor_jets,
+)
+from centrode.dynamics.loads import LoadTerm
+from centrode.dynamics.masses import coordinates_of
+from centrode.dynamics.state import Mass, State
+from centrode.kinematics.path import DrivenBy
+from centrode.laws import Law
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.structure.constraints import Constraint, Entity, Positions
+from centrode.structure.dimensions import Dimensions
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+Flags: TypeAlias = Mapping[int, Number]
+"""Equation -> condition under which it counts."""
+
+DEPENDENT = 1e-5
+"""An equation that others imply is left out where its pivot is below this share of its diagonal."""
+
+
+@dataclass(frozen=True)
+class LoadAlong:
+    """An effort with the name of the load that it belongs to."""
+
+    label: str
+    term: LoadTerm
+
+
+@dataclass(frozen=True)
+class KeptDrive:
+    """A drive that keeps its law: the constraint, and its value as a function of time."""
+
+    constraint: Constraint
+    driven: DrivenBy
+
+    @property
+    def name(self) -> str:
+        """Id of the drive."""
+        return self.driven.drive.id
+
+    @property
+    def law(self) -> Law:
+        return self.driven.law
+
+
+@dataclass(frozen=True)
+class Terms:
+    """The equations at values of the coordinates and their speeds.
+
+    Attributes
+    ----------
+    mass : M, below and on its diagonal
+    force : F
+    rows : G, row by row
+    values, speeds, bias : of every closure equation its value, its derivative by time and b
+    powers : of every load [W]
+    rates : of the value of every kept drive by time
+    """
+
+    size: int
+    mass: Entries
+    force: Vector
+    rows: Sequence[Vector]
+    values: Sequence[Number]
+    speeds: Sequence[Number]
+    bias: Sequence[Number]
+    powers: Sequence[Number]
+    rates: Sequence[Number]
+    at: Positions
+
+
+@dataclass(frozen=True)
+class EquationsOfMotion:
+    """What moves a mechanism, with its numbers over any algebra.
+
+    Attributes
+    ----------
+    tree : SpanningTree
+    numbers : dimensions, with the constants of gears and rolling contacts
+    masses : of links
+    loads : efforts in the order of loads
+    kept : drives that keep their laws
+    weights : of equations where links have no mass: W; empty where M has an inverse
+    dependent : equations of which some are implied by others everywhere
+    """
+
+    tree: SpanningTree
+    numbers: Dimensions
+    masses: tuple[Mass, ...]
+    loads: tuple[LoadAlong, ...]
+    kept: tuple[KeptDrive, ...] = ()
+    weights: tuple[Number, ...] = ()
+    dependent: frozenset[int] = frozenset()
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.tree.coordinates)
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Closures, then the drives that keep their laws."""
+        return (*self.tree.closures, *(kept.constraint for kept in self.kept))
+
+    @property
+    def equations(self) -> int:
+        """Number of closure equations."""
+        return sum(constraint.size for constraint in self.constraints)
+
+    @cached_property
+    def _centres(self) -> tuple[tuple[Mass, frozenset[int]], ...]:
+        depends = self.tree.depends
+        return tuple((mass, depends.get(Entity("link", mass.link), frozenset())) for mass in self.masses)
+
+    def terms(self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number) -> Terms:
+        """The equations at one state."""
+        jets = JetFunctions(m)
+        laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
+        plain = self.tree.positions(m, self.numbers, values, {k: law.value for k, law in laws.items()})
+        moving = jets_along(self.tree, values, speeds, 2)
+        in_time = self.tree.positions(jets, self.numbers, moving, laws)
+        state = self._state(jets, in_time, time, 2)
+        columns = [self._column(jets, values, plain, k, time) for k in range(self.size)]
+        mass, force = self._inertia(state, columns)
+        powers = self._add_loads(state, columns, force)
+        rows, residuals = self._closures(jets, in_time, columns)
+        return Terms(
+            self.size,
+            mass,
+            force,
+            rows,
+            [jet.coefficients[0] for jet in residuals],
+            [jet.coefficients[1] for jet in residuals],
+            [times(2.0, jet.coefficients[2]) for jet in residuals],
+            powers,
+            [law.coefficients[1] for law in laws.values()],
+            plain,
+        )
+
+    def _state(self, jets: JetFunctions, at: Positions, time: Number, order: int) -> JointState:
+        mechanism = self.tree.mechanism
+        state = JointState(
+            mechanism, None, time, float("nan"), 1.0, 0, 0.0, {}, jets, order=order, at=at, numbers=self.numbers,  # type: ignore[arg-type]
+        )  # fmt: skip
+        if len(mechanism.drives) == 1 and self.loads_use_drive:
+            value = state.drive(mechanism.drives[0]).value
+            object.__setattr__(state, "parameter", value)
+        return state
+
+    @cached_property
+    def loads_use_drive(self) -> bool:
+        """Whether a load depends on the value of the one drive."""
+        return any("q" in load.term.amount.uses for load in self.loads)
+
+    def _column(
+        self, jets: JetFunctions, values: Values, plain: Positions, number: int, time: Number
+    ) -> JointState:
+        """The state that changes along one coordinate."""
+        unit = Jet((values.coordinates[number], 1.0))
+        coordinates = list(values.coordinates)
+        coordinates[number] = unit
+        rotors = dict(values.rotors)
+        if number in rotors:
+            rotors[number] = rotor_jets(rotors[number], unit)
+        at = self.tree.moved(jets, self.numbers, Values(coordinates, rotors), plain, number)
+        return self._state(jets, at, time, 1)
+
+    def _inertia(self, state: JointState, columns: Sequence[JointState]) -> tuple[Entries, Vector]:
+        mass: Entries = {}
+        force: Vector = {}
+        for body, depends in self._centres:
+            along = coordinates_of(state, body)
+            slopes = {k: coordinates_of(columns[k], body) for k in depends}
+            for number, (factor, jet) in enumerate(along):
+                bias = times(2.0, jet.coefficients[2])
+                share = {k: slopes[k][number][1].coefficients[1] for k in sorted(depends)}
+                for i, a in share.items():
+                    added(force, i, -times(factor, times(a, bias)))
+                    for j, b in share.items():
+                        if j <= i:
+                            added(mass, (i, j), times(factor, times(a, b)))
+        return mass, force
+
+    def _add_loads(self, state: JointState, columns: Sequence[JointState], force: Vector) -> list[Number]:
+        powers = []
+        for load in self.loads:
+            strength = load.term.strength(state)
+            coordinate = load.term.coordinate
+            for k, column in enumerate(columns):
+                added(force, k, times(coordinate.slope(column).value, strength))
+            powers.append(times(strength, coordinate.slope(state).value))
+        return powers
+
+    def _closures(
+        self, jets: JetFunctions, in_time: Positions, columns: Sequence[JointState]
+    ) -> tuple[list[Vector], list[Jet]]:
+        rows: list[Vector] = []
+        residuals: list[Jet] = []
+        for constraint in self.constraints:
+            own = constraint.residual(jets, self.numbers, in_time)
+            residuals += [_jet(x, 2) for x in own]
+            first = len(rows)
+            rows += [{} for _equation in own]
+            for k in sorted(self.tree.dependence(constraint)):
+                for number, x in enumerate(constraint.residual(jets, self.numbers, columns[k].at)):
+                    slope = x.coefficients[1] if isinstance(x, Jet) else 0.0
+                    added(rows[first + number], k, slope)
+        return rows, residuals
+
+    # what follows from the terms
+
+    def system(self, m: Namespace, terms: Terms, flags: Flags | None = None) -> MassSystem:
+        """The eliminations of M and S at one state; `flags` say which dependent equations count, else it is decided."""
+        mass, force = dict(terms.mass), dict(terms.force)
+        for row, weight, bias in zip(terms.rows, self.weights, terms.bias, strict=False):
+            for i, a in row.items():
+                added(force, i, -times(weight, times(a, bias)))
+                for j, b in row.items():
+                    if j <= i:
+                        added(mass, (i, j), times(weight, times(a, b)))
+        of_mass = Elimination.of(self.size, mass)
+        solved = [of_mass.forward(row) for row in terms.rows]
+        schur: Entries = {}
+        for i, one in enumerate(solved):
+            for j in range(i + 1):
+                added(schur, (i, j), of_mass.product(one, solved[j]))
+        chosen: dict[int, Number] = {}
+
+        def reciprocal(row: int, pivot: Number) -> Number:
+            if row not in self.dependent:
+                return 1.0 / pivot
+            if flags is None:
+                chosen[row] = m.less(DEPENDENT * schur[row, row], pivot)
+            else:
+                chosen[row] = flags[row]
+            # what is left out is divided by one: no infinity comes near
+            return m.where(chosen[row], 1.0 / m.where(chosen[row], pivot, 1.0), 0.0)
+
+        of_closures = Elimination.of(len(terms.rows), schur, reciprocal)
+        return MassSystem(of_mass, of_closures, solved, force, chosen)
+
+    def accelerations(
+        self, m: Namespace, terms: Terms, flags: Flags | None = None
+    ) -> tuple[list[Number], list[Number], Flags]:
+        """Accelerations, the forces of the closures (as they act along their rows), and which equations counted."""
+        system = self.system(m, terms, flags)
+        solution, forces = system.solve(system.force, terms.bias)
+        a = [solution.get(k, 0.0) for k in range(self.size)]
+        return a, [forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
+
+    def projected(
+        self,
+        m: Namespace,
+        coordinates: Sequence[Number],
+        speeds: Sequence[Number],
+        terms: Terms,
+        flags: Flags | None,
+    ) -> tuple[list[Number], list[Number]]:
+        """Coordinates and speeds closed by one step of Newton's method of least change in the measure of M."""
+        if not terms.rows:
+            return list(coordinates), list(speeds)
+        system = self.system(m, terms, flags)
+        shift, _forces = system.solve({}, terms.values)
+        change, _impulses = system.solve({}, terms.speeds)
+        closed = [_plus(x, shift.get(k, 0.0)) for k, x in enumerate(coordinates)]
+        return closed, [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
+
+    def energies(
+        self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number
+    ) -> tuple[Number, Number]:
+        """Kinetic and potential energy [J]."""
+        jets = JetFunctions(m)
+        laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
+        at = self.tree.positions(jets, self.numbers, jets_along(self.tree, values, speeds, 2), laws)
+        state = self._state(jets, at, time, 2)
+        return self.kinetic_energy(state), self.potential_energy(state)
+
+    def kinetic_energy(self, state: State) -> Number:
+        """Kinetic energy of a state along time [J]."""
+        total: Number = 0.0
+        for mass in self.masses:
+            for factor, jet in coordinates_of(state, mass):
+                speed = jet.coefficients[1]
+                total = total + times(0.5 * factor, times(speed, speed))
+        return total
+
+    def potential_energy(self, state: State) -> Number:
+        """Potential energy of weights and springs [J]."""
+        total: Number = 0.0
+        for load in self.loads:
+            energy = getattr(load.term.amount, "energy", None)
+            if energy is not None:
+                total = total + energy(load.term.coordinate.value(state))
+        return total
+
+    def state(self, m: Namespace, values: Values, rates: Sequence[Jet], time: Number) -> JointState:
+        """The state along time where coordinates are jets with all derivatives that are known."""
+        jets = JetFunctions(m)
+        laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
+        moving = Values(
+            list(rates), {k: _rotor_of_jet(jets, values.rotors[k], rates[k]) for k in self.tree.angles}
+        )
+        return self._state(jets, self.tree.positions(jets, self.numbers, moving, laws), time, 2)
+
+
+def _plus(x: Number, change: Number) -> Number:
+    return x if is_zero(change) else x + change
+
+
+def _rotor_of_jet(jets: JetFunctions, rotor: tuple[Number, Number], angle: Jet) -> tuple[Jet, Jet]:
+    cosine, sine = rotor
+    _value, rate, half = angle.coefficients
+    square = 0.5 * (rate * rate)
+    return (
+        Jet((cosine, -(rate * sine), -(half * sine) - square * cosine)),
+        Jet((sine, rate * cosine, half * cosine - square * sine)),
+    )
+
+
+def _jet(x: Number, order: int) -> Jet:
+    return x if isinstance(x, Jet) else Jet((x, *([0.0] * order)))
+
+
+def _law_jet(jets: JetFunctions, kept: KeptDrive, time: Number) -> Jet:
+    law = kept.driven.value(jets, Jet((time, 1.0, 0.0)))
+    return _jet(law, 2)
+
+
+@dataclass(frozen=True)
+class MassSystem:
+    """M and S = G M^-1 G' eliminated, with the rows of G solved forwards.
+
+    `flags` are the conditions under which dependent equations count.
+    """
+
+    mass: Elimination
+    closures: Elimination
+    rows: Sequence[Vector]
+    force: Vector
+    flags: Mapping[int, Number] = field(default_factory=dict)
+
+    def solve(self, force: Mapping[int, Number], bias: Sequence[Number]) -> tuple[Vector, Vector]:
+        """Solution x and l of M x + G' l = force with G x = -bias."""
+        forward = self.mass.forward(force)
+        right: Vector = {}
+        for i, row in enumerate(self.rows):
+            added(right, i, bias[i])
+            added(right, i, self.mass.product(row, forward))
+        forces = self.closures.solve(right)
+        for i, size in forces.items():
+            for k, x in self.rows[i].items():
+                added(forward, k, -times(x, size))
+        return self.mass.backward(forward), forces

@@ -1,0 +1,99 @@
+"""Loads of a free motion: those of the description, without what jumps with the sense of a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+from centrode.dynamics.forward_dynamics.broken_lines import broken_line_of
+from centrode.dynamics.forward_dynamics.equations_of_motion import LoadAlong
+from centrode.dynamics.load_coordinates import Distance, Slide, Turn
+from centrode.dynamics.loads import AppliedLoad, EnergyClass, LoadDiagram, LoadTable, LoadTerm, Situation
+from centrode.errors import NotComputedYet
+from centrode.locale import _
+from centrode.model.mechanism import Drive, Mechanism
+
+Number: TypeAlias = Any
+ForceLaw: TypeAlias = Callable[[Any, Number, Number, Number], Number]
+"""(m, t, q, v) -> force [N] or moment [N m] along a drive, over any algebra."""
+
+
+@dataclass(frozen=True)
+class DriveEffort:
+    """A force or moment along what a drive moves, besides the loads: a motor's, or a given one.
+
+    Attributes
+    ----------
+    drive : id of the drive
+    law : of time, the drive's value and its speed
+    uses : which of "t", "q" and "v" it depends on
+    """
+
+    drive: str
+    law: ForceLaw
+    uses: frozenset[str] = frozenset("tqv")
+
+
+@dataclass(frozen=True)
+class DriveLaw:
+    """The force of a drive as the law of a load; x and v are those of the drive itself."""
+
+    law: ForceLaw
+    uses: frozenset[str]
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+    energy_class = EnergyClass.OTHER
+    by_place = False
+
+    def __call__(self, now: Situation) -> Number:
+        return self.law(now.m, now.t, now.x, now.v)
+
+
+def free_loads_of(
+    mechanism: Mechanism, loads: Sequence[AppliedLoad], efforts: Sequence[DriveEffort]
+) -> tuple[LoadAlong, ...]:
+    """Loads as they act on a free motion, then the forces of drives.
+
+    Raises NotComputedYet for dry friction, loads that act in one sense of a motion alone, and plain sums.
+    """
+    found = [LoadAlong(load.label, _without_branches(load, term)) for load in loads for term in load.efforts]
+    for effort in efforts:
+        drive = next(one for one in mechanism.drives if one.id == effort.drive)
+        law = DriveLaw(effort.law, effort.uses - {"q"})
+        found.append(LoadAlong(f"drive {drive.id}", LoadTerm(coordinate_of_drive(mechanism, drive), law)))  # type: ignore[arg-type]
+    return tuple(found)
+
+
+def coordinate_of_drive(mechanism: Mechanism, drive: Drive) -> Turn | Slide | Distance:
+    """What the force of a drive works along."""
+    if drive.distance is not None:
+        return Distance(*drive.distance)
+    if drive.guide is not None:
+        return Slide(drive.guide)
+    assert drive.link is not None
+    return Turn(drive.link) if mechanism.space == "sphere" else Turn(drive.link, drive.relative_to)
+
+
+def _without_branches(load: AppliedLoad, term: LoadTerm) -> LoadTerm:
+    amount = term.amount
+    reason = None
+    if term.gate is not None:
+        reason = _("a load that acts while a point moves in one sense")
+    elif term.works is not None:
+        reason = _("a plain sum of friction")
+    elif amount.sensed:
+        reason = (
+            _("a diagram with a column for each sense of motion")
+            if isinstance(amount, LoadDiagram)
+            else _("dry friction")
+        )
+    if reason is not None:
+        what = _("{load} is not computed by all coordinates").format(load=reason)
+        raise NotComputedYet(
+            load.where, what, _("with one degree of freedom the reduced equation computes it")
+        )
+    if isinstance(amount, LoadDiagram | LoadTable):
+        return replace(term, amount=broken_line_of(amount))  # type: ignore[arg-type]
+    return term
