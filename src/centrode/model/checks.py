@@ -21,6 +21,7 @@ from centrode.model.values import Placed, Vector, makes_arc, unit_vector
 
 if TYPE_CHECKING:
     from centrode.model.follower_cam import PlateCam
+    from centrode.model.simulation import Simulation
 
 # Checks that a name in a description is one of something: a point, a link, a guide.
 
@@ -540,16 +541,14 @@ def _rest(mechanism: Description) -> Iterator[Problem]:
         yield from unknown_name_problems(name, names, "point, link or guide", ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
         yield from _names_of_load(mechanism, load, ("loads", index))
-    yield from _simulation(mechanism)
+    if mechanism.simulation is not None:
+        yield from simulation_problems(mechanism, mechanism.simulation)
     for point in mechanism.report.points:
         yield from unknown_name_problems(point, mechanism.points, "point", ("report", "points"))
 
 
-def _simulation(mechanism: Description) -> Iterator[Problem]:
+def simulation_problems(mechanism: Description, settings: Simulation) -> Iterator[Problem]:
     """Problems of what a simulation names: drives that keep their law, and parts that have an initial speed."""
-    settings = mechanism.simulation
-    if settings is None:
-        return
     drives = {drive.id: drive for drive in mechanism.drives}
     for name in settings.keeps:
         at: Place = ("simulation", "keeps")

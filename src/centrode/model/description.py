@@ -133,6 +133,15 @@ class Description(DescriptionPart):
         )
         return self.model_copy(update={"study": study})
 
+    def with_drives_held(self) -> Self:
+        """The mechanism in which drives without a law hold their places, so that kinematics can place it."""
+        if all(drive.has_law for drive in self.drives):
+            return self
+        drives = tuple(
+            drive if drive.has_law else drive.model_copy(update={"speed": 0.0}) for drive in self.drives
+        )
+        return self.model_copy(update={"drives": drives})
+
     @property
     def link_names(self) -> tuple[str, ...]:
         """Names of the moving links in description order."""

@@ -584,6 +584,14 @@ def _new_plan(form: Form) -> Plan:
     return Plan(groups, _left_out(owners, kept), mobility)
 
 
+def generic_mobility(mechanism: Mechanism) -> int:
+    """Mobility by rank at a random realisation, drives left out; it needs no drives."""
+    dimensions, unknowns = dimensions_of(mechanism), unknowns_of(mechanism)
+    free = [constraint for constraint in constraints_of(mechanism) if not is_drive(constraint)]
+    matrix = generic_jacobian(mechanism, free, unknowns, dimensions)
+    return int(matrix.shape[1] - independent_rows(matrix).sum())
+
+
 def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
     """Which rows are kept: drives first, links with few points last, and contacts of wheels behind them.
 

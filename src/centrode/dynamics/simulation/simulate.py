@@ -33,6 +33,7 @@ from centrode.dynamics.simulation.equation_of_motion import (
     of_time,
 )
 from centrode.dynamics.simulation.integrator import Stepper, Until, compile_scan, even_times, fixed_steps
+from centrode.dynamics.simulation.multibody import MULTIBODY, equations_for, simulate_multibody
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
@@ -345,7 +346,10 @@ def simulate(
     executor: Executor = "auto",
     progress: Tell | None = None,
 ) -> xr.Dataset:
-    """The motion of a mechanism with one drive under its loads and what drives it.
+    """The motion of a mechanism under its loads and what drives it.
+
+    One drive that has all the mobility moves by the reduced equation; any number of degrees of freedom by the equations
+    of all links with their constraints (`equations="multibody"` of the settings), whose result has everything that moves.
 
     Parameters
     ----------
@@ -388,6 +392,9 @@ def simulate(
             _("{name} is not a scheme of integration").format(name=f'"{executor}"'),
             _("use one of {known}").format(known=", ".join(get_args(Executor))),
         )
+    settings = settings or mechanism.simulation
+    if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
+        return simulate_multibody(mechanism, settings, at, progress)
     setting = setting_of(mechanism, settings)
     count = setting.settings.samples if at is None else np.size(at)
     check_size(layout_of(setting.prepared.kinematics), 1, count)
