@@ -396,6 +396,8 @@ def simulate(
     if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
         return simulate_multibody(mechanism, settings, at, progress)
     setting = setting_of(mechanism, settings)
+    if at is None and setting.settings.at:
+        at = setting.settings.at
     count = setting.settings.samples if at is None else np.size(at)
     check_size(layout_of(setting.prepared.kinematics), 1, count)
     course = trajectory_of(setting, executor, progress)
