@@ -62,6 +62,7 @@ IN_CSV = (
     "keeping_moment",
     "velocity_residual",
 )
+WORKS = ("work_of_drive", "work_of_friction", "work_of_other_loads")
 COORDINATES = {
     "drives": ("drive_value", "drive_speed", "drive_acceleration"),
     "coordinates": ("generalised_coordinate", "generalised_velocity", "generalised_acceleration"),
@@ -187,7 +188,7 @@ def _range(coordinates: _Coordinates, name: str) -> Text:
 def _works(run: xr.Dataset) -> Text:
     drive, friction, others = (
         Number(float(run[name].values[-1]) + 0.0 if run.sizes["sample"] else 0.0, "J")
-        for name in ("work_of_drive", "work_of_friction", "work_of_other_loads")
+        for name in WORKS
     )
     return Sentence(
         "drive {drive}, friction {friction}, other loads {others}",
@@ -343,14 +344,10 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
 
 
 def _energies_plot(run: xr.Dataset, title: Title) -> Plot:
-    rows = tuple(
-        (_panel(run, names),)
-        for names in (
-            ("kinetic_energy", "potential_energy"),
-            ("work_of_drive", "work_of_friction", "work_of_other_loads"),
-            ("energy_residual",),
-        )
-    )
+    # works that are zero all the time would hide each other
+    works = [name for name in WORKS if np.any(run[name].values)]
+    groups = (("kinetic_energy", "potential_energy"), works, ("energy_residual",))
+    rows = tuple((_panel(run, names),) for names in groups if names)
     return Plot(TITLES["simulation-energies"], title, _over_time(run), rows)
 
 

@@ -16,10 +16,10 @@ from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.equation_of_motion import Driving
 from centrode.dynamics.state import length_unit
-from centrode.errors import STATUSES_OF_MOTION, InputError, Status
+from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
 from centrode.kinematics.hinge_angles import spherical_coordinates
 from centrode.kinematics.motion import labels_of, vocabulary_variable
-from centrode.kinematics.path import places_of
+from centrode.kinematics.path import path_of, places_of
 from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
 from centrode.locale import _
 from centrode.model.checks import simulation_problems
@@ -33,6 +33,7 @@ from centrode.version import __version__
 
 if TYPE_CHECKING:
     from centrode.kinematics.motion import Variable
+    from centrode.model.motion_parameter import DriveCoordinate
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -76,9 +77,27 @@ class MultibodySetting:
         if not self.mechanism.drives:
             what = _("nothing says along what the driving moment acts")
             raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
-        driving = Driving.of(self.settings, 1.0)
-        used = frozenset(driving.formula.used)
-        return (DriveEffort(self.mechanism.drives[0].id, driving.over, used),)
+        first, driving = self.coordinates[0], Driving.of(self.settings, self.sense)
+
+        def along(m: Any, t: Any, measure: Any, rate: Any) -> Any:
+            # the formula knows the coordinate, with the zero and the sense that its author may have chosen
+            return first.sense * driving.over(m, t, first.value_of(measure), first.sense * rate)
+
+        return (DriveEffort(first.name, along, frozenset(driving.formula.used)),)
+
+    @property
+    def coordinates(self) -> tuple[DriveCoordinate, ...]:
+        """Coordinates of the drives, the first of them that to which speed, start and driving belong."""
+        return self.mechanism.motion_parameter.drives
+
+    @cached_property
+    def sense(self) -> float:
+        """Sense of the first drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
+        first = self.mechanism.drives[0]
+        if not first.has_law:
+            return self.coordinates[0].sense
+        alone = self.mechanism.model_copy(update={"drives": (first,)})
+        return float(path_of(alone, 1.0).forward)
 
     @property
     def duration(self) -> float:
@@ -115,7 +134,7 @@ class MultibodySetting:
             if path in given:
                 what = _("speed and {path} are given together").format(path=path)
                 raise InputError("[simulation] speed", what, _("keep one of them"))
-            given[path] = settings.speed
+            given[path] = self.coordinates[0].sense * self.sense * settings.speed
         return given
 
     @property
@@ -126,7 +145,8 @@ class MultibodySetting:
         if not self.mechanism.drives:
             what = _("start is that of the first drive, and there is none")
             raise InputError("[simulation] start", what, _("give initial angles of links"))
-        return {f"drives.{self.mechanism.drives[0].id}": self.settings.start}
+        first = self.coordinates[0]
+        return {f"drives.{first.name}": first.measure_at(self.settings.start)}
 
     def run(self, at: npt.ArrayLike | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Integrate the motion."""
@@ -166,6 +186,9 @@ def multibody_setting(mechanism: Mechanism, settings: Simulation) -> MultibodySe
     if settings.scheme == "runge-kutta-4":
         what = _("fixed steps are those of the reduced equation")
         raise InputError("[simulation] scheme", what, _('write scheme = "adaptive"'))
+    if mechanism.machine is not None and mechanism.machine.inertia:
+        what = _("shafts and flywheels that turn with the drive belong to the reduced equation")
+        raise NotComputedYet("[machine]", what, _('write equations = "reduced", or describe them as links'))
     return MultibodySetting(mechanism, settings)
 
 
@@ -200,8 +223,8 @@ def multibody_dataset(setting: MultibodySetting, course: Trajectory) -> xr.Datas
 def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
     """Times, values of the drives, and names."""
     free, mechanism = setting.free, setting.mechanism
-    units = mechanism.motion_parameter.units
-    drive_value = vocabulary_variable("drive_value", ("sample", "drive"), course.drives, units[0] if units else "rad")
+    units, values = mechanism.motion_parameter.units, _drive_values(setting, course)[0]
+    drive_value = vocabulary_variable("drive_value", ("sample", "drive"), values, units[0] if units else "rad")
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     joints = {"joint": labels_of(free.links)} if mechanism.space == "sphere" else {}
@@ -216,8 +239,17 @@ def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
         "axis": labels_of(("x", "y", "z")[: course.places.shape[-1]]),
         "coordinate": labels_of(coordinate_names(free)),
         "source": labels_of(tuple(course.works)),
-        **drive_coordinates(free.drives, course.drives, units),
+        **drive_coordinates(free.drives, values, units),
     }
+
+
+def _drive_values(setting: MultibodySetting, course: Trajectory) -> tuple[Array, Array, Array]:
+    """Values, speeds and accelerations (n, d) of the coordinates of all drives, of which one alone may be chosen."""
+    senses = np.array([one.sense for one in setting.coordinates])
+    values = course.drives.copy()
+    for number, one in enumerate(setting.coordinates):
+        values[:, number] = one.value_of(values[:, number])
+    return values, course.drive_speeds * senses, course.drive_accelerations * senses
 
 
 def coordinate_names(free: FreeMotion) -> tuple[str, ...]:
@@ -251,7 +283,8 @@ def _drives_in_time(setting: MultibodySetting, course: Trajectory) -> dict[str, 
     units = setting.mechanism.motion_parameter.units
     if not units:
         return found
-    for name, values in (("drive_speed", course.drive_speeds), ("drive_acceleration", course.drive_accelerations)):
+    _values, speeds, accelerations = _drive_values(setting, course)
+    for name, values in (("drive_speed", speeds), ("drive_acceleration", accelerations)):
         variable = vocabulary_variable(name, ("sample", "drive"), values)
         variable[2]["units"] = _joined_units(
             [vocabulary_variable(name, (), 0.0, unit)[2]["units"] for unit in units]
