@@ -223,7 +223,9 @@ def squares(loops: int, *, speed: float = 1.0) -> str:
 def squeezer(start: float = -0.0617138900142764496358948458001) -> ct.Mechanism:
     """Andrews' mechanism with its spring and torque: the built-in geometry; its crank starts at an angle."""
     geometry = ct.example("andrews-squeezer")
-    text = ct.mechanism_text(geometry) + """
+    text = (
+        ct.mechanism_text(geometry)
+        + """
 [[loads]]
 kind = "spring"
 points = ["D", "C"]
@@ -237,6 +239,7 @@ value = 0.033
 equations = "multibody"
 duration = 0.05
 """
+    )
     placed = ct.motion(geometry, at=[start])
     angles = {name: float(placed.angle.sel(link=name)[0]) for name in geometry.links if name != "OF"}
     values = {f"links.{name}.angle": angle for name, angle in angles.items()}

@@ -88,7 +88,11 @@ class Multibody:
         length = max(math.dist(a, b) for a in ends for b in ends)
         if self.rods and not link.mass and inertia is None:
             # 1 kg/m between the farthest points, for a plate as for a rod about the mean of its points
-            mass, centre, inertia = max(length, 1e-3), middle, max(length, 1e-3) * max(length, 1e-3) ** 2 / 12.0
+            mass, centre, inertia = (
+                max(length, 1e-3),
+                middle,
+                max(length, 1e-3) * max(length, 1e-3) ** 2 / 12.0,
+            )
         if link.shape == "rod":
             centre, inertia = middle, mass * length**2 / 12.0
         if link.shape == "disc":
@@ -116,7 +120,9 @@ class Multibody:
             return body.local[at]
         return at[0] - body.centre[0], at[1] - body.centre[1]
 
-    def slopes(self, q: Any, link: str, at: str | tuple[float, float]) -> tuple[dict[int, Any], dict[int, Any]]:
+    def slopes(
+        self, q: Any, link: str, at: str | tuple[float, float]
+    ) -> tuple[dict[int, Any], dict[int, Any]]:
         """Derivatives of the two coordinates of a point by all coordinates."""
         if link == "frame":
             return {}, {}
@@ -278,7 +284,9 @@ class Multibody:
         return values if self.used is None else values[self.used]
 
     def _given(self, which: str, t: float) -> Array:
-        values = [getattr(one, which)(t) for one in self.constraints for _row in one.rows(np.zeros(self.size))]
+        values = [
+            getattr(one, which)(t) for one in self.constraints for _row in one.rows(np.zeros(self.size))
+        ]
         return np.array(values) if self.used is None else np.array(values)[self.used]
 
     def forces(self, t: float, q: Array, v: Array) -> Array:
@@ -306,7 +314,11 @@ class Multibody:
             for factor, slopes in zip(apart / length, rows, strict=True):
                 for k, slope in slopes.items():
                     row[k] += factor * slope
-            force = -load.stiffness * (length - load.free_length) if kind == "spring" else -load.damping * (row @ v)
+            force = (
+                -load.stiffness * (length - load.free_length)
+                if kind == "spring"
+                else -load.damping * (row @ v)
+            )
             return force * row
         if kind in ("spring", "damper"):
             row = np.zeros(self.size)

@@ -79,7 +79,9 @@ points.B = [0, 1]
     assert mechanism.simulation is not None
     assert mechanism.simulation.at == (0.0, 0.5, 1.0)
     assert mechanism.simulation.keeps == ("A-X",)
-    degrees = ct.parse_mechanism(arm(settings + 'links.AB = "0.5 rad/s"', "speed = 0.1") + "[display]\nangle = 'deg'\n")
+    degrees = ct.parse_mechanism(
+        arm(settings + 'links.AB = "0.5 rad/s"', "speed = 0.1") + "[display]\nangle = 'deg'\n"
+    )
     assert ct.parse_mechanism(ct.mechanism_text(degrees)) == degrees
 
 
@@ -93,22 +95,26 @@ def test_start_and_speed_are_those_of_the_first_drive() -> None:
 @pytest.mark.parametrize(
     ("settings", "law", "message"),
     [
-        ('keeps = ["BC"]', "", "[simulation] keeps: there is no drive \"BC\"; known are: OA, A-X"),
-        ('keeps = ["A-X"]', "", "drive \"A-X\" has no law that it could keep; give it speed, law"),
+        ('keeps = ["BC"]', "", '[simulation] keeps: there is no drive "BC"; known are: OA, A-X'),
+        ('keeps = ["A-X"]', "", 'drive "A-X" has no law that it could keep; give it speed, law'),
         (
             'keeps = ["A-X"]\n[simulation.speeds]\ndrives.A-X = 1',
             "speed = 0.1",
-            "drive \"A-X\" keeps its law, which gives its speed; remove the speed",
+            'drive "A-X" keeps its law, which gives its speed; remove the speed',
         ),
         (
-            '[simulation.speeds]\nlinks.OAA = 1',
+            "[simulation.speeds]\nlinks.OAA = 1",
             "",
-            "[simulation.speeds] links.OAA: unknown link \"OAA\"; did you mean \"OA\"?",
+            '[simulation.speeds] links.OAA: unknown link "OAA"; did you mean "OA"?',
         ),
-        ("[simulation.speeds]\nguides.K = 1", "", "unknown guide \"K\""),
-        ("[simulation.speeds]\npoints.O = [1, 0]", "", "unknown point \"O\""),
-        ("[simulation.speeds]\ndrives.K = 1", "", "there is no drive \"K\""),
-        ("[simulation.speeds]\nOA = 1", "", "a speed is that of a link, a guide, a drive or a point, got \"OA\""),
+        ("[simulation.speeds]\nguides.K = 1", "", 'unknown guide "K"'),
+        ("[simulation.speeds]\npoints.O = [1, 0]", "", 'unknown point "O"'),
+        ("[simulation.speeds]\ndrives.K = 1", "", 'there is no drive "K"'),
+        (
+            "[simulation.speeds]\nOA = 1",
+            "",
+            'a speed is that of a link, a guide, a drive or a point, got "OA"',
+        ),
         ('[simulation.speeds]\nlinks.OA = "1 m/s"', "", "expected an angular speed"),
         ('[simulation.speeds]\ndrives.A-X = "1 rad/s"', "", "expected a speed"),
         ("[simulation.speeds]\npoints.B = 1", "", "expected [x, y], got 1"),
@@ -118,7 +124,11 @@ def test_start_and_speed_are_those_of_the_first_drive() -> None:
         ("at = [-1]", "", "must not be negative"),
         ('at = ["1 m"]', "", "expected a time"),
         ('equations = "lagrange"', "", 'expected one of "reduced", "multibody"'),
-        ('equations = "multibody"\nscheme = "runge-kutta-4"', "", "fixed steps are those of the reduced equation"),
+        (
+            'equations = "multibody"\nscheme = "runge-kutta-4"',
+            "",
+            "fixed steps are those of the reduced equation",
+        ),
     ],
 )
 def test_wrong_settings_are_refused_by_name(settings: str, law: str, message: str) -> None:

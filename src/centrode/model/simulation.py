@@ -98,9 +98,7 @@ def _read_speeds(value: object) -> Mapping[str, Speed]:
         try:
             name = _speed_path(path)
             if name in given:
-                raise Problem(
-                    _("{name} is named twice").format(name=value_text(name)), _("keep one of them")
-                )
+                raise Problem(_("{name} is named twice").format(name=value_text(name)), _("keep one of them"))
             given[name] = _read_speed(name, entry)
         except Problem as problem:
             wrong.append(Problem(problem.what, problem.repair, (path,)))
@@ -123,7 +121,9 @@ def _speed_path(path: str) -> str:
     room, _dot, name = path.partition(".")
     if room not in SPEED_ROOMS:
         what = _("a speed is that of a link, a guide, a drive or a point, got {path}")
-        raise Problem(what.format(path=value_text(path)), nearest(room, [f"{one}.NAME" for one in SPEED_ROOMS]))
+        raise Problem(
+            what.format(path=value_text(path)), nearest(room, [f"{one}.NAME" for one in SPEED_ROOMS])
+        )
     return f"{room}.{read_name(name)}"
 
 
@@ -149,7 +149,9 @@ def _read_instants(value: object) -> tuple[float, ...]:
     """Instants [s] that grow, from zero on."""
     instants = tuple(not_negative(one, "time") for one in entries(value, reading.SAMPLES))
     if any(late <= early for early, late in pairwise(instants)):
-        raise Problem(_("{key} must hold instants that grow").format(key=KEY), _("sort them, and name each once"))
+        raise Problem(
+            _("{key} must hold instants that grow").format(key=KEY), _("sort them, and name each once")
+        )
     return instants
 
 

@@ -28,9 +28,26 @@ from centrode.sheets.sheet import (
     Sheet,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Sentence, Symbol, Text, Title
+from centrode.sheets.texts import (
+    NOTHING,
+    Counted,
+    Expression,
+    Joined,
+    Name,
+    Number,
+    Sentence,
+    Symbol,
+    Text,
+    Title,
+)
 from centrode.views.columns import VARIABLES, drive_units, rows_shown, status_column
-from centrode.views.motion_plots import deal_to_panels, great_value, over_samples, quantities_panel, quantity_label
+from centrode.views.motion_plots import (
+    deal_to_panels,
+    great_value,
+    over_samples,
+    quantities_panel,
+    quantity_label,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,8 +59,8 @@ Array: TypeAlias = NDArray[np.float64]
 
 SHOWN = 8
 """Coordinates and happenings that are shown one by one."""
-PORTRAITS = 6
-"""Phase portraits at most."""
+PORTRAIT, PORTRAITS = "simulation-phase-", 6
+"""Names of phase portraits begin so; and how many there are at most."""
 SAFETY = 100.0
 """Errors of steps add up, and energies turn over more than once."""
 
@@ -103,7 +120,9 @@ class _Coordinates:
         self.dimension = "drive" if kind == "drives" else "coordinate"
         self.names = [str(name) for name in run[self.dimension].values]
         self.courses = [run[name].values for name in COORDINATES[kind]]
-        units = drive_units(run) if kind == "drives" else _units(run["generalised_coordinate"], len(self.names))
+        units = (
+            drive_units(run) if kind == "drives" else _units(run["generalised_coordinate"], len(self.names))
+        )
         self.units = [unit or "1" for unit in units]
 
     def of_unit(self, unit: str) -> list[str]:
@@ -139,9 +158,7 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("equations"), Sentence("of all links, with the forces of the constraints"))
     redundant = int(run.attrs["redundant"])
     if redundant:
-        yield Fact(
-            Sentence("constraints that repeat others"), Number(redundant, digits="d")
-        )
+        yield Fact(Sentence("constraints that repeat others"), Number(redundant, digits="d"))
     yield Fact(Sentence("scheme"), _scheme(run))
     yield Fact(Sentence("ended"), _ending(run))
     for name in islice(coordinates.names, SHOWN):
@@ -179,16 +196,13 @@ def _range(coordinates: _Coordinates, name: str) -> Text:
     values, unit = coordinates.course(name, 0), coordinates.units[coordinates.names.index(name)]
     if not values.size:
         return NOTHING
-    least, greatest, last = (
-        Number(float(value), unit) for value in (values.min(), values.max(), values[-1])
-    )
+    least, greatest, last = (Number(float(value), unit) for value in (values.min(), values.max(), values[-1]))
     return Sentence("{least} to {greatest}, {last} at the end", least=least, greatest=greatest, last=last)
 
 
 def _works(run: xr.Dataset) -> Text:
     drive, friction, others = (
-        Number(float(run[name].values[-1]) + 0.0 if run.sizes["sample"] else 0.0, "J")
-        for name in WORKS
+        Number(float(run[name].values[-1]) + 0.0 if run.sizes["sample"] else 0.0, "J") for name in WORKS
     )
     return Sentence(
         "drive {drive}, friction {friction}, other loads {others}",
@@ -286,7 +300,7 @@ def _pictures(results: SimulationResults) -> Iterator[tuple[str, partial[Picture
     yield "simulation-coordinates", partial(_coordinates_plot, run, title)
     coordinates = _Coordinates(run)
     for name in coordinates.names[:PORTRAITS]:
-        yield f"simulation-phase-{name}", partial(_portrait, run, title, name)
+        yield f"{PORTRAIT}{name}", partial(_portrait, run, title, name)
     yield "simulation-energies", partial(_energies_plot, run, title)
     if run.sizes["source"] > 1:
         yield "simulation-works", partial(_works_plot, run, title)
@@ -324,7 +338,9 @@ def _coordinate_panel(
         for name in names
     )
     scale = max(float(np.max(np.abs(curve.values), initial=0.0)) for curve in curves)
-    return CurvePanel(AxisLabel(symbol=Symbol(symbol), unit=f"{unit}{behind}"), curves, scale, legend=order == 0)
+    return CurvePanel(
+        AxisLabel(symbol=Symbol(symbol), unit=f"{unit}{behind}"), curves, scale, legend=order == 0
+    )
 
 
 def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
@@ -340,7 +356,9 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
         float(np.max(np.abs(speeds), initial=0.0)),
         legend=False,
     )
-    return Plot(Sentence("Phase portrait of {name}", name=Name(name)), title, over_samples(label, values), ((panel,),))
+    return Plot(
+        Sentence("Phase portrait of {name}", name=Name(name)), title, over_samples(label, values), ((panel,),)
+    )
 
 
 def _energies_plot(run: xr.Dataset, title: Title) -> Plot:
@@ -361,7 +379,8 @@ def _works_plot(run: xr.Dataset, title: Title) -> Plot:
     rows = []
     for group in deal_to_panels(names):
         curves = tuple(
-            Curve(Name(name), run["work_part"].values[:, names.index(name)], names.index(name)) for name in group
+            Curve(Name(name), run["work_part"].values[:, names.index(name)], names.index(name))
+            for name in group
         )
         label = AxisLabel(symbol=Symbol("A"), unit="J")
         rows.append((CurvePanel(label, curves, great_value(run, "work_part")),))
@@ -392,7 +411,11 @@ def _chapter(results: SimulationResults) -> Chapter:
         )
     )
     figures = tuple(
-        Illustration(picture(), CAPTIONS.get(name, Sentence("Phase portrait")))
+        Illustration(
+            picture(),
+            CAPTIONS.get(name)
+            or Sentence("Phase portrait of {name}", name=Name(name.removeprefix(PORTRAIT))),
+        )
         for name, picture in _pictures(results)
     )
     player = (MotionPlayer(results.mechanism, run, by_time=True),) if run.sizes["sample"] > 1 else ()
@@ -412,7 +435,12 @@ def _course(run: xr.Dataset) -> Table:
         unit = coordinates.units[coordinates.names.index(name)]
         columns += [
             Column(name, coordinates.course(name, 0), unit, Name(name)),
-            Column(f"{name}_velocity", coordinates.course(name, 1), f"{unit}/s", Joined((Name(name), Symbol("q̇")), " ")),
+            Column(
+                f"{name}_velocity",
+                coordinates.course(name, 1),
+                f"{unit}/s",
+                Joined((Name(name), Symbol("q̇")), " "),
+            ),
         ]
     for name, letter in (("kinetic_energy", "T"), ("potential_energy", "V")):
         columns.append(Column(name, run[name].values, "J", Expression(letter)))
@@ -425,8 +453,13 @@ def _checks(results: SimulationResults) -> Iterator[Check]:
     tolerance = results.settings.tolerance
     if not run.sizes["sample"]:
         return
-    turned_over = [float(np.max(np.abs(run[name].values), initial=0.0)) for name in ("work_of_drive", "work_of_friction")]
-    turned_over += [float(np.ptp(run["potential_energy"].values)), float(np.max(run["kinetic_energy"].values))]
+    turned_over = [
+        float(np.max(np.abs(run[name].values), initial=0.0)) for name in ("work_of_drive", "work_of_friction")
+    ]
+    turned_over += [
+        float(np.ptp(run["potential_energy"].values)),
+        float(np.max(run["kinetic_energy"].values)),
+    ]
     yield Check(
         Sentence(
             "Residual of the energy balance over the whole motion: {share} of the greatest work or energy."
@@ -438,7 +471,9 @@ def _checks(results: SimulationResults) -> Iterator[Check]:
     if results.second is not None:
         apart, size, _unit, _time = _difference(results)
         yield Check(
-            Sentence("The reduced equation as a second route: the drive's value differs by {share} of its change."),
+            Sentence(
+                "The reduced equation as a second route: the drive's value differs by {share} of its change."
+            ),
             apart,
             size,
             max(steps, 1) * SAFETY * tolerance,

@@ -40,8 +40,8 @@ from centrode.sheets.texts import (
     Unit,
 )
 from centrode.views.columns import motion_table, rows_shown
-from centrode.views.multibody import multibody_sheet
 from centrode.views.motion_plots import over_samples, quantities_panel, quantity_label
+from centrode.views.multibody import multibody_sheet
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.forward_dynamics.free_motion import STATUSES, FreeMotion, Trajectory, free_motion_of
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
+from centrode.dynamics.forward_dynamics.free_motion import STATUSES, FreeMotion, Trajectory, free_motion_of
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.equation_of_motion import Driving
+from centrode.dynamics.simulation.routes import MULTIBODY
 from centrode.dynamics.state import length_unit
 from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
 from centrode.kinematics.hinge_angles import spherical_coordinates
@@ -28,7 +29,6 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
 from centrode.model.reading import error_at_place
 from centrode.model.simulation import Simulation
-from centrode.structure.plan import generic_mobility
 from centrode.version import __version__
 
 if TYPE_CHECKING:
@@ -37,24 +37,10 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-MULTIBODY, REDUCED = "multibody", "reduced"
 MOST_NUMBERS = 100_000_000
 """Numbers of a result: with eight bytes each some 0.8 GB."""
 HAPPENINGS = ("crossing", "near miss", "doubtful")
 """What may happen on the way: it passes a change point, passes near one, or nothing tells how it goes on."""
-
-
-def equations_for(mechanism: Mechanism, settings: Simulation) -> str:
-    """The equations that a simulation takes: those of its settings, else the reduced one where it is enough.
-
-    It is enough where one drive with a law has all the mobility, no drive keeps its law, and the first drive's speed
-    alone is given.
-    """
-    if settings.equations is not None:
-        return settings.equations
-    if settings.keeps or settings.speeds or len(mechanism.drives) != 1 or not mechanism.drives[0].has_law:
-        return MULTIBODY
-    return MULTIBODY if generic_mobility(mechanism) > 1 else REDUCED
 
 
 @dataclass(frozen=True)
@@ -148,7 +134,9 @@ class MultibodySetting:
         first = self.coordinates[0]
         return {f"drives.{first.name}": first.measure_at(self.settings.start)}
 
-    def run(self, at: npt.ArrayLike | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:
+    def run(
+        self, at: npt.ArrayLike | None = None, progress: Callable[[float], None] | None = None
+    ) -> Trajectory:
         """Integrate the motion."""
         duration, instants = self.duration, self.instants(at)
         self._check_size(len(instants))
@@ -224,7 +212,9 @@ def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
     """Times, values of the drives, and names."""
     free, mechanism = setting.free, setting.mechanism
     units, values = mechanism.motion_parameter.units, _drive_values(setting, course)[0]
-    drive_value = vocabulary_variable("drive_value", ("sample", "drive"), values, units[0] if units else "rad")
+    drive_value = vocabulary_variable(
+        "drive_value", ("sample", "drive"), values, units[0] if units else "rad"
+    )
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     joints = {"joint": labels_of(free.links)} if mechanism.space == "sphere" else {}

@@ -7,7 +7,7 @@ from math import tau
 from typing import TYPE_CHECKING, Any
 
 from centrode.dynamics.masses import has_masses_or_loads
-from centrode.dynamics.simulation.multibody import MULTIBODY, REDUCED, equations_for
+from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, equations_for
 from centrode.dynamics.simulation.simulate import Tell, simulate
 from centrode.dynamics.simulation.steady_state import Regime, steady_regime
 from centrode.errors import CentrodeError, InputError, MotionError
@@ -165,8 +165,8 @@ def check_ended(results: SimulationResults) -> None:
     if run.attrs["ended"] == "limit":
         what = _("it stops at a limit after {time:.6g} s").format(time=float(run["time"].values[-1]))
         repair = _(
-            'give a shorter time, or equations = "multibody" in [simulation] (--equations multibody), for which a limit '
-            "is a place as any other"
+            'give a shorter time, or equations = "multibody" in [simulation] (--equations multibody), for which a '
+            "limit is a place like any other"
         )
         raise MotionError("", what, repair)
     if run.attrs["ended"] == "change point":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -33,7 +35,7 @@ from centrode.dynamics.simulation.equation_of_motion import (
     of_time,
 )
 from centrode.dynamics.simulation.integrator import Stepper, Until, compile_scan, even_times, fixed_steps
-from centrode.dynamics.simulation.multibody import MULTIBODY, equations_for, simulate_multibody
+from centrode.dynamics.simulation.routes import MULTIBODY, equations_for
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
@@ -57,6 +59,9 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
 from centrode.model.simulation import MOST_TURNS, Simulation
 from centrode.numerics.executors import ARRAYS, choose_executor
+
+# the reduced equation needs nothing of the other route
+_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
@@ -349,7 +354,7 @@ def simulate(
     """The motion of a mechanism under its loads and what drives it.
 
     One drive that has all the mobility moves by the reduced equation; any number of degrees of freedom by the equations
-    of all links with their constraints (`equations="multibody"` of the settings), whose result has everything that moves.
+    of all links with their constraints (`equations="multibody"` of the settings): its result has everything that moves.
 
     Parameters
     ----------
@@ -394,7 +399,8 @@ def simulate(
         )
     settings = settings or mechanism.simulation
     if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
-        return simulate_multibody(mechanism, settings, at, progress)
+        run: xr.Dataset = _multibody().simulate_multibody(mechanism, settings, at, progress)
+        return run
     setting = setting_of(mechanism, settings)
     if at is None and setting.settings.at:
         at = setting.settings.at
