@@ -255,10 +255,13 @@ class EquationsOfMotion:
         chosen: dict[int, Number] = {}
 
         def reciprocal(row: int, pivot: Number) -> Number:
+            if is_zero(pivot):
+                # an equation that holds by itself
+                return 0.0
             if row not in self.dependent:
                 return 1.0 / pivot
             if flags is None:
-                chosen[row] = m.less(DEPENDENT * schur[row, row], pivot)
+                chosen[row] = m.less(DEPENDENT * schur.get((row, row), 0.0), pivot)
             else:
                 chosen[row] = flags[row]
             # what is left out is divided by one: no infinity comes near
@@ -277,21 +280,18 @@ class EquationsOfMotion:
         return a, [forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
 
     def projected(
-        self,
-        m: Namespace,
-        coordinates: Sequence[Number],
-        speeds: Sequence[Number],
-        terms: Terms,
-        flags: Flags | None,
-    ) -> tuple[list[Number], list[Number]]:
-        """Coordinates and speeds closed by one step of Newton's method of least change in the measure of M."""
-        if not terms.rows:
-            return list(coordinates), list(speeds)
-        system = self.system(m, terms, flags)
+        self, m: Namespace, coordinates: Sequence[Number], speeds: Sequence[Number], terms: Terms
+    ) -> tuple[list[Number], list[Number], Vector, Flags]:
+        """Coordinates and speeds closed by one step of Newton's method of least change in the measure of M.
+
+        Behind them the change of the coordinates, and which dependent equations count here.
+        """
+        system = self.system(m, terms)
         shift, _forces = system.solve({}, terms.values)
         change, _impulses = system.solve({}, terms.speeds)
         closed = [_plus(x, shift.get(k, 0.0)) for k, x in enumerate(coordinates)]
-        return closed, [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
+        changed = [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
+        return closed, changed, shift, system.flags
 
     def energies(
         self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number

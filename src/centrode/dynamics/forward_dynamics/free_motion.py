@@ -21,8 +21,14 @@ from centrode.dynamics.forward_dynamics.initial_position import (
     residuals_and_rows,
     units_of,
 )
+from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
-from centrode.dynamics.forward_dynamics.runge_kutta import MotionNames, attempt_scan
+from centrode.dynamics.forward_dynamics.integration import (
+    CONTROLS,
+    MotionNames,
+    motion_problem,
+    worked_loads,
+)
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointCoordinate,
     SpanningTree,
@@ -37,8 +43,11 @@ from centrode.laws import TextLaw, Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.executors import choose_executor, runner
+from centrode.numerics.executors import choose_executor
+from centrode.numerics.initial_value_problems import SMALLEST, TIME, InitialValueProblem
+from centrode.numerics.integrators import HEADER, Integrator, integrator_of
 from centrode.numerics.jets import Jet
+from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import (
     AngleDrive,
     DisplacementDrive,
@@ -56,9 +65,12 @@ CONDITION = 1e-9
 """Below this share of its greatest eigenvalue the mass matrix has no inverse."""
 LOOKS = (0.0, 0.13, -0.17, 0.29)
 """How far along the free directions the rank is looked for, in rad or lengths: not all can be singular."""
-BLOCK = 128
-"""Attempts in one call of the kernel."""
-MOST_ATTEMPTS = 2_000_000
+ROWS, MOST_ROWS = 1024, 65536
+"""Steps in one call of the integrator: few at first, as room is made for all of them."""
+ATTEMPTS = 200_000
+MOST_STEPS = 5_000_000
+WILD = 1e12
+"""What is followed grows without bound beyond this."""
 STALLED = 1e-13
 """A step below this share of the time reached is none."""
 
@@ -390,20 +402,24 @@ class FreeMotion:
         return self.trajectory(course, times, states, scheme, choose_executor(executor))
 
     @cached_property
-    def _scan(self) -> Any:
-        variables = self.variables
-        return attempt_scan(variables.equations, variables.parameters, written=True)
+    def problem(self) -> InitialValueProblem:
+        """The initial value problem, its numbers being parameters."""
+        return motion_problem(self.variables.equations, self.variables.parameters)
 
-    def run(self, executor: str) -> Callable[..., Any]:
-        """What takes attempts, by an executor."""
-        if choose_executor(executor) == "arrays":
-            return runner(self._scan, "arrays")
-        # one mechanism: numbers for themselves, not vectors of them
-        return _kernel_of(self._scan)
+    def integrator(self, executor: str = "auto") -> Integrator:
+        """What takes steps of one mechanism, by an executor."""
+        return integrator_of(self.problem, executor)
 
-    def controls(self, start: InitialState, end: Number, tolerance: Number) -> list[Number]:
-        """Values of the parameters that are no numbers of the mechanism."""
-        return [end, tolerance, self.rate(start), float(self.equations.numbers.scale)]
+    def parameters(self, end: Number, tolerance: Number, rate: Number, lanes: int = 1) -> Array:
+        """Values of the parameters (parameters, lanes)."""
+        smallest = STALLED * np.maximum(np.asarray(end, dtype=np.float64), 1.0 / np.asarray(rate))
+        smallest = np.where(np.isfinite(smallest), smallest, 0.0)
+        controls = dict(
+            zip(CONTROLS, (end, smallest, tolerance, rate, float(self.equations.numbers.scale)), strict=True)
+        )
+        rows = np.array([np.broadcast_to(controls[name], lanes) for name in CONTROLS], dtype=np.float64)
+        numbers = self.variables.values(self.equations)
+        return np.concatenate([rows, np.broadcast_to(numbers, (len(numbers), lanes))])
 
     def rate(self, start: InitialState) -> float:
         """What speeds are compared with [1/s]: those at the start, and what the accelerations make of a rest."""
@@ -417,6 +433,24 @@ class FreeMotion:
         rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0)
         return rate if rate > 0.0 else 1.0
 
+    def carried_at(self, start: InitialState) -> Array:
+        """What the integrator carries, at a state that closes."""
+        names = self.names
+        found = dict.fromkeys(self.problem.carried, 0.0)
+        found |= dict(zip(names.coordinates, start.coordinates, strict=True))
+        found |= dict(zip(names.speeds, start.speeds, strict=True))
+        closing = evaluate(
+            self.problem.of_closing,
+            found
+            | {TIME: 0.0}
+            | dict(zip(self.problem.parameters, self.parameters(1.0, 1.0, 1.0)[:, 0], strict=True)),
+        )
+        # rotors and flags are those of the start; the start itself is closed already
+        kept = (*names.coordinates, *names.speeds, *names.works)
+        return np.array(
+            [found[name] if name in kept else float(closing[name]) for name in self.problem.carried]
+        )
+
     def course(
         self,
         start: InitialState,
@@ -426,67 +460,56 @@ class FreeMotion:
         progress: Callable[[float], None] | None = None,
     ) -> Course:
         """Steps from a state to a time."""
-        run, names = self.run(executor), self.names
-        numbers = self.variables.values(self.equations)
-        rate = self.rate(start)
-        parameters = np.concatenate([np.array(self.controls(start, duration, tolerance))[:, None], numbers])
-        works = np.zeros(len(names.works))
+        take, rate = self.integrator(executor), self.rate(start)
+        parameters = self.parameters(duration, tolerance, rate)
         first = min(duration, 0.01 / rate)
-        state = np.concatenate([[0.0, first], start.coordinates, start.speeds, works])[:, None]
-        kept = [np.delete(state, 1, axis=0)]
-        attempts = 0
+        state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_at(start)])[:, None]
+        kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
+        attempts, steps, room = 0, 0, ROWS
         ended, cause = DURATION, None
-        while state[0, 0] < duration:
-            before = float(state[0, 0])
-            scanned = run(parameters, None, state, steps=BLOCK)
-            state = scanned.state
-            attempts += BLOCK
-            rows = scanned.outputs[:, :, 0]
-            # an attempt that failed leaves the time where it was
-            moved = np.diff(rows[0], prepend=before) > 0.0
-            kept.append(rows[:, moved])
+        while True:
+            rows = np.empty((room, len(kept[0][0])))
+            state = take.run(parameters, state, ATTEMPTS, rows)
+            attempts += int(state[2, 0])
+            written = int(state[3, 0])
+            steps += written
+            kept.append(rows[:written])
+            time, size = float(state[0, 0]), float(state[1, 0])
             if progress is not None:
-                progress(float(state[0, 0]))
-            time, step = float(state[0, 0]), float(state[1, 0])
+                progress(time)
             if time >= duration:
                 break
-            if not isfinite(step) or step < STALLED * max(time, first):
-                ended = (
-                    BLOW_UP
-                    if np.any(np.abs(state[2:, 0]) > 1e12) or not np.all(np.isfinite(state))
-                    else STEP_SIZE
-                )
+            if not size > parameters[CONTROLS.index(SMALLEST), 0]:
+                wild = not np.all(np.isfinite(state)) or np.any(np.abs(state[HEADER:, 0]) > WILD)
+                ended = BLOW_UP if wild else STEP_SIZE
                 cause = _("at {time:.9g} s the step became as small as {step:.3g} s").format(
-                    time=time, step=step
+                    time=time, step=size
                 )
                 break
-            if attempts >= MOST_ATTEMPTS:
-                ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_ATTEMPTS)
+            if steps >= MOST_STEPS:
+                ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
                 break
-        return Course(np.concatenate(kept, axis=1), ended, cause, attempts)
+            room = min(4 * room, MOST_ROWS)
+        return Course(np.concatenate(kept).T, ended, cause, attempts)
 
     def states_at(self, course: Course, times: Array, executor: str = "auto") -> Array:
-        """Coordinates, speeds and works at instants (rows, n): one step from the last one before each, as long as needed."""
-        rows = course.rows
+        """What is carried at instants (rows, n): one step from the last one before each, as long as is needed."""
+        rows, n = course.rows, len(times)
         begin = np.clip(np.searchsorted(rows[0], times, side="right") - 1, 0, rows.shape[1] - 1)
         lanes = rows[:, begin]
-        state = np.concatenate([lanes[:1], np.full((1, len(times)), inf), lanes[1:]])
-        rate = np.ones(len(times))
-        scale = np.full(len(times), float(self.equations.numbers.scale))
-        numbers = np.broadcast_to(
-            self.variables.values(self.equations), (len(self.variables.parameters), len(times))
-        )
-        parameters = np.concatenate([np.stack([times, np.full(len(times), inf), rate, scale]), numbers])
-        if not len(times):
+        state = np.concatenate([lanes[:1], np.full((1, n), inf), np.zeros((2, n)), lanes[1:]])
+        if not n:
             return rows[1:, :0]
-        return np.asarray(self.run(executor)(parameters, None, state, steps=1).state[2:])
+        found = self.integrator(executor).run(self.parameters(times, inf, 1.0, n), state, 1)
+        return found[HEADER:]
 
     def trajectory(
         self, course: Course, times: Array, states: Array, scheme: str, executor: str
     ) -> Trajectory:
         """Everything that a motion shows at instants, from its states."""
         count, equations = len(self.coordinates), self.equations
-        q, w = list(states[:count]), list(states[count : 2 * count])
+        names = self.names
+        q, w = list(states[names.part(names.coordinates)]), list(states[names.part(names.speeds)])
         n = len(times)
         with np.errstate(all="ignore"):
             values = self.tree.values(ARRAYS, q)
@@ -498,18 +521,20 @@ class FreeMotion:
             potential = _row(equations.potential_energy(state), n)
             works: dict[str, Array] = {}
             free = np.zeros(n)
-            labels = [load.label for load in equations.loads] + [
-                f"drive {kept.name}" for kept in equations.kept
-            ]
-            sorts = [load.term.amount.energy_class for load in equations.loads] + [EnergyClass.OTHER] * len(
-                equations.kept
-            )
-            for label, sort, work in zip(labels, sorts, states[2 * count :], strict=True):
-                works[label] = works[label] + work if label in works else work
-                if sort != EnergyClass.STORED:
-                    free = free + work
+            begun = self._state_at_start(course)
+            for load in equations.loads:
+                energy = getattr(load.term.amount, "energy", None)
+                if energy is not None:
+                    coordinate = load.term.coordinate
+                    done = _row(energy(coordinate.value(begun)) - energy(coordinate.value(state)), n)
+                    works[load.label] = works.get(load.label, 0.0) + done
+            followed = [equations.loads[k].label for k in worked_loads(equations)]
+            followed += [f"drive {kept.name}" for kept in equations.kept]
+            for label, work in zip(followed, states[names.part(names.works)], strict=True):
+                works[label] = works.get(label, 0.0) + work
+                free = free + work
             residual = kinetic + potential - free
-            began = self._energy_at_start(course)
+            began = float(equations.kinetic_energy(begun)) + float(equations.potential_energy(begun))
             points = _orders([state.point(name) for name in self.points], n)
             angles = _orders([(self._angle(state, name),) for name in self.links], n)[..., 0]
             slides = _orders([(state.slide(name),) for name in self.guides], n)[..., 0]
@@ -536,11 +561,11 @@ class FreeMotion:
             course.rows.shape[1] - 1, course.attempts,
         )  # fmt: skip
 
-    def _energy_at_start(self, course: Course) -> float:
-        count = len(self.coordinates)
-        q, w = course.rows[1 : 1 + count, 0], course.rows[1 + count : 1 + 2 * count, 0]
-        kinetic, potential = self.equations.energies(ARRAYS, self.tree.values(ARRAYS, list(q)), list(w), 0.0)
-        return float(kinetic) + float(potential)
+    def _state_at_start(self, course: Course) -> JointState:
+        names, row = self.names, course.rows[1:, 0]
+        q, w = list(row[names.part(names.coordinates)]), list(row[names.part(names.speeds)])
+        jets = [Jet((x, y, 0.0)) for x, y in zip(q, w, strict=True)]
+        return self.equations.state(ARRAYS, self.tree.values(ARRAYS, q), jets, 0.0)
 
     def _angle(self, state: Any, link: str) -> Jet:
         try:
@@ -560,12 +585,6 @@ class FreeMotion:
         ]
         spins = [[_row(x.coefficients[0], n) for x in state.spin(name)] for name in self.links]
         return np.moveaxis(np.array(axes), -1, 0), np.moveaxis(np.array(spins), -1, 0)
-
-
-def _kernel_of(scan: Any) -> Callable[..., Any]:
-    from centrode.numerics.machine_code.kernels import kernel_of
-
-    return kernel_of(scan, width=1).run
 
 
 def _row(x: Number, n: int) -> Array:

@@ -208,7 +208,7 @@ def _compile_kernel(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine
     if shape.relaxed:
         rest = with_reciprocals(rest, rest.parameters if shape.lanes_inside else rest.inputs)
     text = function_text(rest, shape)
-    return Kernel(scan, tables, rest, shape, number, _function(text, machine))
+    return Kernel(scan, tables, rest, shape, number, compiled_function(text, machine))
 
 
 # A kernel as data, from which another process has it again without what it was traced from.
@@ -249,7 +249,7 @@ def circumstances(machine: Target) -> tuple[str, str]:
     return VERSIONS, repr(machine)
 
 
-def _function(text: str, machine: Target) -> Loaded:
+def compiled_function(text: str, machine: Target) -> Loaded:
     """The function of a text, from disk if its object code is there."""
     name = cache.name_of(text, *circumstances(machine))
     code = cache.read_entry(name)
@@ -264,7 +264,7 @@ def _function(text: str, machine: Target) -> Loaded:
 def function_of(text: Callable[[int], str]) -> Callable[[int, int], int]:
     """A function (address, number) -> number from its text for vectors of so many doubles."""
     machine = host()
-    loaded = _function(text(machine.width(64)), machine)
+    loaded = compiled_function(text(machine.width(64)), machine)
     place = ctypes.cast(loaded.call, ctypes.c_void_p).value
     found = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(place or 0)
     # what is loaded has to stay as long as the function
