@@ -106,7 +106,12 @@ class MultibodySetting:
             raise InputError("at", _("a one-dimensional array of finite, increasing times is required"))
         if times[0] < 0.0:
             raise InputError("at", _("times count from the start of the simulation, at 0 s"))
-        return times[times <= self.duration * (1.0 + 1e-12)].clip(max=self.duration)
+        if times[-1] > self.duration * (1.0 + 1e-12):
+            what = _("the instant {time:.6g} s lies behind the end of the simulation at {end:.6g} s")
+            raise InputError(
+                "at", what.format(time=float(times[-1]), end=self.duration), _("give a longer duration")
+            )
+        return times.clip(max=self.duration)
 
     @property
     def speeds(self) -> dict[str, Any]:

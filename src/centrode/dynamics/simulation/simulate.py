@@ -192,7 +192,7 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
         raise InputError(
             "[[drives]]",
             _("a simulation needs one drive, the mechanism has {count}").format(count=len(mechanism.drives)),
-            _("tie the drives by a gear"),
+            _('tie the drives by a gear, or write equations = "multibody" in [simulation]'),
         )
     if settings.turns is not None and mechanism.drives[0].kind != "angle":
         raise InputError("[simulation] turns", _("the drive does not turn"), _("give duration"))
