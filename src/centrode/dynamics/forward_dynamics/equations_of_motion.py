@@ -168,7 +168,7 @@ class EquationsOfMotion:
     def _state(self, jets: JetFunctions, at: Positions, time: Number, order: int) -> JointState:
         mechanism = self.tree.mechanism
         state = JointState(
-            mechanism, None, time, float("nan"), 1.0, 0, 0.0, {}, jets, order=order, at=at, numbers=self.numbers,  # type: ignore[arg-type]
+            mechanism, None, time, float("nan"), 1.0, 0, 0.0, {}, jets, order=order, at=at, numbers=self.numbers, pivots=self.tree.pivots,  # type: ignore[arg-type]
         )  # fmt: skip
         if len(mechanism.drives) == 1 and self.loads_use_drive:
             value = state.drive(mechanism.drives[0]).value

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from centrode.dynamics.state import State, length_unit
+from centrode.dynamics.forward_dynamics.elimination import is_zero
+from centrode.dynamics.state import Centre, Radial, State, length_unit
 from centrode.errors import NotComputedYet
-from centrode.geometry.plane import dot, subtract
+from centrode.geometry.plane import dot, rotate_vector, subtract
 from centrode.geometry.sphere import Attitude
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive
@@ -16,6 +18,14 @@ from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 
 Number = Any
+
+
+def _sum(a: Number, b: Number) -> Number:
+    return b if is_zero(a) else a if is_zero(b) else a + b
+
+
+def _negative(a: Number) -> Number:
+    return a if is_zero(a) else -a
 
 
 @dataclass(frozen=True)
@@ -30,10 +40,12 @@ class JointState(State):
     ----------
     at : positions whose numbers are jets where they change, plain numbers where they do not
     numbers : dimensions
+    pivots : link -> the point of the tree in which it hangs
     """
 
     at: Positions = field(default_factory=lambda: Positions({}, {}, {}))
     numbers: Dimensions | None = None
+    pivots: Mapping[str, str] = field(default_factory=dict)
 
     def point(self, name: str) -> tuple[Jet, ...]:
         """Coordinates of a point [m]."""
@@ -67,6 +79,20 @@ class JointState(State):
         """Cosine and sine of a link's angle, in the plane."""
         return tuple(map(self.as_jet, self.at.poses[link].rotor))
 
+    def centre(self, centre: Centre | Radial) -> tuple[Jet, ...]:
+        """Centre of mass of a link [m], from the point in which the link hangs: others may belong to another chain."""
+        if isinstance(centre, Radial):
+            return super().centre(centre)
+        assert self.numbers is not None
+        local, pivot = self.numbers.local[centre.link], self.pivots[centre.link]
+        (u, v), (x, y) = local[centre.base], local[pivot]
+        offset = (_sum(_sum(u, _negative(x)), centre.along), _sum(_sum(v, _negative(y)), centre.across))
+        along, across = self.point(pivot)
+        if is_zero(offset[0]) and is_zero(offset[1]):
+            return along, across
+        turned = rotate_vector(offset, self.rotor(centre.link))
+        return along + turned[0], across + turned[1]
+
     def slide(self, guide: str) -> Jet:
         """Displacement along a guide [m]."""
         assert self.numbers is not None
@@ -96,8 +122,3 @@ class JointState(State):
     def _scaled(self, number: Number, unit: float) -> Jet:
         jet = self.as_jet(number)
         return jet if unit == 1.0 else jet * unit
-
-    @property
-    def frame_angle(self) -> Jet:
-        """The angle of the frame: none."""
-        return self.angle(FRAME)

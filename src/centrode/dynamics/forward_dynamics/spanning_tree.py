@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, TypeAlias
 
 from centrode.errors import NotComputedYet
@@ -243,6 +244,11 @@ class SpanningTree:
     steps: tuple[Placing, ...]
     closures: tuple[Constraint, ...]
     depends: Mapping[Entity, frozenset[int]]
+
+    @cached_property
+    def pivots(self) -> Mapping[str, str]:
+        """Link -> the point in which it hangs."""
+        return {step.link: step.pivot for step in self.steps if isinstance(step, TurnedLink | CarriedLink)}
 
     @property
     def angles(self) -> tuple[int, ...]:
