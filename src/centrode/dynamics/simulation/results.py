@@ -102,6 +102,8 @@ def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> Sim
 def _by_reduced_equation(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> xr.Dataset | None:
     """The same motion by the reduced equation; None where it has none, or where that refuses it."""
     own = used.model_copy(update={"equations": None, "at": ()})
+    # the reduced equation asks of a law only in which sense the drive sets out
+    mechanism = mechanism.with_drives_held()
     if equations_for(mechanism, own) == MULTIBODY or int(run.attrs["mobility"]) != 1:
         return None
     try:
