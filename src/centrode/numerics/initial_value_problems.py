@@ -24,6 +24,9 @@ FIFTH: tuple[float, ...] = tuple(map(float, DOP853.E5[:STAGES]))
 THIRD: tuple[float, ...] = tuple(map(float, DOP853.E3[:STAGES]))
 """Weights of the stages: for each of them, for the step, and for both estimates of its error."""
 
+HEADER = 4
+"""Rows of a state before what is carried: time, size of the next step, attempts, rows that were written."""
+
 SAFETY, LEAST, MOST = 0.9, 0.2, 6.0
 """The factor by which a step changes aims at this share of the tolerance, and lies between these."""
 RETREAT = 0.25
@@ -40,7 +43,7 @@ class InitialValueProblem:
     """What is followed, how fast it changes, how it is closed after a step, and how great a step's error is.
 
     All are expressions in the names of what is followed, of what stays as it is during a step, of the parameters and of
-    `TIME`.
+    `TIME`; what is closed may depend on `STEP` too, the step that was taken.
 
     Attributes
     ----------
@@ -48,12 +51,16 @@ class InitialValueProblem:
     rates : what is followed -> its derivative by time
     closing : what is followed, and what stays as it is during a step -> its value after a step that is taken
     error : the error of a step over the tolerance, in `OF_FIFTH`, `OF_THIRD`, `BEFORE` and the values behind the step
+    limit : name of what, among that which stays during a step, the next step must not exceed; empty where nothing limits
+    guard : name of what stops the integration where it is not zero; empty where nothing does
     """
 
     parameters: tuple[str, ...]
     rates: Mapping[str, Node]
     closing: Mapping[str, Node]
     error: Node
+    limit: str = ""
+    guard: str = ""
 
     @property
     def followed(self) -> tuple[str, ...]:
@@ -74,7 +81,7 @@ class InitialValueProblem:
     def key(self) -> tuple[object, ...]:
         """Key that distinguishes the problem from all others, equal in every process."""
         graphs = (self.of_rates, self.of_closing, self.of_control)
-        return self.parameters, self.carried, *(graph.key for graph in graphs)
+        return self.parameters, self.carried, self.limit, self.guard, *(graph.key for graph in graphs)
 
     @cached_property
     def of_rates(self) -> Graph:

@@ -11,11 +11,9 @@ import numpy.typing as npt
 
 from centrode.numerics.executors import ARRAYS, choose_executor
 from centrode.numerics.initial_value_problems import InitialValueProblem
+from centrode.numerics.python_integrations import PythonIntegration
 
 Array: TypeAlias = npt.NDArray[np.float64]
-
-HEADER = 4
-"""Rows of a state before what is carried: time, size of the next step, attempts, rows that were written."""
 
 # llvmlite is heavy and may be missing
 _integrations = functools.partial(importlib.import_module, "centrode.numerics.machine_code.integrations")
@@ -39,6 +37,6 @@ def integrator_of(
         Machine code is requested, and llvmlite (the extra `fast`) is not installed.
     """
     if choose_executor(executor) == ARRAYS:
-        raise NotImplementedError
+        return PythonIntegration(problem)
     made: Any = _integrations().integration_of(problem, width, hasty)
     return made  # type: ignore[no-any-return]

@@ -110,6 +110,7 @@ class EquationsOfMotion:
     kept : drives that keep their laws
     weights : of equations where links have no mass: W; empty where M has an inverse
     dependent : equations of which some are implied by others everywhere
+    references : of every equation the size that its diagonal in S has elsewhere; S itself where they are left out
     """
 
     tree: SpanningTree
@@ -119,6 +120,7 @@ class EquationsOfMotion:
     kept: tuple[KeptDrive, ...] = ()
     weights: tuple[Number, ...] = ()
     dependent: frozenset[int] = frozenset()
+    references: tuple[Number, ...] = ()
 
     @property
     def size(self) -> int:
@@ -253,6 +255,8 @@ class EquationsOfMotion:
             for j in range(i + 1):
                 added(schur, (i, j), of_mass.product(one, solved[j]))
         chosen: dict[int, Number] = {}
+        own = [schur.get((i, i), 0.0) for i in range(len(solved))]
+        diagonal = self.references or own
 
         def reciprocal(row: int, pivot: Number) -> Number:
             if is_zero(pivot):
@@ -261,14 +265,14 @@ class EquationsOfMotion:
             if row not in self.dependent:
                 return 1.0 / pivot
             if flags is None:
-                chosen[row] = m.less(DEPENDENT * schur.get((row, row), 0.0), pivot)
+                chosen[row] = m.less(DEPENDENT * diagonal[row], pivot)
             else:
                 chosen[row] = flags[row]
             # what is left out is divided by one: no infinity comes near
             return m.where(chosen[row], 1.0 / m.where(chosen[row], pivot, 1.0), 0.0)
 
         of_closures = Elimination.of(len(terms.rows), schur, reciprocal)
-        return MassSystem(of_mass, of_closures, solved, force, chosen)
+        return MassSystem(of_mass, of_closures, solved, force, diagonal, chosen)
 
     def accelerations(
         self, m: Namespace, terms: Terms, flags: Flags | None = None
@@ -280,18 +284,16 @@ class EquationsOfMotion:
         return a, [forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
 
     def projected(
-        self, m: Namespace, coordinates: Sequence[Number], speeds: Sequence[Number], terms: Terms
-    ) -> tuple[list[Number], list[Number], Vector, Flags]:
+        self, coordinates: Sequence[Number], speeds: Sequence[Number], terms: Terms, system: MassSystem
+    ) -> tuple[list[Number], list[Number], Vector]:
         """Coordinates and speeds closed by one step of Newton's method of least change in the measure of M.
 
-        Behind them the change of the coordinates, and which dependent equations count here.
+        Behind them the change of the coordinates.
         """
-        system = self.system(m, terms)
         shift, _forces = system.solve({}, terms.values)
         change, _impulses = system.solve({}, terms.speeds)
         closed = [_plus(x, shift.get(k, 0.0)) for k, x in enumerate(coordinates)]
-        changed = [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
-        return closed, changed, shift, system.flags
+        return closed, [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)], shift
 
     def energies(
         self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number
@@ -365,7 +367,20 @@ class MassSystem:
     closures: Elimination
     rows: Sequence[Vector]
     force: Vector
+    diagonal: Sequence[Number]
     flags: Mapping[int, Number] = field(default_factory=dict)
+
+    def independence(self, m: Namespace) -> Number:
+        """The least root of a pivot over what it is elsewhere: it falls to zero where closures lose rank, as a distance does."""
+        least: Number = 1.0
+        for row, pivot in self.closures.pivots.items():
+            if is_zero(pivot):
+                continue
+            share = pivot / self.diagonal[row]
+            if row in self.flags:
+                share = m.where(self.flags[row], share, 1.0)
+            least = m.min(least, share)
+        return least if isinstance(least, float) else m.sqrt(m.max(least, 0.0))
 
     def solve(self, force: Mapping[int, Number], bias: Sequence[Number]) -> tuple[Vector, Vector]:
         """Solution x and l of M x + G' l = force with G x = -bias."""

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.forward_dynamics.change_points import Detour, around
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of
 from centrode.dynamics.forward_dynamics.initial_position import (
@@ -24,7 +25,13 @@ from centrode.dynamics.forward_dynamics.initial_position import (
 from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
 from centrode.dynamics.forward_dynamics.integration import (
+    AHEAD,
     CONTROLS,
+    GUARD,
+    INDEPENDENCE,
+    LIMIT,
+    LOOKED,
+    NEVER,
     MotionNames,
     motion_problem,
     worked_loads,
@@ -44,9 +51,10 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.executors import choose_executor
-from centrode.numerics.initial_value_problems import SMALLEST, TIME, InitialValueProblem
-from centrode.numerics.integrators import HEADER, Integrator, integrator_of
+from centrode.numerics.initial_value_problems import HEADER, SMALLEST, STEP, TIME, InitialValueProblem
+from centrode.numerics.integrators import Integrator, integrator_of
 from centrode.numerics.jets import Jet
+from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import (
     AngleDrive,
@@ -75,7 +83,12 @@ STALLED = 1e-13
 """A step below this share of the time reached is none."""
 
 STATUSES = ("ok", "crossing", "doubtful")
-EVENTS = ("crossing", "near miss")
+CROSSING = "crossing"
+EVENTS = (CROSSING,)
+LOST = 1e-4
+"""Closures that are no more independent than this, and no smooth motion through the place where they lose rank."""
+ENERGY = 1e-7
+"""Energies before and behind a change point agree to this share of the kinetic energy."""
 DURATION, BLOW_UP, STEP_SIZE, CHANGE_POINT, INTERRUPTED = (
     "duration",
     "blow-up",
@@ -174,7 +187,7 @@ class Course:
     cause: str | None
     attempts: int
     events: tuple[Event, ...] = ()
-    detours: tuple[tuple[float, float], ...] = ()
+    detours: tuple[Detour, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -442,7 +455,7 @@ class FreeMotion:
         closing = evaluate(
             self.problem.of_closing,
             found
-            | {TIME: 0.0}
+            | {TIME: 0.0, STEP: 1.0}
             | dict(zip(self.problem.parameters, self.parameters(1.0, 1.0, 1.0)[:, 0], strict=True)),
         )
         # rotors and flags are those of the start; the start itself is closed already
@@ -467,7 +480,10 @@ class FreeMotion:
         kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
         attempts, steps, room = 0, 0, ROWS
         ended, cause = DURATION, None
-        while True:
+        guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
+        events: list[Event] = []
+        detours: list[Detour] = []
+        while float(state[0, 0]) < duration:
             rows = np.empty((room, len(kept[0][0])))
             state = take.run(parameters, state, ATTEMPTS, rows)
             attempts += int(state[2, 0])
@@ -479,6 +495,17 @@ class FreeMotion:
                 progress(time)
             if time >= duration:
                 break
+            if guard is not None and state[guard, 0] != 0.0:
+                passed = self._pass(parameters, state, tolerance)
+                if isinstance(passed, str):
+                    ended, cause = CHANGE_POINT, passed
+                    break
+                detour, event = passed
+                events += [event] if event is not None else []
+                if detour is not None:
+                    detours.append(detour)
+                    kept.append(np.concatenate([[float(state[0, 0])], state[HEADER:, 0]])[None])
+                continue
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
                 wild = not np.all(np.isfinite(state)) or np.any(np.abs(state[HEADER:, 0]) > WILD)
                 ended = BLOW_UP if wild else STEP_SIZE
@@ -490,7 +517,60 @@ class FreeMotion:
                 ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
                 break
             room = min(4 * room, MOST_ROWS)
-        return Course(np.concatenate(kept).T, ended, cause, attempts)
+        return Course(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
+
+    @cached_property
+    def _off_axis(self) -> PythonIntegration:
+        return PythonIntegration(self.problem, is_complex=True)
+
+    def _pass(
+        self, parameters: Array, state: Array, tolerance: float
+    ) -> tuple[Detour | None, Event | None] | str:
+        """Pass the change point ahead, if it is one; the state is that behind it then, or the same with nothing to look for.
+
+        Returns the detour and the event, or why it is not passed.
+        """
+        carried = list(self.problem.carried)
+        row = {name: HEADER + carried.index(name) for name in (AHEAD, LOOKED, GUARD, LIMIT, INDEPENDENCE)}
+        time, ahead, near = (
+            float(state[0, 0]),
+            float(state[row[AHEAD], 0]),
+            float(state[row[INDEPENDENCE], 0]),
+        )
+        units = units_of(self.tree, self.equations.numbers)
+        measured = [(self.names.part(kind), units) for kind in (self.names.coordinates, self.names.speeds)]
+        detour = around(self._off_axis, parameters[:, 0], time, state[HEADER:, 0], ahead, measured)
+        if not detour.is_passed:
+            if near < LOST:
+                what = _("a change point at {time:.9g} s through which no smooth motion leads")
+                return what.format(time=detour.centre)
+            state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
+            return None, None
+        count = len(self.problem.followed)
+        before = self._energy(state[HEADER:, 0], time)
+        landed = detour.at(np.array([detour.end]))[:, 0]
+        values = dict(zip(carried, state[HEADER:, 0], strict=True)) | dict(
+            zip(carried[:count], landed, strict=True)
+        )
+        given = dict(zip(self.problem.parameters, parameters[:, 0], strict=True))
+        values[INDEPENDENCE] = 0.0
+        closed = evaluate(self.problem.of_closing, values | given | {TIME: detour.end, STEP: 1.0})
+        state[HEADER:, 0] = [float(closed[name]) for name in carried]
+        state[0, 0] = detour.end
+        state[1, 0] = 0.25 * ahead
+        after = self._energy(state[HEADER:, 0], detour.end)
+        scale = max(abs(before[0]), abs(after[0]))
+        if abs(sum(after) - sum(before)) > max(ENERGY, 100.0 * tolerance) * scale:
+            what = _("a change point at {time:.9g} s behind which the energy would be another")
+            return what.format(time=detour.centre)
+        return detour, Event(detour.centre, CROSSING, sum(after) - sum(before))
+
+    def _energy(self, carried: Array, time: float) -> tuple[float, float]:
+        """Kinetic energy, and potential energy less the works, of what is carried."""
+        names = self.names
+        q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
+        kinetic, potential = self.equations.energies(ARRAYS, self.tree.values(ARRAYS, q), w, time)
+        return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
 
     def states_at(self, course: Course, times: Array, executor: str = "auto") -> Array:
         """What is carried at instants (rows, n): one step from the last one before each, as long as is needed."""
@@ -500,8 +580,15 @@ class FreeMotion:
         state = np.concatenate([lanes[:1], np.full((1, n), inf), np.zeros((2, n)), lanes[1:]])
         if not n:
             return rows[1:, :0]
-        found = self.integrator(executor).run(self.parameters(times, inf, 1.0, n), state, 1)
-        return found[HEADER:]
+        guarded = [name for name in (LIMIT, GUARD) if name in self.problem.carried]
+        for name in guarded:
+            state[HEADER + self.problem.carried.index(name)] = NEVER if name == LIMIT else 0.0
+        found = self.integrator(executor).run(self.parameters(times, inf, 1.0, n), state, 1)[HEADER:]
+        count = len(self.problem.followed)
+        for detour in course.detours:
+            inside = (times > detour.begin) & (times < detour.end)
+            found[:count, inside] = detour.at(times[inside])
+        return found
 
     def trajectory(
         self, course: Course, times: Array, states: Array, scheme: str, executor: str
@@ -557,7 +644,7 @@ class FreeMotion:
             kinetic, potential, works, residual - began, multipliers, kept,
             np.max(gaps, axis=0, initial=0.0) if gaps else np.zeros(n),
             np.max(drifts, axis=0, initial=0.0) if drifts else np.zeros(n),
-            np.zeros(n, dtype=np.int8), course.events, course.ended, course.cause, scheme, executor,
+            _statuses(course, times), course.events, course.ended, course.cause, scheme, executor,
             course.rows.shape[1] - 1, course.attempts,
         )  # fmt: skip
 
@@ -585,6 +672,13 @@ class FreeMotion:
         ]
         spins = [[_row(x.coefficients[0], n) for x in state.spin(name)] for name in self.links]
         return np.moveaxis(np.array(axes), -1, 0), np.moveaxis(np.array(spins), -1, 0)
+
+
+def _statuses(course: Course, times: Array) -> npt.NDArray[np.int8]:
+    statuses = np.zeros(len(times), dtype=np.int8)
+    for detour in course.detours:
+        statuses[(times > detour.begin) & (times < detour.end)] = STATUSES.index(CROSSING)
+    return statuses
 
 
 def _row(x: Number, n: int) -> Array:
@@ -619,8 +713,9 @@ def _least_energy(mass: Array, matrix: Array, targets: Array) -> Array:
     """The speeds of least kinetic energy that keep equations as well as can be."""
     factor = np.linalg.cholesky(mass).T
     turned = matrix @ np.linalg.inv(factor)
-    scales = np.linalg.norm(turned, axis=1)
-    scales[scales == 0.0] = 1.0
+    sizes = np.linalg.norm(turned, axis=1)
+    # a row of rounding asks for nothing
+    scales = np.where(sizes > RANK * np.max(sizes, initial=0.0), sizes, np.inf)
     found = np.linalg.lstsq(turned / scales[:, None], targets / scales, rcond=RANK)[0]
     return np.asarray(np.linalg.solve(factor, found))
 
@@ -664,6 +759,7 @@ def free_motion_of(
         generic = looked[ranks.index(rank)]
         equations = replace(equations, dependent=_dependent_equations(equations, generic, rank))
     equations = _with_weights(equations, looked)
+    equations = replace(equations, references=_references(equations, looked))
     return FreeMotion(mechanism, equations, position, mobility, count - rank)
 
 
@@ -759,6 +855,21 @@ def _with_weights(equations: EquationsOfMotion, places: Sequence[Array]) -> Equa
     if not weak:
         return equations
     return replace(equations, weights=_weights(equations, places[-1], units))
+
+
+def _references(equations: EquationsOfMotion, places: Sequence[Array]) -> tuple[float, ...]:
+    """The greatest diagonal of S at some places, the same for all equations of a constraint."""
+    greatest = np.zeros(equations.equations)
+    for place in places:
+        values = equations.tree.values(ARRAYS, list(place))
+        system = equations.system(ARRAYS, equations.terms(ARRAYS, values, [0.0] * equations.size, 0.0))
+        greatest = np.maximum(greatest, np.array(system.diagonal, dtype=np.float64))
+    first = 0
+    for constraint in equations.constraints:
+        own = slice(first, first + constraint.size)
+        greatest[own] = np.sum(greatest[own])
+        first += constraint.size
+    return tuple(float(x) if x > 0.0 else 1.0 for x in greatest)
 
 
 def _null_space(rows: Array, count: int) -> Array:

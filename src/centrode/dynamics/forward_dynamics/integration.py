@@ -31,6 +31,12 @@ Number: TypeAlias = Any
 Namespace: TypeAlias = Any
 
 TOLERANCE, RATE, LENGTH = "tolerance", "rate", "length"
+INDEPENDENCE, AHEAD, LOOKED, LIMIT, GUARD = "independence", "ahead", "looked", "limit", "guard"
+"""Carried beside: how independent closures are, the time until they are not, and what stops the steps there."""
+NEAR, FAR = 0.25, 0.4
+"""A change point is looked for where closures are no more independent than this, and the fastest link is to turn by less
+than this until they lose rank."""
+NEVER = 1e300
 CONTROLS = (END, SMALLEST, TOLERANCE, RATE, LENGTH)
 """Parameters of a lane: its end, its least step, the error of a step, what speeds and lengths are compared with."""
 
@@ -133,11 +139,15 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
     rates |= {name: speeds[k] * rotors[k][0] for k, name in zip(tree.angles, names.sines, strict=True)}
     rates |= dict(zip(names.speeds, found.accelerations, strict=True))
     rates |= dict(zip(names.works, found.powers, strict=True))
+    closing = _closing(equations, names, coordinates, speeds, time)
+    watched = GUARD in closing
     return InitialValueProblem(
         (*CONTROLS, *parameters),
         {name: as_node(x) for name, x in rates.items()},
-        _closing(equations, names, coordinates, speeds, time),
+        closing,
         as_node(_error(equations, names)),
+        LIMIT if watched else "",
+        GUARD if watched else "",
     )
 
 
@@ -155,17 +165,43 @@ def _closing(
     counted: dict[str, Number] = {}
     if equations.equations:
         terms = equations.terms(m, values, speeds, time)
-        q, w, shift, flags = equations.projected(m, coordinates, speeds, terms)
+        system = equations.system(m, terms)
+        q, w, shift = equations.projected(coordinates, speeds, terms, system)
         rotors = {k: turned_rotor(rotors[k], shift.get(k, 0.0)) for k in tree.angles}
         counted = {
-            name: m.where(flags[row], 1.0, 0.0) if row in flags else 0.0
+            name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
             for row, name in zip(sorted(equations.dependent), names.flags, strict=True)
         }
+        counted |= _watch(equations, system.independence(m), w)
     closed: dict[str, Number] = dict(zip(names.coordinates, q, strict=True))
     closed |= {name: rotors[k][0] for k, name in zip(tree.angles, names.cosines, strict=True)}
     closed |= {name: rotors[k][1] for k, name in zip(tree.angles, names.sines, strict=True)}
     closed |= dict(zip(names.speeds, w, strict=True))
     return {name: as_node(x) for name, x in (closed | counted).items()}
+
+
+def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[Number]) -> dict[str, Number]:
+    """What tells of a change point ahead: when the closures lose rank if they go on to as they do."""
+    m = EXPRESSIONS
+    if isinstance(independence, float):
+        return {}
+    lost = (independence - variable(INDEPENDENCE)) / variable(STEP)
+    falls = m.less(lost, 0.0)
+    ahead = m.where(falls, independence / m.where(falls, -lost, 1.0), NEVER)
+    fastest: Number = variable(RATE)
+    for speed, coordinate in zip(speeds, equations.tree.coordinates, strict=True):
+        size = m.abs(speed)
+        fastest = m.max(fastest, size if coordinate.kind == "angle" else size / variable(LENGTH))
+    # until it rises again a place that was looked at is looked at only when it is much nearer
+    looked = m.where(falls, variable(LOOKED), NEAR)
+    near = m.both(m.less(ahead * fastest, FAR), m.less(independence, looked))
+    return {
+        INDEPENDENCE: independence,
+        AHEAD: ahead,
+        LOOKED: looked,
+        LIMIT: m.where(m.less(independence, NEAR), 0.5 * ahead, NEVER),
+        GUARD: m.where(near, 1.0, 0.0),
+    }
 
 
 def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:

@@ -23,6 +23,7 @@ from centrode.numerics.initial_value_problems import (
     BEFORE,
     END,
     FIFTH,
+    HEADER,
     OF_FIFTH,
     OF_THIRD,
     SIZE,
@@ -37,7 +38,6 @@ from centrode.numerics.initial_value_problems import (
     C,
     InitialValueProblem,
 )
-from centrode.numerics.integrators import HEADER
 from centrode.numerics.machine_code.compile import Loaded, in_haste, standing
 from centrode.numerics.machine_code.functions import Operating
 from centrode.numerics.machine_code.kernels import address, compiled_function
@@ -52,7 +52,6 @@ REMEMBERED = 64
 _remembered: OrderedDict[tuple[Any, ...], Integration] = OrderedDict()
 _one_at_a_time = threading.Lock()
 
-from centrode.numerics.integrators import HEADER
 
 """Rows of a state before what is carried: time, size of the next step, attempts, rows that were written."""
 
@@ -270,7 +269,7 @@ class _Writer:
 
     def _attempts(self) -> tuple[Value, Value]:
         """The loop over attempts; returns how many there were, and how many rows were written."""
-        block, code = self.block, self.code
+        block, code, problem = self.block, self.code, self.problem
         before = block.label
         head, body, done = (block.name(f"attempt.{part}") for part in ("head", "body", "done"))
         attempt, written = block.name("%attempt"), block.name("%written")
@@ -279,6 +278,9 @@ class _Writer:
         place = len(block.lines)
         time, size = self._load("%time"), self._load("%size")
         left = code.subtract(self.known[variable(END)], time)
+        if problem.limit:
+            limit = self._load(self._fixed(problem.limit))
+            size = code.select(code.compare("olt", limit, size), limit, size)
         cut = code.compare("olt", left, size)
         step = code.select(cut, left, size)
         under_way = code.logical(
@@ -286,6 +288,9 @@ class _Writer:
             code.compare("ogt", left, code.constant(0.0)),
             code.compare("ogt", size, self.known[variable(SMALLEST)]),
         )
+        if problem.guard:
+            free = code.compare("oeq", self._load(self._fixed(problem.guard)), code.constant(0.0))
+            under_way = code.logical("and", under_way, free)
         # a lane that waits takes steps of no length
         step = code.select(under_way, step, code.constant(0.0))
         going = block.put(f"icmp slt i64 {attempt}, %steps")
@@ -309,7 +314,7 @@ class _Writer:
         later = code.select(cut, self.known[variable(END)], code.add(time, step))
         reached = code.select(taken, later, time)
         self._store(reached, "%time")
-        self._close(later, taken)
+        self._close(later, step, taken)
         total = self._write(reached, written) if self.single else written
         took = block.label
         block.line(f"br label %{after}")
@@ -402,9 +407,12 @@ class _Writer:
         condition = self.code.compare("ogt", taken, self.code.constant(0.5))
         return condition, operating.value(graph.outputs[SIZE])
 
-    def _close(self, time: Value, taken: Value) -> None:
+    def _fixed(self, name: str) -> Value:
+        return self._at("%fixed", self.problem.fixed.index(name) * self.width)
+
+    def _close(self, time: Value, step: Value, taken: Value) -> None:
         """What the step ends with, in the lanes that took it."""
-        values = {variable(TIME): time, **self._read("%stage")}
+        values = {variable(TIME): time, variable(STEP): step, **self._read("%stage")}
         operating = self._operating(values)
         graph, followed = self.problem.of_closing, len(self.problem.followed)
         for node in graph.order:

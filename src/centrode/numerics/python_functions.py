@@ -1,0 +1,147 @@
+"""Graphs as functions of Python: for single numbers, real or complex, where no machine code is there or none is wanted.
+
+The text of a function is made from the graph's operations alone: its names are made here, its constants are numbers.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+from centrode.numerics.expressions import ieee_quotient, maximum, minimum, square_root
+from centrode.numerics.expressions import greatest as greatest_number
+from centrode.numerics.expressions import least as least_number
+from centrode.numerics.graphs import Graph
+from centrode.numerics.operations import CONSTANT, VARIABLE
+
+Number: TypeAlias = Any
+Function: TypeAlias = Callable[[Sequence[Number]], tuple[Number, ...]]
+
+SIGNS = {"add": "+", "subtract": "-", "multiply": "*"}
+COMPARED = {"less": "<", "less_equal": "<=", "equal": "==", "not_equal": "!="}
+LOGIC = {"both": "and", "either": "or"}
+
+
+def _real(x: Number) -> float:
+    return float(x.real)
+
+
+def _complex_quotient(a: Number, b: Number) -> Number:
+    return a / b if b != 0.0 else complex(math.nan, math.nan)
+
+
+def _power(x: Number, exponent: Number) -> Number:
+    try:
+        return x**exponent
+    except (OverflowError, ZeroDivisionError):
+        return math.nan
+
+
+def _guarded(function: Callable[..., Number]) -> Callable[..., Number]:
+    """A function that has no value where Python raises an error."""
+
+    def guarded(*arguments: Number) -> Number:
+        try:
+            return function(*arguments)
+        except (OverflowError, ValueError):
+            return math.nan
+
+    return guarded
+
+
+REAL: dict[str, Callable[..., Number]] = {
+    "divide": ieee_quotient,
+    "sqrt": square_root,
+    "abs": abs,
+    "sin": _guarded(math.sin),
+    "cos": _guarded(math.cos),
+    "atan2": math.atan2,
+    "exp": _guarded(math.exp),
+    "log": _guarded(math.log),
+    "power": _power,
+    "minimum": minimum,
+    "maximum": maximum,
+    "least": least_number,
+    "greatest": greatest_number,
+    "key": float,
+}
+
+
+def _angle(y: Number, x: Number) -> Number:
+    """The angle of a vector next to a real one, continued from there."""
+    angle = math.atan2(_real(y), _real(x))
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return angle + cmath.atan((y * cosine - x * sine) / (x * cosine + y * sine))
+
+
+COMPLEX: dict[str, Callable[..., Number]] = {
+    "divide": _complex_quotient,
+    "sqrt": cmath.sqrt,
+    "abs": lambda x: -x if _real(x) < 0.0 else x,
+    "sin": _guarded(cmath.sin),
+    "cos": _guarded(cmath.cos),
+    "atan2": _angle,
+    "exp": _guarded(cmath.exp),
+    "log": _guarded(cmath.log),
+    "power": _power,
+    "minimum": lambda a, b: a if _real(a) < _real(b) else b,
+    "maximum": lambda a, b: a if _real(a) > _real(b) else b,
+    "least": lambda a, b: a if _real(a) < _real(b) else b,
+    "greatest": lambda a, b: a if _real(a) > _real(b) else b,
+    "key": _real,
+}
+"""Functions continued analytically from the real axis; where a formula decides, the real part does."""
+
+
+def function_text(graph: Graph, arguments: Sequence[str], is_complex: bool) -> str:
+    """The text of `function(given)`, which returns the graph's outputs in order."""
+    places = {name: f"given[{k}]" for k, name in enumerate(arguments)}
+    names: dict[Any, str] = {}
+    lines = ["def function(given):"]
+    for node in graph.order:
+        if node.operation == VARIABLE:
+            names[node] = f"v{len(names)}"
+            lines.append(f" {names[node]} = {places[str(node.detail)]}")
+        elif node.operation == CONSTANT:
+            value = float(node.detail)
+            names[node] = f"({value!r})" if math.isfinite(value) else f"float({str(value)!r})"
+        else:
+            names[node] = f"v{len(names)}"
+            lines.append(
+                f" {names[node]} = {_operation(node.operation, [names[x] for x in node.arguments], is_complex)}"
+            )
+    lines.append(f" return ({''.join(names[node] + ', ' for node in graph.outputs.values())})")
+    return "\n".join(lines)
+
+
+def _operation(operation: str, inside: Sequence[str], is_complex: bool) -> str:
+    if operation in SIGNS:
+        return f"{inside[0]} {SIGNS[operation]} {inside[1]}"
+    if operation == "negate":
+        return f"-{inside[0]}"
+    if operation in COMPARED:
+        one, other = (f"key({x})" for x in inside) if is_complex else inside
+        return f"{one} {COMPARED[operation]} {other}"
+    if operation in LOGIC:
+        return f"{inside[0]} {LOGIC[operation]} {inside[1]}"
+    if operation == "opposite":
+        return f"not {inside[0]}"
+    if operation == "where":
+        return f"{inside[1]} if {inside[0]} else {inside[2]}"
+    return f"{operation}({', '.join(inside)})"
+
+
+@lru_cache(maxsize=128)
+def _compiled(text: str, is_complex: bool) -> Function:
+    names: dict[str, Any] = dict(COMPLEX if is_complex else REAL)
+    exec(compile(text, "<graph>", "exec"), names)  # noqa: S102  (the text is made above, from operations alone)
+    made: Function = names["function"]
+    return made
+
+
+def python_function(graph: Graph, arguments: Sequence[str], is_complex: bool = False) -> Function:
+    """A function of the numbers of some variables, in that order, that returns the outputs of a graph in order."""
+    return _compiled(function_text(graph, arguments, is_complex), is_complex)
