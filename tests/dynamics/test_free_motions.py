@@ -10,6 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import scipy.integrate
 import scipy.special
 import xarray as xr
 
@@ -131,6 +132,13 @@ def test_a_pendulum_of_one_mass() -> None:
     assert abs(place[-1, 0] + 0.2750874625167611600) <= 1e-9
 
 
+def test_a_pendulum_over_844_periods() -> None:
+    """A01 at 2000 s, within the millionth of a metre that its library asks for."""
+    run = left(PENDULUM, [2000.0], duration=2000.0, tolerance=1e-13)
+    place = run["position"].sel(point="A").values[0]
+    assert np.abs(place - [0.81460306858903215212, -0.58001882783693546159]).max() <= 1e-6
+
+
 def test_andrews_mechanism_as_iftomm_has_it() -> None:
     """A03: the crank at -0.0620 rad; quadrature of the energy gives its angle to 25 digits."""
     known = {
@@ -166,6 +174,56 @@ def test_squares_up_to_their_first_change_point() -> None:
     assert np.abs(place[:, 1] - np.cos(found.y[0])).max() <= 1e-9
 
 
+def test_through_change_points_on_the_smooth_branch() -> None:
+    """All links in line, where two motions cross: the motion goes on smoothly, and says where it passed."""
+    known = table("change-points")
+    run = left(CHANGE_POINTS, known["t"])
+    assert run.attrs["ended"] == "duration"
+    kinds = run["occasion_kind"].attrs["flag_meanings"].split()
+    passed = [
+        float(time)
+        for time, kind in zip(run["occasion_time"].values, run["occasion_kind"].values, strict=True)
+        if kinds[kind] == "crossing"
+    ]
+    for k, time in enumerate(known["t"]):
+        assert sum(one < time for one in passed) == known["crossings"][k]
+        assert abs(float(run["angle"].sel(link="AB")[k]) - known["AB"][k]) <= 1e-8
+        for link in ("BC", "DC"):
+            apart = float(run["angle"].sel(link=link)[k]) - known[link][k]
+            assert abs(math.remainder(apart, math.tau)) <= 1e-8, (link, time)
+
+
+# closed form: the uprights turn as a rotating pendulum; values of elliptic functions to 25 digits
+SQUARES = {
+    1: {10.0: (0.4783850577609705590053952, 0.8781501787912093011639041)},
+    2: {
+        4.0: (0.1176161023768086117148832, 0.9930591384513251009601247),
+        10.0: (0.3284581115408153786521642, 0.9445185381786009621612854),
+    },
+}
+
+
+@pytest.mark.parametrize("loops", SQUARES)
+def test_squares_through_their_change_points(loops: int) -> None:
+    """IFToMM A02: twice a turn all bars lie in line, and every square could fold; the position of B0 within 1e-9 m."""
+    known = SQUARES[loops]
+    run = left(squares(loops), [*known, 20.0], tolerance=1e-13)
+    assert run.attrs["ended"] == "duration"
+    inertia, weight = (loops + 1) / 3 + loops, ((loops + 1) / 2 + loops) * 9.81
+    angle = scipy.integrate.solve_ivp(
+        lambda t, y: [y[1], weight / inertia * math.sin(y[0])],
+        (0.0, 20.0),
+        [0.0, 1.0],
+        method="DOP853",
+        rtol=3e-14,
+        atol=1e-15,
+    ).y[0, -1]
+    known = {**known, 20.0: (math.sin(angle), math.cos(angle))}
+    places = run["position"].sel(point="B0").values
+    for place, expected in zip(places, known.values(), strict=True):
+        assert np.abs(place - expected).max() <= 1e-9
+
+
 def test_through_limits_by_both_routes() -> None:
     """The reduced equation reaches the limit and ends there; the equations of all links go on."""
     mechanism = ct.parse_mechanism(DOUBLE_ROCKER.replace("start = 1.2", "start = 1.2\nspeed = 1"))
@@ -186,7 +244,11 @@ def test_time_reversal() -> None:
     there = left(mechanism, [1.0], duration=1.0)
     drives = {name: float(there["drive_value"].sel(drive=name)[0]) for name in ("AB", "ED")}
     turned = "\n".join(
-        f"start = {drives['AB']}" if line == "start = 2.0" else f"start = {drives['ED']}" if line == "start = 0.7" else line
+        f"start = {drives['AB']}"
+        if line == "start = 2.0"
+        else f"start = {drives['ED']}"
+        if line == "start = 0.7"
+        else line
         for line in FIVE_BAR.splitlines()
     )
     speeds = {f"drives.{name}": -float(there["drive_speed"].sel(drive=name)[0]) for name in ("AB", "ED")}

@@ -57,9 +57,13 @@ def in_rods(name: str) -> ct.Mechanism:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_states_are_those_of_the_dense_equations(name: str) -> None:
     mechanism = in_rods(name)
-    scale = max(float(np.ptp(np.array([*points.values()]), axis=0).max()) for points in (
-        {**mechanism.frame.coordinates, "": (0.0, 0.0)}, *(link.coordinates for link in mechanism.links.values())
-    ))
+    scale = max(
+        float(np.ptp(np.array([*points.values()]), axis=0).max())
+        for points in (
+            {**mechanism.frame.coordinates, "": (0.0, 0.0)},
+            *(link.coordinates for link in mechanism.links.values()),
+        )
+    )
     # as long as a pendulum of that length needs for a swing, at most a second
     last = min(1.0, 2.0 * np.sqrt(scale / 9.81))
     run = ct.simulate(mechanism, at=np.linspace(0.0, last, 3))
