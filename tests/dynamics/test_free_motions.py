@@ -77,7 +77,7 @@ def test_angles_are_those_of_the_tables(name: str) -> None:
 
 @pytest.mark.parametrize("name", ADVISED)
 def test_rates_are_those_of_the_tables(name: str) -> None:
-    """Rates are printed with twelve digits; beyond those they are as exact as the angles over the step of the motion."""
+    """Rates are printed with twelve digits, and miss by what the angles do over the time of the motion."""
     run, known = at_the_table(name), table(name)
     for link in run["link"].values:
         rates = known[f"d{link}"]

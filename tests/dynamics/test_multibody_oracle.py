@@ -1,4 +1,4 @@
-"""Built-in mechanisms left to gravity: the package against dense equations in absolute coordinates (tests/multibody.py)."""
+"""Built-in mechanisms left to gravity, against dense equations in absolute coordinates (tests/multibody.py)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ EXAMPLES = (
 
 
 def in_rods(name: str) -> ct.Mechanism:
-    """An example without its loads whose links are rods of 1 kg/m, plates the mass and inertia of one, under gravity."""
+    """An example without its loads, under gravity; its links have the mass and the inertia of rods of 1 kg/m."""
     example = ct.example(name)
     links = {}
     for link, one in example.links.items():

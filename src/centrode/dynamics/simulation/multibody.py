@@ -140,22 +140,24 @@ class MultibodySetting:
         return {f"drives.{first.name}": first.measure_at(self.settings.start)}
 
     def run(
-        self, at: npt.ArrayLike | None = None, progress: Callable[[float], None] | None = None
+        self,
+        at: npt.ArrayLike | None = None,
+        executor: str = "auto",
+        progress: Callable[[float], None] | None = None,
     ) -> Trajectory:
-        """Integrate the motion."""
+        """Integrate the motion; `progress` is called with the share that is done."""
         duration, instants = self.duration, self.instants(at)
         self._check_size(len(instants))
         start = self.free.initial(self.speeds, self.start)
-        if progress is not None:
-            tell = progress
-            progress = lambda time: tell(time / duration)  # noqa: E731
+        reached = None if progress is None else lambda time: progress(time / duration)
         return self.free.integrate(
             start,
             duration,
             self.settings.tolerance,
             at=instants,
             scheme=self.settings.scheme,
-            progress=progress,
+            executor=executor,
+            progress=reached,
         )
 
     def _check_size(self, count: int) -> None:
@@ -189,11 +191,12 @@ def simulate_multibody(
     mechanism: Mechanism,
     settings: Simulation,
     at: npt.ArrayLike | None = None,
+    executor: str = "auto",
     progress: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
     """The labelled motion of a mechanism that is left to its loads, with any number of degrees of freedom."""
     setting = multibody_setting(mechanism, settings)
-    return multibody_dataset(setting, setting.run(at, progress))
+    return multibody_dataset(setting, setting.run(at, executor, progress))
 
 
 # The result with names.
