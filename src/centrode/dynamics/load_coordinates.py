@@ -16,6 +16,7 @@ from centrode.model.loads import TurningLoad
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import Placed
 from centrode.numerics.jets import Jet
+from centrode.structure.constraints import Entity
 
 Number: TypeAlias = Any
 
@@ -238,6 +239,26 @@ class Travel:
 
 Coordinate: TypeAlias = Turn | Slide | Distance | HalfSquare | Component | Spin | Travel
 """What a load works along."""
+
+
+def bodies_of(mechanism: Mechanism, coordinate: Coordinate) -> tuple[Entity, ...]:
+    """Points and links on whose places a coordinate depends, the frame included."""
+    match coordinate:
+        case Turn(link=link, base=base):
+            return Entity("link", link), Entity("link", base)
+        case Spin(link=link, base=base, axis=axis, joint=joint):
+            links = [Entity("link", name) for name in (link, base, joint) if name is not None]
+            return (*links, Entity("point", axis)) if isinstance(axis, str) else tuple(links)
+        case Slide(guide=name):
+            guide = mechanism.guide(name)
+            return Entity("point", guide.point), Entity("link", guide.on)
+        case Distance(first=first, second=second) | HalfSquare(first=first, second=second):
+            return Entity("point", first), Entity("point", second)
+        case Component(at=at, axes=axes):
+            body = Entity("point", at) if isinstance(at, str) else Entity("link", at.link)
+            return body, Entity("link", axes)
+        case Travel():
+            return ()
 
 
 def turning_of(mechanism: Mechanism, load: TurningLoad, where: str, measured: bool) -> Turn | Spin:

@@ -28,6 +28,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     jets_along,
     rotor_jets,
 )
+from centrode.dynamics.load_coordinates import Coordinate, bodies_of
 from centrode.dynamics.loads import LoadTerm
 from centrode.dynamics.masses import coordinates_of
 from centrode.dynamics.state import Mass, State
@@ -216,10 +217,16 @@ class EquationsOfMotion:
         for load in self.loads:
             strength = load.term.strength(state)
             coordinate = load.term.coordinate
-            for k, column in enumerate(columns):
-                added(force, k, times(coordinate.slope(column).value, strength))
+            for k in self._reach(coordinate):
+                added(force, k, times(coordinate.slope(columns[k]).value, strength))
             powers.append(times(strength, coordinate.slope(state).value))
         return powers
+
+    def _reach(self, coordinate: Coordinate) -> list[int]:
+        """Numbers of the joint coordinates that what a load works along may depend on."""
+        bodies = bodies_of(self.tree.mechanism, coordinate)
+        depends = (self.tree.depends.get(body, frozenset()) for body in bodies)
+        return sorted(frozenset[int]().union(*depends))
 
     def _closures(
         self, jets: JetFunctions, in_time: Positions, columns: Sequence[JointState]

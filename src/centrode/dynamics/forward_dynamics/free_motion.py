@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.forward_dynamics.change_points import Detour, around
+from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of
 from centrode.dynamics.forward_dynamics.initial_position import (
@@ -54,7 +54,6 @@ from centrode.numerics.executors import choose_executor
 from centrode.numerics.initial_value_problems import HEADER, SMALLEST, STEP, TIME, InitialValueProblem
 from centrode.numerics.integrators import Integrator, integrator_of
 from centrode.numerics.jets import Jet
-from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import (
     AngleDrive,
@@ -520,8 +519,8 @@ class FreeMotion:
         return Course(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
 
     @cached_property
-    def _off_axis(self) -> PythonIntegration:
-        return PythonIntegration(self.problem, is_complex=True)
+    def _half_circles(self) -> HalfCircles:
+        return HalfCircles(self.problem)
 
     def _pass(
         self, parameters: Array, state: Array, tolerance: float
@@ -539,7 +538,7 @@ class FreeMotion:
         )
         units = units_of(self.tree, self.equations.numbers)
         measured = [(self.names.part(kind), units) for kind in (self.names.coordinates, self.names.speeds)]
-        detour = around(self._off_axis, parameters[:, 0], time, state[HEADER:, 0], ahead, measured)
+        detour = self._half_circles.around(parameters[:, 0], time, state[HEADER:, 0], ahead, measured)
         if not detour.is_passed:
             if near < LOST:
                 what = _("a change point at {time:.9g} s through which no smooth motion leads")
