@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, TypeAlias
@@ -292,7 +292,7 @@ def _columns(values: xr.DataArray, variable: str) -> Iterator[Column]:
 # Figures
 
 
-def _pictures(results: SimulationResults) -> Iterator[tuple[str, partial[Picture]]]:
+def _pictures(results: SimulationResults) -> Iterator[tuple[str, Callable[[], Picture]]]:
     """Coordinates over time, phase portraits, energies and works, paths of the points."""
     run, title = results.simulation, Title(results.mechanism.title)
     if run.sizes["sample"] < 2:
