@@ -290,17 +290,25 @@ class EquationsOfMotion:
         a = [solution.get(k, 0.0) for k in range(self.size)]
         return a, [forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
 
-    def projected(
-        self, coordinates: Sequence[Number], speeds: Sequence[Number], terms: Terms, system: MassSystem
-    ) -> tuple[list[Number], list[Number], Vector]:
-        """Coordinates and speeds closed by one step of Newton's method of least change in the measure of M.
+    def shift_to_close(self, terms: Terms, system: MassSystem) -> Vector:
+        """Change of the coordinates by one step of Newton's method of least change in the measure of M."""
+        return system.solve({}, terms.values)[0]
 
-        Behind them the change of the coordinates.
-        """
-        shift, _forces = system.solve({}, terms.values)
-        change, _impulses = system.solve({}, terms.speeds)
-        closed = [_plus(x, shift.get(k, 0.0)) for k, x in enumerate(coordinates)]
-        return closed, [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)], shift
+    def changed_to_fit(
+        self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number, system: MassSystem
+    ) -> list[Number]:
+        """Speeds that keep the closures at closed coordinates, changed least in the measure of M."""
+        jets = JetFunctions(m)
+        laws = {kept.name: _law_jet(jets, kept, time, 1) for kept in self.kept}
+        moving = jets_along(self.tree, values, speeds, 1)
+        at = self.tree.positions(jets, self.numbers, moving, laws)
+        residuals = [
+            x for constraint in self.constraints for x in constraint.residual(jets, self.numbers, at)
+        ]
+        errors = [x.coefficients[1] if isinstance(x, Jet) else 0.0 for x in residuals]
+        # the elimination is that of the place before: what is left is of the second order
+        change, _impulses = system.solve({}, errors)
+        return [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
 
     def energies(
         self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number
@@ -358,9 +366,9 @@ def _jet(x: Number, order: int) -> Jet:
     return x if isinstance(x, Jet) else Jet((x, *([0.0] * order)))
 
 
-def _law_jet(jets: JetFunctions, kept: KeptDrive, time: Number) -> Jet:
-    law = kept.driven.value(jets, Jet((time, 1.0, 0.0)))
-    return _jet(law, 2)
+def _law_jet(jets: JetFunctions, kept: KeptDrive, time: Number, order: int = 2) -> Jet:
+    law = kept.driven.value(jets, Jet((time, 1.0, 0.0)[: order + 1]))
+    return _jet(law, order)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive
@@ -27,6 +28,7 @@ from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
 from centrode.dynamics.forward_dynamics.integration import (
     AHEAD,
     CONTROLS,
+    FAR,
     GUARD,
     INDEPENDENCE,
     LIMIT,
@@ -54,6 +56,7 @@ from centrode.numerics.executors import choose_executor
 from centrode.numerics.initial_value_problems import HEADER, SMALLEST, STEP, TIME, InitialValueProblem
 from centrode.numerics.integrators import Integrator, integrator_of
 from centrode.numerics.jets import Jet
+from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import (
     AngleDrive,
@@ -76,14 +79,15 @@ ROWS, MOST_ROWS = 1024, 65536
 """Steps in one call of the integrator: few at first, as room is made for all of them."""
 ATTEMPTS = 200_000
 MOST_STEPS = 5_000_000
-WILD = 1e12
-"""What is followed grows without bound beyond this."""
+WILD = 1e5
+"""Displacements over the greatest length, and speeds over those at the start, grow without bound beyond this."""
 STALLED = 1e-13
 """A step below this share of the time reached is none."""
 
 STATUSES = ("ok", "crossing", "doubtful")
-CROSSING = "crossing"
-EVENTS = (CROSSING,)
+CROSSING, NEAR_MISS = EVENTS = ("crossing", "near miss")
+DOUBTFUL = 1e-3
+"""Closures that come nearer to losing rank than this, and do not, leave it doubtful how the motion goes on."""
 LOST = 1e-4
 """Closures that are no more independent than this, and no smooth motion through the place where they lose rank."""
 ENERGY = 1e-7
@@ -178,7 +182,8 @@ class Course:
 
     Attributes
     ----------
-    rows : (1 + coordinates + speeds + works, steps + 1), the times first
+    rows : (1 + carried, steps + 1), the times first
+    between : times -> what is carried, of an implicit scheme; None where a step of the scheme itself tells it
     """
 
     rows: Array
@@ -187,6 +192,7 @@ class Course:
     attempts: int
     events: tuple[Event, ...] = ()
     detours: tuple[Detour, ...] = ()
+    between: Callable[[Array], Array] | None = None
 
 
 @dataclass(frozen=True)
@@ -290,7 +296,7 @@ class FreeMotion:
         starts = {path.removeprefix("drives."): float(value) for path, value in values.items()}
         # followed there in small steps, so that the branch is that of the description
         constraints = [*self.tree.closures, *(driven[path] for path in values)]
-        here = self._drive_values(self.position.coordinates)
+        here = self.drive_values(self.position.coordinates)
         place = self.position.coordinates
         farthest = max((abs(starts[name] - here[name]) for name in starts), default=0.0)
         count = max(1, int(np.ceil(farthest / (0.05 * float(min(1.0, self.equations.numbers.scale))))))
@@ -299,7 +305,8 @@ class FreeMotion:
             place = close_position(self.tree, self.equations.numbers, constraints, place, part)
         return place
 
-    def _drive_values(self, coordinates: Array) -> dict[str, float]:
+    def drive_values(self, coordinates: Array) -> dict[str, float]:
+        """Values of all drives [rad or m; on the sphere of guides rad] at joint coordinates."""
         state = self.equations.state(
             ARRAYS,
             self.tree.values(ARRAYS, list(coordinates)),
@@ -359,6 +366,7 @@ class FreeMotion:
                 _("write links.NAME, guides.NAME, drives.NAME or points.NAME"),
             )
         columns = []
+        found: tuple[Jet, ...]
         for k in range(len(coordinates)):
             values = self.tree.values(ARRAYS, list(coordinates))
             jets = [Jet((x, float(i == k), 0.0)) for i, x in enumerate(coordinates)]
@@ -407,7 +415,11 @@ class FreeMotion:
         times = np.linspace(0.0, duration, samples) if at is None else np.asarray(at, dtype=np.float64)
         if np.any((times < 0.0) | (times > duration * (1.0 + 1e-12))) or np.any(np.diff(times) < 0.0):
             raise InputError("at", _("instants lie within the duration and grow"), _("correct them"))
-        course = self.course(start, duration, tolerance, executor, progress)
+        if scheme not in (ADAPTIVE, STIFF):
+            what = _("there is no scheme {name} for all coordinates").format(name=scheme)
+            raise InputError("[simulation] scheme", what, _("adaptive or stiff"))
+        integrate = self.course if scheme == ADAPTIVE else self.stiff_course
+        course = integrate(start, duration, tolerance, executor, progress)
         reached = float(course.rows[0, -1])
         times = times[times <= reached] if course.ended != DURATION else np.minimum(times, reached)
         states = self.states_at(course, times, executor)
@@ -500,13 +512,28 @@ class FreeMotion:
                     ended, cause = CHANGE_POINT, passed
                     break
                 detour, event = passed
+                if event is not None and event.kind == NEAR_MISS:
+                    # looked at again and again on the way there, it is one
+                    events = [
+                        one
+                        for one in events
+                        if one.kind != NEAR_MISS or abs(one.time - event.time) > FAR / rate
+                    ]
                 events += [event] if event is not None else []
                 if detour is not None:
                     detours.append(detour)
                     kept.append(np.concatenate([[float(state[0, 0])], state[HEADER:, 0]])[None])
                 continue
+            away = self._farthest(state, rate)
+            if away > WILD:
+                ended = BLOW_UP
+                cause = _(
+                    "at {time:.9g} s something had moved {far:.3g} times the greatest length or as fast as that"
+                )
+                cause = cause.format(time=time, far=away)
+                break
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
-                wild = not np.all(np.isfinite(state)) or np.any(np.abs(state[HEADER:, 0]) > WILD)
+                wild = not np.all(np.isfinite(state)) or away > WILD
                 ended = BLOW_UP if wild else STEP_SIZE
                 cause = _("at {time:.9g} s the step became as small as {step:.3g} s").format(
                     time=time, step=size
@@ -517,6 +544,65 @@ class FreeMotion:
                 break
             room = min(4 * room, MOST_ROWS)
         return Course(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
+
+    def stiff_course(
+        self,
+        start: InitialState,
+        duration: float,
+        tolerance: float,
+        executor: str = "auto",
+        progress: Callable[[float], None] | None = None,
+    ) -> Course:
+        """Steps of SciPy's Radau, for loads so stiff or so strongly damped that they hold explicit steps back."""
+        followed = PythonIntegration(self.problem)
+        parameters = [float(x) for x in self.parameters(duration, tolerance, self.rate(start))[:, 0]]
+        carried = self.carried_at(start)
+        names, count = self.names, len(self.problem.followed)
+        angles = np.array(self.tree.angles, dtype=np.intp)
+        own = [
+            *range(*names.part(names.coordinates).indices(count)),
+            *range(*names.part(names.speeds).indices(count)),
+        ]
+        own += range(*names.part(names.works).indices(count))
+
+        def whole(y: Array) -> list[float]:
+            values = carried.copy()
+            values[own] = y
+            turned = values[names.part(names.coordinates)][angles]
+            values[names.part(names.cosines)], values[names.part(names.sines)] = (
+                np.cos(turned),
+                np.sin(turned),
+            )
+            return [float(x) for x in values]
+
+        def rates(t: float, y: Array) -> Array:
+            return np.array(followed.rates([t, *parameters, *whole(y)]))[own]
+
+        solver = Radau(rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance)
+        rows = [np.concatenate([[0.0], carried])]
+        pieces = []
+        ended, cause = DURATION, None
+        while solver.status == "running":
+            solver.step()
+            if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+                ended, cause = STEP_SIZE, _("at {time:.9g} s the step became too small").format(time=solver.t)
+                break
+            step = solver.t - rows[-1][0]
+            pieces.append(solver.dense_output())
+            carried = np.array(followed.closing([solver.t, step, *parameters, *whole(solver.y)]))
+            solver.y = carried[own]
+            rows.append(np.concatenate([[solver.t], carried]))
+            if progress is not None:
+                progress(float(solver.t))
+        reached = np.array(rows).T
+        followed_between = OdeSolution(reached[0], pieces)
+
+        def between(times: Array) -> Array:
+            found = np.zeros((len(carried), len(times)))
+            found[own] = followed_between(times)
+            return found
+
+        return Course(reached, ended, cause, len(rows) - 1, between=between)
 
     @cached_property
     def _half_circles(self) -> HalfCircles:
@@ -544,7 +630,7 @@ class FreeMotion:
                 what = _("a change point at {time:.9g} s through which no smooth motion leads")
                 return what.format(time=detour.centre)
             state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
-            return None, None
+            return None, Event(detour.centre, NEAR_MISS, near) if near < DOUBTFUL else None
         count = len(self.problem.followed)
         before = self._energy(state[HEADER:, 0], time)
         landed = detour.at(np.array([detour.end]))[:, 0]
@@ -571,9 +657,20 @@ class FreeMotion:
         kinetic, potential = self.equations.energies(ARRAYS, self.tree.values(ARRAYS, q), w, time)
         return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
 
+    def _farthest(self, state: Array, rate: float) -> float:
+        """The greatest displacement over the greatest length, or speed over what speeds are compared with."""
+        names, units = self.names, units_of(self.tree, self.equations.numbers)
+        values = np.abs(state[HEADER:, 0])
+        slid = np.array([one.kind != "angle" for one in self.coordinates])
+        moved = values[names.part(names.coordinates)] / units
+        fast = values[names.part(names.speeds)] / units / rate
+        return float(max(np.max(moved[slid], initial=0.0), 1e-3 * np.max(fast, initial=0.0)))
+
     def states_at(self, course: Course, times: Array, executor: str = "auto") -> Array:
         """What is carried at instants (rows, n): one step from the last one before each, as long as is needed."""
         rows, n = course.rows, len(times)
+        if course.between is not None:
+            return course.between(times)
         begin = np.clip(np.searchsorted(rows[0], times, side="right") - 1, 0, rows.shape[1] - 1)
         lanes = rows[:, begin]
         state = np.concatenate([lanes[:1], np.full((1, n), inf), np.zeros((2, n)), lanes[1:]])
@@ -675,6 +772,9 @@ class FreeMotion:
 
 def _statuses(course: Course, times: Array) -> npt.NDArray[np.int8]:
     statuses = np.zeros(len(times), dtype=np.int8)
+    for event in course.events:
+        if event.kind == NEAR_MISS:
+            statuses[times >= event.time] = STATUSES.index("doubtful")
     for detour in course.detours:
         statuses[(times > detour.begin) & (times < detour.end)] = STATUSES.index(CROSSING)
     return statuses

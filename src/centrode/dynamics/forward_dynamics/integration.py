@@ -33,6 +33,10 @@ Namespace: TypeAlias = Any
 TOLERANCE, RATE, LENGTH = "tolerance", "rate", "length"
 INDEPENDENCE, AHEAD, LOOKED, LIMIT, GUARD = "independence", "ahead", "looked", "limit", "guard"
 """Carried beside: how independent closures are, the time until they are not, and what stops the steps there."""
+FLOOR = 0.1
+"""Share of what speeds are compared with that counts where they are zero."""
+SHARE = 0.2
+"""Of the tolerance that a step may err by its estimate: errors of many steps add up."""
 NEAR, FAR = 0.25, 0.4
 """A change point is looked for where closures are no more independent than this, and the fastest link is to turn by less
 than this until they lose rank."""
@@ -166,8 +170,10 @@ def _closing(
     if equations.equations:
         terms = equations.terms(m, values, speeds, time)
         system = equations.system(m, terms)
-        q, w, shift = equations.projected(coordinates, speeds, terms, system)
+        shift = equations.shift_to_close(terms, system)
+        q = [x if is_zero(shift.get(k, 0.0)) else x + shift[k] for k, x in enumerate(coordinates)]
         rotors = {k: turned_rotor(rotors[k], shift.get(k, 0.0)) for k in tree.angles}
+        w = equations.changed_to_fit(m, Values(q, rotors), speeds, time, system)
         counted = {
             name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
             for row, name in zip(sorted(equations.dependent), names.flags, strict=True)
@@ -212,7 +218,7 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
     for k, coordinate in enumerate(equations.tree.coordinates):
         name, speed = names.coordinates[k], names.speeds[k]
         unit = 1.0 if coordinate.kind == "angle" else variable(LENGTH)
-        reach = unit * variable(RATE) + m.max(m.abs(variable(BEFORE + speed)), m.abs(variable(speed)))
+        reach = unit * FLOOR * variable(RATE) + m.max(m.abs(variable(BEFORE + speed)), m.abs(variable(speed)))
         for one, scale in ((name, unit), (speed, reach)):
             parts = [variable(prefix + one) for prefix in (OF_FIFTH, OF_THIRD)]
             if not isinstance(scale, float):
@@ -222,4 +228,4 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
     together = fifth + 0.01 * third
     size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(2 * equations.size))
     # nothing erred, or something has no value
-    return m.where(m.less(0.0, together), size, together) / variable(TOLERANCE)
+    return m.where(m.less(0.0, together), size, together) / (SHARE * variable(TOLERANCE))

@@ -90,7 +90,8 @@ class JointState(State):
         along, across = self.point(pivot)
         if is_zero(offset[0]) and is_zero(offset[1]):
             return along, across
-        turned = rotate_vector(offset, self.rotor(centre.link))
+        cosine, sine = self.rotor(centre.link)
+        turned = rotate_vector(offset, (cosine, sine))
         return along + turned[0], across + turned[1]
 
     def slide(self, guide: str) -> Jet:

@@ -10,6 +10,7 @@ import numpy as np
 
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, LoadAlong
+from centrode.dynamics.load_coordinates import Component
 from centrode.dynamics.loads import (
     Constant,
     Damper,
@@ -57,18 +58,20 @@ def _along_axis(vector: tuple[Number, ...]) -> bool:
 
 
 def _map_mass(mass: Mass, function: Function) -> Mass:
-    centre: Centre | Radial
-    if isinstance(mass.centre, Centre):
-        centre = replace(mass.centre, along=function(mass.centre.along), across=function(mass.centre.across))
-    else:
-        x, y, z = map(function, mass.centre.direction)
-        centre = replace(mass.centre, direction=(x, y, z), distance=function(mass.centre.distance))
     inertia = mass.inertia
     if isinstance(inertia, tuple):
         inertia = tuple(_map_part(part, function) for part in inertia)
     else:
         inertia = function(inertia)
+    centre = _map_centre(mass.centre, function)
     return replace(mass, mass=function(mass.mass), centre=centre, inertia=inertia)
+
+
+def _map_centre(centre: Centre | Radial, function: Function) -> Centre | Radial:
+    if isinstance(centre, Centre):
+        return replace(centre, along=function(centre.along), across=function(centre.across))
+    x, y, z = map(function, centre.direction)
+    return replace(centre, direction=(x, y, z), distance=function(centre.distance))
 
 
 def _map_part(part: Spread | About, function: Function) -> Spread | About:
@@ -77,7 +80,11 @@ def _map_part(part: Spread | About, function: Function) -> Spread | About:
 
 
 def _map_load(load: LoadAlong, function: Function) -> LoadAlong:
-    return replace(load, term=replace(load.term, amount=_map_law(load.term.amount, function)))
+    term = load.term
+    coordinate = term.coordinate
+    if isinstance(coordinate, Component) and not isinstance(coordinate.at, str):
+        coordinate = replace(coordinate, at=_map_centre(coordinate.at, function))
+    return replace(load, term=replace(term, coordinate=coordinate, amount=_map_law(term.amount, function)))
 
 
 def _map_law(law: LoadLaw | BrokenLine, function: Function) -> Any:
