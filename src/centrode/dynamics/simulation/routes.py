@@ -21,7 +21,9 @@ def equations_for(mechanism: Mechanism, settings: Simulation) -> str:
     """
     if settings.equations is not None:
         return settings.equations
-    if settings.keeps or settings.speeds or len(mechanism.drives) != 1 or not mechanism.drives[0].has_law:
+    if settings.keeps or settings.speeds:
+        return MULTIBODY
+    if len(mechanism.drives) != 1 or not mechanism.drives[0].has_law:
         return MULTIBODY
     return MULTIBODY if generic_mobility(mechanism) > 1 else REDUCED
 
