@@ -25,10 +25,11 @@ from centrode.kinematics.sample_index import drive_coordinates, label_coordinate
 from centrode.locale import _
 from centrode.model.checks import simulation_problems
 from centrode.model.files import mechanism_text
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
 from centrode.model.motion_parameter import TIME
 from centrode.model.reading import error_at_place
-from centrode.model.simulation import Simulation
+from centrode.model.simulation import DRIVING_LAW_VARIABLES, Simulation
+from centrode.numerics.text_formula import compile_formula
 from centrode.version import __version__
 
 if TYPE_CHECKING:
@@ -43,6 +44,40 @@ HAPPENINGS = ("crossing", "near miss", "doubtful")
 """What may happen on the way: it passes a change point, passes near one, or nothing tells how it goes on."""
 
 
+# one mechanism is often simulated again, with other speeds and times: its equations are those that it had
+@kept_by_mechanism(32)
+def _prepared(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMotion:
+    """The equations of a mechanism with drives that keep their laws, and a moment or force along the first drive."""
+    return free_motion_of(mechanism.with_drives_held(), keeps, _efforts(mechanism, law))
+
+
+def _efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
+    """What drives: a force by a formula along the first drive."""
+    if law == "0":
+        return ()
+    if not mechanism.drives:
+        what = _("nothing says along what the driving moment acts")
+        raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
+    first = mechanism.motion_parameter.drives[0]
+    driving = Driving(
+        compile_formula(law, DRIVING_LAW_VARIABLES, "[simulation] driving"), _sense_of_first_drive(mechanism)
+    )
+
+    def along(m: Any, t: Any, measure: Any, rate: Any) -> Any:
+        # the formula knows the coordinate, with the zero and the sense that its author may have chosen
+        return first.sense * driving.over(m, t, first.value_of(measure), first.sense * rate)
+
+    return (DriveEffort(first.name, along, frozenset(driving.formula.used)),)
+
+
+def _sense_of_first_drive(mechanism: Mechanism) -> float:
+    """Sense of the first drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
+    first = mechanism.drives[0]
+    if not first.has_law:
+        return mechanism.motion_parameter.drives[0].sense
+    return float(path_of(mechanism.model_copy(update={"drives": (first,)}), 1.0).forward)
+
+
 @dataclass(frozen=True)
 class MultibodySetting:
     """A mechanism and what its simulation asks for, checked: it starts, and its end is known."""
@@ -53,37 +88,17 @@ class MultibodySetting:
     @cached_property
     def free(self) -> FreeMotion:
         """The mechanism prepared."""
-        return free_motion_of(self.mechanism.with_drives_held(), self.settings.keeps, self.efforts)
-
-    @property
-    def efforts(self) -> tuple[DriveEffort, ...]:
-        """What drives: a force along the first drive."""
-        if self.settings.law == "0":
-            return ()
-        if not self.mechanism.drives:
-            what = _("nothing says along what the driving moment acts")
-            raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
-        first, driving = self.coordinates[0], Driving.of(self.settings, self.sense)
-
-        def along(m: Any, t: Any, measure: Any, rate: Any) -> Any:
-            # the formula knows the coordinate, with the zero and the sense that its author may have chosen
-            return first.sense * driving.over(m, t, first.value_of(measure), first.sense * rate)
-
-        return (DriveEffort(first.name, along, frozenset(driving.formula.used)),)
+        return _prepared(self.mechanism, self.settings.keeps, self.settings.law)
 
     @property
     def coordinates(self) -> tuple[DriveCoordinate, ...]:
         """Coordinates of the drives, the first of them that to which speed, start and driving belong."""
         return self.mechanism.motion_parameter.drives
 
-    @cached_property
+    @property
     def sense(self) -> float:
-        """Sense of the first drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
-        first = self.mechanism.drives[0]
-        if not first.has_law:
-            return self.coordinates[0].sense
-        alone = self.mechanism.model_copy(update={"drives": (first,)})
-        return float(path_of(alone, 1.0).forward)
+        """Sense of the first drive along its coordinate."""
+        return _sense_of_first_drive(self.mechanism)
 
     @property
     def duration(self) -> float:
