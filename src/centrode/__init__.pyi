@@ -11,6 +11,7 @@ from .model.mechanism import Study as Study
 from .model.simulation import Simulation as Simulation
 from .model.cam import Cam as Cam
 from .model.follower_cam import PlateCam as PlateCam
+from .model.gear_pairs import GearPair as GearPair
 from .model.files import read_mechanism as read_mechanism
 from .model.files import parse_mechanism as parse_mechanism
 from .model.files import mechanism_text as mechanism_text
@@ -60,6 +61,9 @@ from .dynamics.steady_motion.flywheel import flywheel as flywheel
 from .dynamics.simulation.simulate import simulate as simulate
 from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
+
+# Gears
+from .gears.results import gear_pair as gear_pair
 
 # Cams
 from .cams.cam import cam as cam

@@ -20,7 +20,12 @@ from centrode.model.examples.catalogue import load
 Centrode = Callable[..., Any]
 
 FEW = ("--samples", "3", "--no-figures")
-EXAMPLES = {"cam": "valve-cam", "region": "five-bar-two-drives", "simulate": "six-bar-press-run-up"}
+EXAMPLES = {
+    "cam": "valve-cam",
+    "gears": "shifted-gear-pair",
+    "region": "five-bar-two-drives",
+    "simulate": "six-bar-press-run-up",
+}
 """What a command is tried on; the others on a press."""
 FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "run": ("summary.json", FEW),
@@ -35,6 +40,7 @@ FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "simulate": ("simulation.csv", ("--duration", "0.01", "--no-figures")),
     "balance": ("balance.csv", ("--no-figures", "--samples", "9")),
     "cam": ("summary.json", FEW),
+    "gears": ("summary.json", ("--no-figures",)),
     "centres": ("centres.csv", ("--at", "1 rad", "--no-figures")),
     "centrodes": ("centrodes.csv", ("--link", "AB", *FEW)),
     "diagrams": ("check.csv", ("--at", "1 rad", "--no-figures")),

@@ -39,8 +39,10 @@ def _each_operation() -> dict[str, Node]:
     return found
 
 
-def _run(function: PlaceFunction, numbers: list[float], places: list[float]) -> np.ndarray:
-    """Rows that a function writes, places in its one row."""
+def _run(
+    function: PlaceFunction, numbers: list[float], places: list[float], last: int | None = None
+) -> np.ndarray:
+    """Rows that a function writes up to its last stage, places in its one row."""
     assert NODE is not None
     body = f"""
     {HELPERS}
@@ -52,7 +54,7 @@ def _run(function: PlaceFunction, numbers: list[float], places: list[float]) -> 
     f.before(v.map(number), p, n, p.subarray(f.fixed.length * n));
     f.moving.forEach((_name, k) => p.set(x.map(number), (f.fixed.length + f.parts + k) * n));
     const o = new Float64Array(f.count * n);
-    f.run(v.map(number), p, n, o);
+    f.run(v.map(number), p, n, o{"" if last is None else f", {last}"});
     process.stdout.write(Buffer.from(o.buffer));
     """
 
@@ -122,3 +124,20 @@ def test_an_operation_without_words_is_refused_by_its_name() -> None:
 def test_every_operation_has_words() -> None:
     for node in _each_operation().values():
         assert "o[0]" in once([node], {"a": 0, "b": 1, "x": 2})
+
+
+@needs_node
+def test_a_call_may_end_behind_a_stage() -> None:
+    """What a stage shares with those before it is computed once; rows behind the last stage are not written."""
+    shared = m.sqrt(X * X + A)
+    outputs = (shared + B, m.sin(shared), shared * shared - X)
+    staged = PlaceFunction("f", {"a": 0, "b": 1}, (), ("x",), outputs, (1, 2, 3))
+    whole = PlaceFunction("f", {"a": 0, "b": 1}, (), ("x",), outputs)
+    numbers, places = [2.0, -0.5], [0.3, 1.0, -4.0]
+    wanted = _run(whole, numbers, places)
+    for last in range(3):
+        found = _run(staged, numbers, places, last)
+        np.testing.assert_array_equal(found[: last + 1], wanted[: last + 1])
+        assert not found[last + 1 :].any()
+    np.testing.assert_array_equal(_run(staged, numbers, places), wanted)
+    assert staged.source.count("Math.sqrt") == 1

@@ -18,7 +18,9 @@ import pytest
 import centrode as ct
 from centrode.cli.main import main
 from centrode.locale import choose_language, speaking
-from centrode.model.files import value_at, with_values
+from centrode.model.examples import example_text
+from centrode.model.files import parse_mechanism, value_at, with_values
+from centrode.report.mechanism_page.driving_cams import cams_of
 from centrode.report.mechanism_page.handles import handles_of
 from centrode.report.mechanism_page.numbers_that_vary import joints_of, ranges_of
 from centrode.report.mechanism_page.page_file import mechanism_page
@@ -414,6 +416,190 @@ def test_reactions_are_curves_numbers_and_arrows(running: Any, pages: Callable[.
         # both pins of the coupler push it
         assert seen.page.locator(arrows).count() == 2
         assert seen.messages == []
+
+
+TAPPET = """
+title = "Rocker on a tappet"
+[frame.points]
+E = ["60 mm", "100 mm"]
+[links]
+PB = { length = "80 mm" }
+EB = { length = "50 mm" }
+[[guides]]
+point = "P"
+on = "frame"
+through = ["10 mm", "40 mm"]
+direction = [0, 1]
+[[drives]]
+guide = "P"
+start = 0
+cam = "valve-cam"
+[assembly]
+sides = { B = "left" }
+"""
+A_LITTLE = 0.1
+"""Of a pixel: corners of a profile are a degree apart, and paths are written to a hundredth of a pixel."""
+SHAPES = """
+[...document.querySelectorAll('.shape')].map((one) => {
+  const matrix = one.getCTM();
+  const corners = one.getAttribute('d').match(/-?[\\d.]+/g).map(Number);
+  return Array.from({ length: corners.length / 2 }, (_, k) => {
+    const at = new DOMPoint(corners[2 * k], corners[2 * k + 1]).matrixTransform(matrix);
+    return [at.x, at.y];
+  });
+})
+"""
+"""Corners of the shapes in the picture [pixels]: a cam's profile, its mark, its follower."""
+
+
+def apart(seen: Seen, sample: int) -> float:
+    """How far the follower is from the profile [pixels]: a roller's rim, or the line of a face."""
+    seen.page.evaluate(
+        "(place) => { const one = document.querySelector('[data-do=seek]'); one.value = place;"
+        " one.dispatchEvent(new Event('input')); }",
+        str(sample),
+    )
+    frames(seen.page)
+    profile, _mark, *follower, _hub = map(np.array, seen.page.evaluate(SHAPES))
+    touching = follower[-1]
+    if len(touching) > 2:
+        centre = touching[:-1].mean(axis=0)
+        return float(np.linalg.norm(profile - centre, axis=1).min() - np.linalg.norm(touching[0] - centre))
+    (x, y), along = touching[0], touching[1] - touching[0]
+    off = along[0] * (profile[:, 1] - y) - along[1] * (profile[:, 0] - x)
+    return float(np.abs(off).min() / np.hypot(*along))
+
+
+@pytest.mark.parametrize(
+    ("described", "vary", "values"),
+    [
+        (
+            ct.example("cam-driven-linkage"),
+            {"frame.points.C.x": (-0.1, 0.1), "links.lever.points.B.x": (-0.05, 0.05)}
+            | {f"links.lever.points.R.{axis}": (-0.1, 0.1) for axis in "xy"},
+            # the roller's arm turned in its link, its length kept: 90 mm
+            ["40", "-30", "-54", "-72"],
+        ),
+        (
+            parse_mechanism(TAPPET),
+            {f"guides.P.through.{axis}": (-0.1, 0.1) for axis in "xy"} | {"links.PB.length": (0.05, 0.1)},
+            ["0.015", "0.03", "0.085"],
+        ),
+    ],
+    ids=["roller", "face"],
+)
+def test_a_cam_turns_under_its_follower(
+    running: Any, tmp_path: Path, described: ct.Mechanism, vary: Any, values: list[str]
+) -> None:
+    """The follower touches the profile at every sample, also where a reader has brought it elsewhere."""
+    file = tmp_path / "cam.html"
+    file.write_text(mechanism_page(described, vary), encoding="utf-8")
+    with opened(running, file) as seen:
+        samples = range(0, 361, 40)
+        assert all(abs(apart(seen, sample)) < A_LITTLE for sample in samples)
+        for k, value in enumerate(values):
+            seen.page.fill(f".rows input[type=text] >> nth={k}", value)
+            seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        assert all(abs(apart(seen, sample)) < A_LITTLE for sample in samples)
+        assert "The cam is not drawn" not in Hand(seen).statuses
+        assert seen.messages == []
+
+
+def test_a_cam_that_does_not_fit_its_arm_is_not_drawn(running: Any, tmp_path: Path) -> None:
+    file = tmp_path / "cam.html"
+    file.write_text(
+        mechanism_page("cam-driven-linkage", {"links.lever.points.R.x": (-0.1, -0.08)}), encoding="utf-8"
+    )
+    with opened(running, file) as seen:
+        hand = Hand(seen)
+        shapes = "[...document.querySelectorAll('.shape')].filter((one) => one.getAttribute('d')).length"
+        drawn = seen.page.evaluate(shapes)
+        assert drawn >= 4 and "cam" not in hand.statuses
+        seen.page.fill(".rows input[type=text] >> nth=0", "-85")
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        assert (
+            "The cam is not drawn: it is made for an arm of 90 mm, and the arm is 85 mm long."
+            in hand.statuses
+        )
+        assert seen.page.evaluate(shapes) < drawn
+        seen.page.click('[data-do="reset"]')
+        frames(seen.page)
+        assert seen.page.evaluate(shapes) == drawn and "cam" not in hand.statuses
+
+
+def test_why_a_cam_is_not_drawn_is_said() -> None:
+    mechanism = parse_mechanism(TAPPET)
+    points, links = list(mechanism.points), list(mechanism.links)
+    cams, said = cams_of(mechanism, ct.motion(mechanism), points, links)
+    assert len(cams) == 1 and said == []
+    sizeless = mechanism.model_copy(
+        update={
+            "drives": tuple(
+                drive.model_copy(
+                    update={
+                        "cam": drive.cam.model_copy(
+                            update={"body": drive.cam.body.model_copy(update={"base_radius": None})}
+                        )
+                    }
+                )
+                for drive in mechanism.drives
+            )
+        }
+    )
+    cams, said = cams_of(sizeless, ct.motion(mechanism), points, links)
+    assert cams == [] and said[0].startswith("The cam is not drawn")
+
+
+def test_several_drives_say_what_reduces_them() -> None:
+    text = example_text("five-bar-two-drives").replace(
+        "[links.OA]\nlength = 0.1", "[links.OA]\nlength = 0.1\nmass = 1.0\ncentre = [0.05, 0]\ninertia = 1e-3"
+    )
+    said = (
+        "Curves of reduced masses and loads are omitted: with several drives they are an inertia matrix and a "
+        "generalised force of each drive, which centrode reduce computes."
+    )
+    assert said in mechanism_page(parse_mechanism(text))
+    assert "are omitted" not in mechanism_page("five-bar-two-drives")
+
+
+def test_the_curves_begin_with_a_point_that_no_crank_carries() -> None:
+    chosen = json.loads(DATA.findall(mechanism_page("five-bar-two-drives"))[0])["chosen"]
+    assert chosen[0] == "position.B"
+
+
+def test_a_list_in_the_player_is_chosen_from_by_keys(running: Any, pages: Callable[..., Path]) -> None:
+    with opened(running, pages(PLANE)) as seen:
+        seen.page.click('[data-show="rolling-centrodes"]')
+        seen.page.focus('[data-do="body"]')
+        place = seen.page.get_attribute(".moving", "data-place")
+        assert seen.page.input_value('[data-do="body"]') == "AB"
+        seen.page.keyboard.press("ArrowDown")
+        frames(seen.page)
+        assert seen.page.input_value('[data-do="body"]') == "DB"
+        assert seen.page.get_attribute(".moving", "data-place") == place
+
+
+def test_curves_stand_two_beside_each_other_on_paper(running: Any, pages: Callable[..., Path]) -> None:
+    with opened(running, pages("six-bar-press", "ru"), 2560) as seen:
+        seen.page.set_viewport_size({"width": 680, "height": 900})
+        seen.page.emulate_media(media="print")
+        seen.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+        frames(seen.page)
+        left = seen.page.evaluate(
+            "[...document.querySelectorAll('.chart')].map((one) => one.getBoundingClientRect().left)"
+        )
+        assert left[0] == left[2] < left[1] == left[3]
+        # letters of the axes are 12 units high
+        assert seen.page.evaluate("document.querySelector('.plot svg').getScreenCTM().a") > 0.9
+        seen.page.emulate_media(media="screen")
+        seen.page.evaluate("dispatchEvent(new Event('afterprint'))")
+        frames(seen.page)
+        wide = seen.page.evaluate("document.querySelector('.plot svg').viewBox.baseVal.width")
+        assert wide == pytest.approx(
+            seen.page.evaluate("document.querySelector('.charts').clientWidth"), abs=20
+        )
 
 
 def test_a_page_says_why_it_has_no_reactions() -> None:

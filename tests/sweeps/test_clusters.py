@@ -31,6 +31,7 @@ from centrode.sweeps.cluster_blocks import compute_block
 from centrode.sweeps.clusters import answer, libraries, open_cluster
 
 pytest.importorskip("zarr", reason="stores need the extra sweeps")
+dask = pytest.importorskip("dask", reason="clusters need the extra cluster")
 distributed = pytest.importorskip("distributed", reason="clusters need the extra cluster")
 
 # `distributed` leaves sockets of processes that ended to the collector
@@ -165,7 +166,7 @@ def test_a_scheduler_that_goes_away_or_was_never_there(
         with pytest.raises(ct.InputError, match=r"the scheduler went away; finished results are kept"):
             swept(tmp_path / "1.zarr", cluster=address, progress=lambda done, of: scheduler.kill())
     with pytest.raises(
-        ct.InputError, match=rf"{address}: no scheduler answers there: .*; start one with: dask sche"
+        ct.InputError, match=rf"{address}: no scheduler answers there: .*; look at the address, or start one"
     ):
         swept(tmp_path / "1.zarr", cluster=address)
     study = tmp_path / "study.toml"
@@ -288,22 +289,111 @@ def test_a_run_that_owns_the_store_keeps_others_out(tmp_path: Path, cluster: Any
     assert "another run is writing into it; wait until it ends, or give another path" in refused[0]
 
 
-def test_the_command_computes_with_workers_of_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+STUDY = """\
+mechanism = "crank-rocker"
+outputs = "angle"
+samples = 19
+[grid]
+links.AB.length = { from = "3.2 m", to = "3.8 m", count = 60 }
+"""
+
+INTERRUPTED = """
+import os, signal, sys
+from centrode.cli import sweep
+from centrode.cli.main import main
+from centrode.cli.progress import Progress
+from centrode.sweeps import designs
+if __name__ == "__main__":
+    designs.BLOCK_BYTES = 4_000
+    class Interrupting(Progress):
+        def say(self, what, done=0, of=0):
+            # as a terminal does: to all processes of the group
+            if 0 < done < of:
+                os.killpg(os.getpgid(0), signal.SIGINT)
+    sweep.Progress = Interrupting
+    sys.exit(main(["sweep", "study.toml", "--workers", "1"]))
+"""
+
+
+def test_ctrl_c_ends_the_command_and_the_store_goes_on(
+    tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("study.toml").write_text(
-        'mechanism = "crank-rocker"\noutputs = "angle.DB"\nsamples = 19\nreduce = "range"\n'
-        '[grid]\nlinks.AB.length = { from = "3.4 m", to = "3.6 m", count = 5 }\n'
+    Path("study.toml").write_text(STUDY, encoding="utf-8")
+    # a file, as workers read the program again
+    Path("interrupted.py").write_text(INTERRUPTED, encoding="utf-8")
+    ended = subprocess.run(
+        [sys.executable, "interrupted.py"], start_new_session=True, capture_output=True, encoding="utf-8", check=False
+    )  # fmt: skip
+    assert ended.returncode == 130
+    assert (
+        "finished results stay in study.zarr; the same command resumes from there\ninterrupted\n"
+        in ended.stderr
     )
-    assert main(["sweep", "study.toml", "--workers", "1"]) == 0
-    assert "wrote study.zarr" in capsys.readouterr().out
-    assert main(["sweep", "study.toml", "--workers", "1"]) == 0
-    assert "5 mechanisms were computed in an earlier run" in capsys.readouterr().err
+    # workers end without a word of their own
+    assert "Traceback" not in ended.stderr
+    assert main(["sweep", "study.toml", "--scheduler", cluster.scheduler.address]) == 0
+    captured = capsys.readouterr()
+    assert "mechanisms were computed in an earlier run" in captured.err
+    assert "wrote study.zarr" in captured.out
     assert main(["sweep", "study.toml", "--workers", "2", "--scheduler", "tcp://x:1"]) == 2
     assert "give one of the two options" in capsys.readouterr().err
-    assert main(["sweep", "study.toml", "--workers", "1", "--out", "x.csv"]) == 2
+    Path("reduced.toml").write_text('reduce = "mean"\n' + STUDY, encoding="utf-8")
+    assert main(["sweep", "reduced.toml", "--workers", "1", "--out", "x.csv"]) == 2
     assert "workers write to a store" in capsys.readouterr().err
+
+
+@pytest.fixture
+def certificates(tmp_path: Path) -> dict[str, str]:
+    """Files of an authority, a certificate and a key made for the test; by the names that settings give them."""
+    pytest.importorskip("cryptography", reason="certificates need cryptography")
+    made = distributed.Security.temporary()
+    content = {"ca-file": made.tls_ca_file, "cert": made.tls_client_cert, "key": made.tls_client_key}
+    for name, text in content.items():
+        (tmp_path / f"{name}.pem").write_text(text, encoding="ascii")
+    return {name: str(tmp_path / f"{name}.pem") for name in content}
+
+
+def test_a_scheduler_behind_certificates(
+    tmp_path: Path,
+    certificates: dict[str, str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(STUDY.replace("60", "7"), encoding="utf-8")
+    authority, certificate, key = certificates.values()
+    security = distributed.Security(
+        tls_ca_file=authority, require_encryption=True,
+        **{f"tls_{role}_{part}": file for role in ("client", "scheduler", "worker")
+           for part, file in (("cert", certificate), ("key", key))},
+    )  # fmt: skip
+    # a worker in this process: what is tried are the connections
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tls://", security=security,
+        dashboard_address="127.0.0.1:0", host="127.0.0.1",
+    ) as machines:  # fmt: skip
+        address = machines.scheduler_address
+        assert address.startswith("tls://")
+        command = ["sweep", "study.toml", "--out", "1.zarr", "--scheduler", address]
+        assert main(command) == 2
+        assert "an address of this kind needs certificates; name their files" in capsys.readouterr().err
+        settings = {
+            "distributed.comm.tls.ca-file": authority,
+            "distributed.comm.tls.client.cert": certificate,
+            "distributed.comm.tls.client.key": str(tmp_path / "study.toml"),
+        }
+        with dask.config.set(settings):
+            assert main(command) == 2
+            assert "the certificates cannot be read" in capsys.readouterr().err
+        with dask.config.set({**settings, "distributed.comm.tls.client.key": key}):
+            assert main(command) == 0
+            found = swept("2.zarr", cluster=address)
+        with distributed.Client(address, security=security, set_as_default=False) as client:
+            again = swept("2.zarr", cluster=client)
+    assert found.attrs["mechanisms"] == again.attrs["mechanisms_found"] == 45
+    swept("0.zarr")
+    assert contents(tmp_path / "2.zarr") == contents(tmp_path / "0.zarr")
 
 
 def test_studies_of_simulations_have_the_same_numbers(cluster: Any) -> None:

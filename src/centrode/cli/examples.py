@@ -39,15 +39,20 @@ def examples(name: str | None, out: Path | None, force: bool) -> None:
 
 
 def _listing() -> str:
-    """Linkages, then cams, each with what computes them."""
-    linkages, cams = ct.example_names(), ct.example_names("cam")
+    """Linkages, then cams, then pairs of gears, each with what computes them."""
+    linkages, cams, pairs = ct.example_names(), ct.example_names("cam"), ct.example_names("gear pair")
     count = ngettext("{count} mechanism", "{count} mechanisms", len(linkages)).format(count=len(linkages))
     use = _("print one with: centrode examples NAME; compute it with: centrode run NAME")
-    lines = render.aligned(_rows((*linkages, *cams))).splitlines()
+    lines = render.aligned(_rows((*linkages, *cams, *pairs))).splitlines()
     counted = ngettext("{count} cam", "{count} cams", len(cams)).format(count=len(cams))
     behind = _("compute one with: centrode cam NAME")
-    first, second = "\n".join(lines[: len(linkages)]), "\n".join(lines[len(linkages) :])
-    return f"{first}\n\n{count}; {use}\n\n{second}\n\n{counted}; {behind}"
+    gears = ngettext("{count} pair of gears", "{count} pairs of gears", len(pairs)).format(count=len(pairs))
+    last = _("compute one with: centrode gears NAME")
+    ends = len(linkages), len(linkages) + len(cams)
+    first, second, third = (
+        "\n".join(lines[slice(*between)]) for between in ((0, ends[0]), ends, (ends[1], len(lines)))
+    )
+    return f"{first}\n\n{count}; {use}\n\n{second}\n\n{counted}; {behind}\n\n{third}\n\n{gears}; {last}"
 
 
 def _rows(names: tuple[str, ...]) -> list[tuple[str, str]]:

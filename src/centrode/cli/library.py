@@ -6,10 +6,13 @@ from centrode.topics.topic import Lazily
 
 load = Lazily("centrode.model.examples.catalogue", "load")
 load_cam = Lazily("centrode.model.examples.catalogue", "load_cam")
+load_gear_pair = Lazily("centrode.model.examples.catalogue", "load_gear_pair")
+gear_pair = Lazily("centrode.gears.results", "gear_pair")
 load_either = Lazily("centrode.model.examples.catalogue", "load_either")
 example_text = Lazily("centrode.model.examples", "example_text")
 mechanism_schema = Lazily("centrode.model.schema", "mechanism_schema")
 cam_schema = Lazily("centrode.model.schema", "cam_schema")
+gear_pair_schema = Lazily("centrode.model.schema", "gear_pair_schema")
 read_sweep = Lazily("centrode.sweeps.sweep", "read_sweep")
 sheet_of = Lazily("centrode.topics.presentation", "sheet_of")
 initial_place = Lazily("centrode.kinematics.motion", "initial_place")

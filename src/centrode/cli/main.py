@@ -27,6 +27,7 @@ from centrode.cli.chains import chains
 from centrode.cli.draw import draw
 from centrode.cli.examples import examples
 from centrode.cli.export import export
+from centrode.cli.gears import gears
 from centrode.cli.page import page
 from centrode.cli.report import report
 from centrode.cli.schema import schema
@@ -50,6 +51,7 @@ OWN: tuple[click.Command, ...] = (
     animate,
     variants,
     cam,
+    gears,
     sweep,
     draw,
     sheets,

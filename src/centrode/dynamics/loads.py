@@ -21,7 +21,7 @@ from centrode.dynamics.load_coordinates import (
     turning_of,
 )
 from centrode.dynamics.masses import centre_of, masses_of
-from centrode.dynamics.state import Given, Mass, State
+from centrode.dynamics.state import Given, Mass, State, is_none
 from centrode.dynamics.strokes import ends_of_stroke
 from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, NotComputedYet
@@ -230,7 +230,8 @@ class Friction:
     @property
     def uses(self) -> frozenset[str]:
         """Dry friction of a constant asks for the sense of the motion only."""
-        return self.dry.uses | frozenset("v" if self.viscous or self.quadratic else "")
+        none = is_none(self.viscous) and is_none(self.quadratic)
+        return self.dry.uses | frozenset("" if none else "v")
 
     @property
     def jumps(self) -> bool:

@@ -73,6 +73,9 @@ def cam_from(
     bare_angles: BareAngles = "radians",
 ) -> AnyCam:
     """The cam described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
+    if mapping.get("kind") == "gear pair":
+        repair = _("compute it with: centrode gears; in Python with gear_pair")
+        raise InputError(where, _("this describes a pair of gears, not a cam"), repair)
     if not is_cam(mapping) and "links" in mapping:
         what = _("this describes a linkage, not a cam")
         raise InputError(

@@ -90,6 +90,9 @@ def mechanism_from(
     bare_angles: BareAngles = "radians",
 ) -> Mechanism:
     """The mechanism described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
+    if mapping.get("kind") == "gear pair":
+        repair = _("compute it with: centrode gears; in Python with gear_pair")
+        raise InputError(where, _("this describes a pair of gears, not a linkage"), repair)
     if is_cam(mapping):
         repair = _("compute it with: centrode cam; in Python read it with read_cam")
         raise InputError(where, _("this describes a cam, not a linkage"), repair)

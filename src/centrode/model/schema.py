@@ -57,6 +57,7 @@ from centrode.model.follower_cam import (
     Tool,
 )
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
+from centrode.model.gear_pairs import FEWEST_TEETH, KIND, MOST_TEETH, PURPOSES, RACK, GearPair, Rack
 from centrode.model.links import (
     MASSES,
     RING_AND_POINT,
@@ -519,6 +520,7 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
 # JSON Schema of a cam's description.
 
 _FLAG: Schema = {"type": "boolean"}
+_TEETH: Schema = {"type": "integer", "minimum": FEWEST_TEETH, "maximum": MOST_TEETH}
 _BOUNDS = list_of(AMOUNT, 2, 2)
 
 CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
@@ -630,3 +632,44 @@ def cam_schema() -> Schema:
         "anyOf": [reference_to(Cam), reference_to(PlateCam)],
         "$defs": {**curved["$defs"], **plate["$defs"], **kinds},
     }
+
+
+# JSON Schema of the description of a pair of gears.
+
+GEAR_PAIR_PROPERTIES: dict[type[DescriptionPart], Schema] = {
+    Display: PROPERTIES[Display],
+    Rack: {
+        "pressure_angle": above_zero("angle"),
+        "addendum": {"type": "number", "minimum": 0.3, "maximum": 2},
+        "clearance": {"type": "number", "minimum": 0, "maximum": 1},
+        "fillet": {"type": "number", "minimum": 0, "maximum": 1.5},
+    },
+    GearPair: {
+        "title": TEXT,
+        "kind": {"const": KIND},
+        "display": reference_to(Display),
+        "module": above_zero("length"),
+        "teeth": {
+            "type": "array",
+            "prefixItems": [_TEETH, {"anyOf": [_TEETH, {"const": RACK}]}],
+            "minItems": 2,
+            "maxItems": 2,
+        },
+        "internal": _FLAG,
+        "shifts": {"anyOf": [list_of(AMOUNT, 2, 2), {"enum": list(PURPOSES)}]},
+        "centre_distance": above_zero("length"),
+        "helix_angle": quantity_schema("angle"),
+        "rack": reference_to(Rack),
+        "width": above_zero("length"),
+        "pin": above_zero("length"),
+        "speed": quantity_schema("angular speed"),
+        "moment": quantity_schema("torque"),
+        "samples": {"type": "integer", "minimum": 2, "maximum": 10_000},
+    },
+}
+"""Keys of every part as a file spells them; a test compares them with the parts themselves."""
+
+
+def gear_pair_schema() -> Schema:
+    """JSON Schema (draft 2020-12) of the file of a pair of gears; what parts say about each other is not in it."""
+    return schema_of("centrode gear pair", GearPair, GEAR_PAIR_PROPERTIES)

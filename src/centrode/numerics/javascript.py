@@ -74,6 +74,7 @@ class PlaceFunction:
     fixed : variables of a place that stay when numbers of the mechanism change
     moving : those that change with them
     outputs : rows that are written
+    stages : numbers of outputs behind which a call may end; with them `run` takes the stage that is the last one
     """
 
     name: str
@@ -81,6 +82,7 @@ class PlaceFunction:
     fixed: tuple[str, ...]
     moving: tuple[str, ...]
     outputs: tuple[Node, ...]
+    stages: tuple[int, ...] = ()
 
     @property
     def _split(self) -> tuple[Graph, Graph]:
@@ -97,7 +99,7 @@ class PlaceFunction:
         before = _function(list(parts.outputs.values()), {}, fixed)
         rows = [*fixed, *parts.outputs, *moving]
         nodes = [rest.outputs[str(k)] for k in range(len(self.outputs))]
-        run = _function(nodes, self.of_mechanism, rows)
+        run = _function(nodes, self.of_mechanism, rows, self.stages)
         lists = f"fixed: {_names(fixed)}, moving: {_names(moving)}, parts: {len(parts.outputs)}, count: {len(nodes)}"
         return f"{self.name}: {{{lists},\nbefore: {before},\nrun: {run}}}"
 
@@ -123,8 +125,10 @@ def _escaped(text: str) -> str:
     )
 
 
-def _function(outputs: Sequence[Node], of_mechanism: Mapping[str, int], rows: Sequence[str]) -> str:
-    """A function over places: what is the same everywhere before its loop, the rest inside."""
+def _function(
+    outputs: Sequence[Node], of_mechanism: Mapping[str, int], rows: Sequence[str], stages: Sequence[int] = ()
+) -> str:
+    """A function over places: what is the same everywhere before its loop, the rest inside, stage by stage."""
     order = topological_order(outputs)
     along = {name: k for k, name in enumerate(rows)}
     moving: set[Node] = set()
@@ -138,25 +142,50 @@ def _function(outputs: Sequence[Node], of_mechanism: Mapping[str, int], rows: Se
     taken |= {node for node in outputs if node not in moving}
     names = {name: f"v[{k}]" for name, k in of_mechanism.items()}
     before, texts = _lines(still, names, list(taken), "c", of_loop=True)
-    inside, texts = _lines(
-        [node for node in order if node in moving],
-        {name: f"x{k}" for name, k in along.items()},
-        [node for node in outputs if node in moving],
-        "t",
-        texts,
-    )
-    used = [
-        k for name, k in along.items() if any(x.operation == VARIABLE and x.detail == name for x in order)
-    ]
-    read = [f"const x{k} = p[{_row(k)}];" for k in used]
-    written = [f"o[{_row(k)}] = {texts[node][0]};" for k, node in enumerate(outputs) if node in moving]
     filled = [
         f"o.fill({texts[node][0]}, {_start(k)}, {_start(k + 1)});"
         for k, node in enumerate(outputs)
         if node not in moving
     ]
-    loop = ["for (let i = 0; i < n; i++) {", *read, *inside, *written, "}"] if written else []
-    return "(v, p, n, o) => {\n" + "\n".join([*before, *filled, *loop]) + "\n}"
+    inside = _stages(outputs, [node for node in order if node in moving], along, texts, stages)
+    used = [
+        k for name, k in along.items() if any(x.operation == VARIABLE and x.detail == name for x in order)
+    ]
+    read = [f"const x{k} = p[{_row(k)}];" for k in used]
+    loop = ["for (let i = 0; i < n; i++) {", *read, *inside, "}"] if inside else []
+    last = ", last" if stages else ""
+    return f"(v, p, n, o{last}) => {{\n" + "\n".join([*before, *filled, *loop]) + "\n}"
+
+
+def _stages(
+    outputs: Sequence[Node],
+    order: Sequence[Node],
+    along: Mapping[str, int],
+    texts: dict[Node, Text],
+    stages: Sequence[int],
+) -> list[str]:
+    """What stands in the loop: lines that compute the moving outputs of each stage, then those that write them."""
+    names, moving = {name: f"x{k}" for name, k in along.items()}, frozenset(order)
+    ends = [node for node in outputs if node in moving]
+    uses = Counter(x for node in order for x in node.arguments)
+    lines: list[str] = []
+    first, begun, computed = 0, 0, set[Node]()
+    for stage, end in enumerate(sorted({*stages, len(outputs)})):
+        # nodes come in the order of the outputs: those of a stage are not needed before
+        own = [
+            node for node in topological_order(outputs[first:end]) if node in moving and node not in computed
+        ]
+        computed.update(own)
+        more, texts = _lines(own, names, ends, "t", texts, uses=uses, begun=begun)
+        begun += len(more)
+        lines += more
+        lines += [
+            f"o[{_row(k)}] = {texts[outputs[k]][0]};" for k in range(first, end) if outputs[k] in moving
+        ]
+        if end < len(outputs):
+            lines.append(f"if (last === {stage}) continue;")
+        first = end
+    return lines
 
 
 def _start(k: int) -> str:
@@ -174,9 +203,14 @@ def _lines(
     letter: str,
     known: Mapping[Node, Text] | None = None,
     of_loop: bool = False,
+    uses: Counter[Node] | None = None,
+    begun: int = 0,
 ) -> tuple[list[str], dict[Node, Text]]:
-    """Lines of nodes in order, and the text that stands for each; what the loop takes has a name or is a constant."""
-    uses = Counter(x for node in order for x in node.arguments)
+    """Lines of nodes in order, and the text that stands for each; what the loop takes has a name or is a constant.
+
+    `uses` counts how often each node is taken, where lines of others follow; `begun` lines precede these.
+    """
+    uses = Counter(x for node in order for x in node.arguments) if uses is None else uses
     ends = set(outputs)
     texts: dict[Node, Text] = dict(known or {})
     lines: list[str] = []
@@ -186,12 +220,15 @@ def _lines(
         elif node.operation == VARIABLE:
             text = names[str(node.detail)], ALONE
             if of_loop and node in ends:
-                lines.append(f"const {letter}{len(lines)} = {text[0]};")
-                text = f"{letter}{len(lines) - 1}", ALONE
+                text = _named(lines, f"{letter}{begun + len(lines)}", text)
         else:
             text = JAVASCRIPT.text(node, [texts[x] for x in node.arguments])
             if (of_loop and node in ends) or is_worth_a_line(node, text, uses[node], node in ends):
-                lines.append(f"const {letter}{len(lines)} = {text[0]};")
-                text = f"{letter}{len(lines) - 1}", ALONE
+                text = _named(lines, f"{letter}{begun + len(lines)}", text)
         texts[node] = text
     return lines, texts
+
+
+def _named(lines: list[str], name: str, text: Text) -> Text:
+    lines.append(f"const {name} = {text[0]};")
+    return name, ALONE

@@ -23,8 +23,8 @@ const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];
 const SUSPECT = 1e-8, SAFETY = 16;
 /* how much more than their bounds numbers may stray */
 const ROOM = 1 + 1e-6;
-/* nodes of the mesh that a wide cell stands for */
-const WIDE = 12;
+/* nodes of the mesh that a wide cell stands for, and cells that it falls into where that tells nothing */
+const WIDE = 12, NARROWER = 4;
 /* greatest change of an angle from one sample to the next at which its turns are counted there */
 const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
@@ -34,6 +34,7 @@ const BESIDE = 0.02, CIRCLE = 6 * WINDOW, AROUND = 20;
 const AT_THE_START = 1e-9;
 /* the search in cells: half width that is one place, parts of a cell, ways towards a place, and its limits */
 const FINEST = 1e-10, COARSE = 1e-6, PARTS = 4, HALVINGS = 26, MANY = 1000, MOST = 10000;
+const [NONE, KNOWN, UNKNOWN, ENDING] = [0, 1, 2, 3];
 const LOW = 0.25, DOUBTFUL = 1e-8, SLACK = 8, STEPS = 100;
 
 const bits = new Float64Array(1), words = new Uint32Array(bits.buffer);
@@ -134,40 +135,85 @@ function createMechanism(data) {
     return side;
   }
 
+  function wordAndOwner(name) {
+    const blank = name.indexOf(" "), word = name.slice(0, blank), of = name.slice(blank + 1);
+    return [word, word === "sign" ? Number(of) : of];
+  }
+
   function preparePlaces(f, rows, count) {
     const p = new Float64Array((f.fixed.length + f.parts + f.moving.length) * count);
     f.fixed.forEach((name, k) => p.set(rows[name], k * count));
     f.before(v, p, count, p.subarray(f.fixed.length * count));
     const start = (f.fixed.length + f.parts) * count;
     const moving = f.moving.map((name, k) => {
-      const row = p.subarray(start + k * count, start + (k + 1) * count);
-      const word = name.slice(0, name.indexOf(" ")), of = name.slice(name.indexOf(" ") + 1);
-      return { word, of: word === "sign" ? Number(of) : of, row };
+      const [word, of] = wordAndOwner(name);
+      return { word, of, row: p.subarray(start + k * count, start + (k + 1) * count) };
     });
-    return { f, p, count, moving, at: rows.parameter, o: new Float64Array(f.count * count) };
+    const parts = p.subarray(f.fixed.length * count);
+    return { f, p, parts, count, moving, at: rows.parameter, o: new Float64Array(f.count * count) };
   }
 
-  function fillMoving(places, nodes) {
-    for (const { word, of, row } of places.moving) {
-      if (word === "sign") {
-        if (crossings.has(of) && data.smooth) for (let i = 0; i < row.length; i++) row[i] = signAt(of, places.at[i]);
-        else row.fill(signs.get(of));
-      } else if (word === "near") {
-        const angle = unwound.get(of);
-        for (let i = 0; i < row.length; i++) row[i] = angle[nodes === undefined ? nearestNode(places.at[i]) : nodes[i]];
-      }
+  /* numbers of a row that moves with the numbers of the mechanism; `nodes` of the mesh next to places, where they are known */
+  function fillRow(word, of, row, at, nodes) {
+    if (word === "sign") {
+      if (crossings.has(of) && data.smooth) for (let i = 0; i < row.length; i++) row[i] = signAt(of, at[i]);
+      else row.fill(signs.get(of));
+    } else if (word === "near") {
+      const angle = unwound.get(of);
+      for (let i = 0; i < row.length; i++) row[i] = angle[nodes === undefined ? nearestNode(at[i]) : nodes[i]];
     }
   }
 
-  function run(places, nodes) {
+  function fillMoving(places, nodes) {
+    for (const { word, of, row } of places.moving) fillRow(word, of, row, places.at, nodes);
+  }
+
+  function run(places, nodes, last) {
     fillMoving(places, nodes);
-    places.f.run(v, places.p, places.count, places.o);
+    places.f.run(v, places.p, places.count, places.o, last);
     return places.o;
   }
 
-  /* a function at any places: numbers (outputs, places) in one row */
-  function evaluate(f, at, half) {
-    return run(preparePlaces(f, { parameter: at, half: half }, at.length));
+  /* Guards over any cells, up to the last one that is looked at: numbers (outputs, cells) in one row, which belongs to
+   * its purpose and is written anew by the next call. */
+  const rooms = new Map();
+  function cellsAt(purpose, { at, half, size }, last) {
+    const f = printed.cells, rowsOfPlaces = f.fixed.length + f.parts + f.moving.length;
+    let room = rooms.get(purpose);
+    if (room === undefined || room.size < size) {
+      const most = 2 * size;
+      room = { size: most, p: new Float64Array(rowsOfPlaces * most), o: new Float64Array(f.count * most) };
+      rooms.set(purpose, room);
+    }
+    const { p, o } = room, start = (f.fixed.length + f.parts) * size;
+    f.fixed.forEach((name, k) => p.set((name === "half" ? half : at).subarray(0, size), k * size));
+    f.before(v, p, size, p.subarray(f.fixed.length * size));
+    f.moving.forEach((name, k) => {
+      const [word, of] = wordAndOwner(name);
+      fillRow(word, of, p.subarray(start + k * size, start + (k + 1) * size), at);
+    });
+    f.run(v, p, size, o, last);
+    return o;
+  }
+
+  /* cells that grow in number: where they are and how wide */
+  function cellList() {
+    const cells = { at: new Float64Array(256), half: new Float64Array(256), size: 0 };
+    cells.add = (at, half) => {
+      if (cells.size === cells.at.length) {
+        for (const name of ["at", "half"]) {
+          const longer = new Float64Array(2 * cells.size);
+          longer.set(cells[name]);
+          cells[name] = longer;
+        }
+      }
+      cells.at[cells.size] = at;
+      cells.half[cells.size++] = half;
+    };
+    cells.addParts = (at, half, parts) => {
+      for (let q = 0; q < parts; q++) cells.add(at + half * ((2 * q + 1) / parts - 1), half / parts);
+    };
+    return cells;
   }
 
   const single = {};
@@ -175,12 +221,12 @@ function createMechanism(data) {
     single[name] = preparePlaces(printed[name], { parameter: new Float64Array(1) }, 1);
   }
   /* the same at one place, without new arrays; curves give value, slope and second derivative of each guard */
-  function evaluateAt(name, x) {
+  function evaluateAt(name, x, last) {
     const places = single[name], f = places.f;
     places.at[0] = x;
     if (f.fixed.length) places.p[0] = x;
-    f.before(v, places.p, 1, places.p.subarray(f.fixed.length));
-    return run(places);
+    f.before(v, places.p, 1, places.parts);
+    return run(places, undefined, last);
   }
 
   const atSamples = preparePlaces(printed.motion, given, n);
@@ -210,11 +256,34 @@ function createMechanism(data) {
 
   const largest = new Map();
 
-  /* nodes at which something may happen, by bounds over wide cells; null where nothing does, all of them without these */
+  /* nodes at which something may happen, by bounds over wide cells, then over narrower ones where these tell nothing; null
+   * where nothing happens, all of them without such cells */
+  const narrow = cellList(), around = cellList();
   function nodesToSearch() {
     for (const { group, ofRadicand } of guards) if (ofRadicand) largest.set(group, 0);
     if (wide === null) return guards.length ? allNodes : null;
-    const { count, half } = wide, o = run(wide.places);
+    const { low, half, count } = wide;
+    let rough = roughCells(run(wide.places), count, half, true);
+    if (rough === null) return null;
+    narrow.size = 0;
+    for (let i = 0; i < count; i++) if (rough[i]) narrow.addParts(low + half * (2 * i + 1), half, NARROWER);
+    rough = roughCells(cellsAt("narrow", narrow), narrow.size, half / NARROWER, false);
+    if (rough === null) return null;
+    const chosen = new Uint8Array(mesh.length), narrower = half / NARROWER;
+    let some = 0;
+    for (let i = 0; i < narrow.size; i++) {
+      if (!rough[i]) continue;
+      const from = Math.max(0, Math.floor((narrow.at[i] - narrower - low) / step) - 2);
+      const to = Math.min(mesh.length, Math.ceil((narrow.at[i] + narrower - low) / step) + 2);
+      for (let j = from; j < to; j++) if (!chosen[j]) { chosen[j] = 1; some++; }
+    }
+    const nodes = new Int32Array(some);
+    for (let j = 0, k = 0; j < mesh.length; j++) if (chosen[j]) nodes[k++] = j;
+    return nodes;
+  }
+
+  /* cells of one half width in which a guard may pass or touch zero; null where none does */
+  function roughCells(o, count, half, measures) {
     const rough = new Uint8Array(count);
     let some = false;
     for (let i = 0; i < count; i++) {
@@ -223,36 +292,32 @@ function createMechanism(data) {
         const value = o[3 * k * count + i], slope = o[(3 * k + 1) * count + i], bend = o[(3 * k + 2) * count + i];
         const strays = Math.abs(slope) * half + bend * (0.5 * half * half), size = Math.abs(value);
         const { group, ofRadicand } = guards[k];
-        if (ofRadicand && size + strays > largest.get(group)) largest.set(group, size + strays < Infinity ? size + strays : size);
+        if (measures && ofRadicand && size + strays > largest.get(group)) largest.set(group, size + strays < Infinity ? size + strays : size);
         if (closed && !(size > ROOM * strays)) { rough[i] = 1; some = true; }
         /* where a group is open all over a cell, those behind it have no value there */
         if (ofRadicand && value < 0 && size > ROOM * strays) closed = false;
       }
     }
-    if (!some) return null;
-    const chosen = new Uint8Array(mesh.length), each = (2 * half) / step;
-    for (let i = 0; i < count; i++) {
-      if (!rough[i]) continue;
-      const from = Math.max(0, Math.floor(i * each) - 2), to = Math.min(mesh.length, Math.ceil((i + 1) * each) + 2);
-      chosen.fill(1, from, to);
-    }
-    return allNodes.filter((k) => chosen[k]);
+    return some ? rough : null;
   }
 
   /* all guards at some nodes of the mesh: a row each of value, slope and bend */
   function guardsAt(nodes) {
     if (nodes.length === mesh.length) return run(cellsOnMesh(), allNodes);
-    const at = Float64Array.from(nodes, (k) => mesh[k]), half = Float64Array.from(nodes, (k) => halves[k]);
-    return evaluate(printed.cells, at, half);
+    around.size = 0;
+    for (let j = 0; j < nodes.length; j++) around.add(mesh[nodes[j]], halves[nodes[j]]);
+    return cellsAt("nodes", around);
   }
 
   function guardCurve(k) {
-    return (x) => { const o = evaluateAt("curves", x); return [o[3 * k], o[3 * k + 1], o[3 * k + 2]]; };
+    return (x) => { const o = evaluateAt("curves", x, k); return [o[3 * k], o[3 * k + 1], o[3 * k + 2]]; };
   }
   function guardBound(k, x) {
-    const o = evaluateAt("bounds", x);
+    const o = evaluateAt("bounds", x, k);
     return [o[2 * k], o[2 * k + 1]];
   }
+
+  const parted = [cellList(), cellList()];
 
   /* places where a guard passes zero, and where it touches zero */
   function zerosOf(guard, nodes, o) {
@@ -314,17 +379,18 @@ function createMechanism(data) {
     }
 
     /* rough cells in parts that are known: shorter and shorter towards places where something happens */
-    let pieces = [];
+    const pieces = [];
     const inside = new Map();
     for (const place of [...stops, ...minima]) {
       const j = indexOf(place.node);
       if (j !== undefined && rough[j] && Number.isFinite(place.at)) inside.set(j, [...(inside.get(j) ?? []), place.at]);
     }
-    let rest = [];
+    let [cells, finer] = parted;
+    cells.size = 0;
     for (let j = 0; j < count; j++) {
       if (!rough[j]) continue;
       const centre = mesh[nodes[j]], half = halves[nodes[j]], places = inside.get(j);
-      if (places === undefined) { rest.push(...partsOf(centre, half)); continue; }
+      if (places === undefined) { cells.addParts(centre, half, PARTS); continue; }
       places.sort((a, b) => a - b);
       places.forEach((place, q) => {
         const low = q > 0 ? 0.5 * (places[q - 1] + place) : centre - half;
@@ -332,24 +398,30 @@ function createMechanism(data) {
         for (const end of [low - place, high - place]) {
           for (let h = 0, share = 1; h <= HALVINGS; h++, share /= 2) {
             const way = end * share, wide = 0.25 * Math.abs(way);
-            if (wide > 0) rest.push({ centre: place + 0.75 * way, half: wide });
+            if (wide > 0) cells.add(place + 0.75 * way, wide);
           }
         }
       });
     }
-    while (rest.length) {
-      const cells = evaluate(printed.cells, Float64Array.from(rest, (c) => c.centre), Float64Array.from(rest, (c) => c.half));
-      const size = rest.length, judged = rest.map((cell, q) => {
-        const x = cells[3 * k * size + q], falls = cells[(3 * k + 1) * size + q], bent = cells[(3 * k + 2) * size + q];
-        const sure = (Math.abs(falls) + 0.5 * cell.half * bent) * cell.half < Math.abs(x) || Math.abs(falls) > bent * cell.half;
-        return { centre: cell.centre, half: cell.half, value: x, known: sure, node: -1, ends: sure || !Number.isFinite(falls) };
-      }).filter((cell) => Number.isFinite(cell.value));
-      const unknown = judged.filter((cell) => !cell.known).length;
-      const least = unit * (unknown <= MANY ? FINEST : unknown <= MOST ? COARSE : Infinity);
-      rest = [];
-      for (const cell of judged) {
-        if (cell.ends || cell.half <= least) pieces.push(cell); else rest.push(...partsOf(cell.centre, cell.half));
+    while (cells.size) {
+      const { size, at, half } = cells, numbers = cellsAt("parts", cells, k), judged = new Uint8Array(size);
+      let unknown = 0;
+      for (let q = 0; q < size; q++) {
+        const x = numbers[3 * k * size + q], falls = numbers[(3 * k + 1) * size + q], bent = numbers[(3 * k + 2) * size + q];
+        if (!Number.isFinite(x)) continue;
+        const sure = (Math.abs(falls) + 0.5 * half[q] * bent) * half[q] < Math.abs(x) || Math.abs(falls) > bent * half[q];
+        judged[q] = sure ? KNOWN : Number.isFinite(falls) ? UNKNOWN : ENDING;
+        if (!sure) unknown++;
       }
+      const least = unit * (unknown <= MANY ? FINEST : unknown <= MOST ? COARSE : Infinity);
+      finer.size = 0;
+      for (let q = 0; q < size; q++) {
+        if (judged[q] === NONE) continue;
+        if (judged[q] !== UNKNOWN || half[q] <= least) {
+          pieces.push({ centre: at[q], half: half[q], value: numbers[3 * k * size + q], known: judged[q] === KNOWN, node: -1 });
+        } else finer.addParts(at[q], half[q], PARTS);
+      }
+      [cells, finer] = [finer, cells];
     }
     /* a sign within the rounding error of the formulas is none */
     let most = greatest;
@@ -371,7 +443,7 @@ function createMechanism(data) {
     for (const stop of stops) {
       if (stop.wall) pieces.push({ centre: stop.at, half: finest, value: Infinity, known: false, node: -1 });
     }
-    pieces = pieces.map((piece, q) => [piece, q]).sort((a, b) => a[0].centre - b[0].centre || a[1] - b[1]).map(([piece]) => piece);
+    pieces.sort((a, b) => a.centre - b.centre);
 
     /* pairs of neighbours with a sign, between which only cells without one lie, and nothing that parts them */
     const others = [];
@@ -400,10 +472,6 @@ function createMechanism(data) {
     return { roots: solved(), touches: [...minima, ...others].filter((place) => place.touches).map((place) => place.at) };
   }
 
-  function partsOf(centre, half) {
-    return Array.from({ length: PARTS }, (_x, q) => ({ centre: centre + half * ((2 * q + 1) / PARTS - 1), half: half / PARTS }));
-  }
-
   /* angles that gears and wheels depend on, counted along the mesh outwards from the initial position */
   function countAngles() {
     data.counted.forEach(([key, start], c) => {
@@ -415,15 +483,18 @@ function createMechanism(data) {
     });
   }
 
-  /* gaps filled by the last known value on the way from the start */
-  function fillGaps(...rows) {
-    const there = (j) => rows.every((row) => Number.isFinite(row[j]));
-    const known = allNodes.find(there);
+  /* gaps filled by the last known value on the way from the start; both rows of directions together */
+  function fillGaps(row, other = row) {
+    const there = (j) => Number.isFinite(row[j]) && Number.isFinite(other[j]);
+    let known = 0;
+    while (known < row.length && !there(known)) known++;
+    const [value, beside] = known < row.length ? [row[known], other[known]] : [0, 0];
     for (const from of [1, -1]) {
       let last = -1;
       for (let j = startNode; j >= 0 && j < mesh.length; j += from) {
-        if (there(j)) last = j;
-        else for (const row of rows) row[j] = last >= 0 ? row[last] : known === undefined ? 0 : row[known];
+        if (there(j)) { last = j; continue; }
+        row[j] = last >= 0 ? row[last] : value;
+        other[j] = last >= 0 ? other[last] : beside;
       }
     }
   }
@@ -578,9 +649,10 @@ function createMechanism(data) {
     residual[i] = o.subarray(rows.length * AROUND, (rows.length + 1) * AROUND).reduce((a, b) => Math.max(a, b));
   }
 
-  function judgeSamples() {
+  /* `computed`: whether the rows of the samples are those of these numbers already */
+  function judgeSamples(computed) {
     status.fill(OK);
-    atSamples.f.run(v, atSamples.p, n, atSamples.o);
+    if (!computed) atSamples.f.run(v, atSamples.p, n, atSamples.o);
     /* without a sign the root is zero exactly: statuses of groups behind are judged with it */
     for (let k = 0; k <= radicands.length && judgeRadicands(); k++) {
       atSamples.f.run(v, atSamples.p, n, atSamples.o);
@@ -589,9 +661,10 @@ function createMechanism(data) {
     }
     mend();
     const bound = data.residual_bound;
+    if (events.length || !residual.every((each) => each <= bound)) {
+      for (const row of rows) for (let i = 0; i < n; i++) if (status[i] === OK && !Number.isFinite(row[i])) status[i] = SINGULAR;
+    }
     for (let i = 0; i < n; i++) {
-      let doubtful = status[i] !== OK || !(residual[i] <= bound) || events.length > 0;
-      if (doubtful && status[i] === OK && rows.some((row) => !Number.isFinite(row[i]))) status[i] = SINGULAR;
       if (status[i] !== OPEN && (drive[i] < reach[0] - margins[i] || drive[i] > reach[1] + margins[i])) status[i] = CUT_OFF;
       if (impossible.has(i)) status[i] = OPEN;
       if (status[i] !== OPEN && residual[i] > bound) { status[i] = OPEN; residual[i] = NaN; }
@@ -611,12 +684,18 @@ function createMechanism(data) {
   }
 
   /* angles with their turns: from sample to sample where these lie close, else along the mesh */
+  let turnsChanged = false;   // by the last call, of what rows are computed from
   function unwind() {
+    turnsChanged = false;
     const whole = Math.abs(drive[startSample] - initial) <= 0.05 * unit && status.every((each) => each === OK);
     for (const [link, place, start] of data.angles) {
       const row = rows[place], turns = turnRows.get(link), raw = turns === undefined ? row : row.slice();
       if (!(whole && unwindBySamples(row, start))) unwindByMesh(link, row, start);
-      if (turns !== undefined) for (let i = 0; i < n; i++) turns[i] = row[i] === row[i] ? Math.round((row[i] - raw[i]) / TURN) : 0;
+      if (turns === undefined) continue;
+      for (let i = 0; i < n; i++) {
+        const whole = row[i] === row[i] ? Math.round((row[i] - raw[i]) / TURN) : 0;
+        if (whole !== turns[i]) { turns[i] = whole; turnsChanged = true; }
+      }
     }
   }
 
@@ -624,8 +703,8 @@ function createMechanism(data) {
     for (const from of [1, -1]) {
       for (let i = startSample + from; i >= 0 && i < n; i += from) {
         const change = row[i] - row[i - from];
-        const jump = change - TURN * Math.round(change / TURN);
-        if (!(Math.abs(jump) < MOST_TURN)) return false;
+        if (Math.abs(change) < MOST_TURN) continue;
+        if (!(Math.abs(change - TURN * Math.round(change / TURN)) < MOST_TURN)) return false;
       }
     }
     let shift = TURN * rounded((start - row[startSample]) / TURN), moves = shift !== 0;
@@ -652,7 +731,10 @@ function createMechanism(data) {
     const sine = rotorsKnown.slice((2 * which + 1) * size, (2 * which + 2) * size);
     fillGaps(cosine, sine);
     /* rotors of hinges are longer or shorter than 1 */
-    for (let j = 0; j < size; j++) cosine[j] = Math.cos(Math.atan2(sine[j], cosine[j]));
+    for (let j = 0; j < size; j++) {
+      const length = Math.sqrt(cosine[j] * cosine[j] + sine[j] * sine[j]);
+      if (length > 0) cosine[j] /= length;
+    }
     const turns = new Int32Array(size);
     for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + passed(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
     const shift = rounded((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];
@@ -691,9 +773,11 @@ function createMechanism(data) {
       /* residuals of what gears turn and some loads depend on the turns of angles, so these come first */
       status.fill(OK);
       atSamples.f.run(v, atSamples.p, n, atSamples.o);
+      const bare = data.angles.map(([, place]) => rows[place].slice());
       unwind();
+      data.angles.forEach(([, place], k) => rows[place].set(bare[k]));
     }
-    judgeSamples();
+    judgeSamples(data.turns_matter && !turnsChanged);
     settle();
     unwind();
     const low = Math.min(initial, drive[0], drive[n - 1]) - 1e-9 * unit;

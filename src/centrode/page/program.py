@@ -224,16 +224,22 @@ def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, va
     moving += [near_of(key) for key in traced.counted] + [turns_of(link) for link in traced.rotors]
     fixed = PLACE
 
-    def function(name: str, outputs: Sequence[Node]) -> str:
-        return PlaceFunction(name, of_mechanism, fixed, tuple(moving), tuple(outputs)).source
+    def function(name: str, outputs: Sequence[Node], stages: Sequence[int] = ()) -> str:
+        return PlaceFunction(name, of_mechanism, fixed, tuple(moving), tuple(outputs), tuple(stages)).source
+
+    def of_guards(name: str, numbers: Sequence[Sequence[Node]]) -> str:
+        # what looks at one guard computes nothing of those behind it
+        each = len(numbers[0]) if numbers else 0
+        stages = [each * (k + 1) for k in range(len(numbers))]
+        return function(name, [x for some in numbers for x in some], stages)
 
     motion = [row.node for row in traced.rows] + [traced.residual, *traced.at_samples.values()]
     members = [
         f"numbers: {once(_numbers(free, varied), {path: k for k, path in enumerate(free.paths)})}",
         function("motion", motion),
-        function("cells", [x for three in traced.cells.values() for x in three]),
-        function("curves", [x for three in traced.curves.values() for x in three]),
-        function("bounds", [x for two in traced.bounds.values() for x in two]),
+        of_guards("cells", list(traced.cells.values())),
+        of_guards("curves", list(traced.curves.values())),
+        of_guards("bounds", list(traced.bounds.values())),
         function("rotors", [x for two in traced.rotors.values() for x in two]),
         function("counted", list(traced.counted.values())),
     ]

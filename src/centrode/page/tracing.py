@@ -287,11 +287,17 @@ def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]
     try:
         if not mechanism.loads and not masses_of(mechanism):
             return {}, ""
+        if solved.ready.kinematics.path.by_time:
+            why = _(
+                "with several drives they are an inertia matrix and a generalised force of each drive, "
+                "which centrode reduce computes"
+            )
+            return {}, why
         check_reducible(solved)
         found = {name: reduced_number(name, solved, values) for name in REDUCED}
         return found | {BALANCING: balancing_number(solved, values)}, ""
-    except Untraceable as why:
-        return {}, _(why.reason)
+    except Untraceable as untraceable:
+        return {}, _(untraceable.reason)
     except InputError as failure:
         return {}, str(failure)
 

@@ -341,12 +341,14 @@ class AreaPath:
     name : in the legend
     x, y : (k), in the units of the diagram's labels; NaN is a gap
     kind : as of an area
+    pen : its place among paths that are told apart by their pens; None where the kind says enough
     """
 
     name: Text
     x: Array
     y: Array
     kind: AreaKind = AreaKind.MAIN
+    pen: int | None = None
 
 
 @dataclass(frozen=True)

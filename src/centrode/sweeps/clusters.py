@@ -13,6 +13,7 @@ import importlib.util
 import json
 import logging
 import queue
+import signal
 import socket
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -49,12 +50,25 @@ PATIENCE = 10.0
 """Seconds without a worker after which that is told."""
 TICK = 0.5
 """Seconds between looks at the scheduler while nothing is finished."""
+OF_WORKERS: Mapping[str, Any] = {
+    "distributed.scheduler.allowed-failures": DEATHS,
+    # a look at the stack of the computing thread each 10 ms, which nobody reads
+    "distributed.worker.profile.enabled": False,
+    # without a low MALLOC_TRIM_THRESHOLD_, by which each array of a kernel would be fetched from the system anew
+    "distributed.nanny.pre-spawn-environ": {
+        "OMP_NUM_THREADS": 1,
+        "MKL_NUM_THREADS": 1,
+        "OPENBLAS_NUM_THREADS": 1,
+    },
+}
+"""Settings of `distributed` for workers of this machine."""
 OF_CONNECTION = ("ClosedClientError", "CancelledError", "FutureCancelledError", "FuturesCancelledError")
 """Failures of a client whose scheduler is gone."""
 
 # heavy, an extra
 _distributed = functools.partial(importlib.import_module, "distributed")
 _dask = functools.partial(importlib.import_module, "dask")
+_resource_tracker = functools.partial(importlib.import_module, "multiprocessing.resource_tracker")
 
 
 # What workers must have.
@@ -345,26 +359,60 @@ def open_cluster(cluster: ClusterSource) -> Iterator[Cluster]:
             yield Cluster(cluster, str(getattr(cluster.scheduler, "address", "") or _("the scheduler")))
 
 
-def _local(count: int) -> Any:
+@contextmanager
+def _local(count: int) -> Iterator[Any]:
     # imported first: its own settings come with it, and would go with the block
     distributed = _distributed()
-    with _dask().config.set({"distributed.scheduler.allowed-failures": DEATHS}):
-        return distributed.LocalCluster(
-            n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", host="127.0.0.1",
+    with _dask().config.set(OF_WORKERS):
+        machines = distributed.LocalCluster(
+            n_workers=0, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", host="127.0.0.1",
             silence_logs=logging.CRITICAL,
         )  # fmt: skip
+    with machines:
+        machines.sync(_leave_interrupts_to_the_client)
+        with _dask().config.set(OF_WORKERS):
+            machines.scale(count)
+            machines.wait_for_workers(count)
+        yield machines
+
+
+async def _leave_interrupts_to_the_client() -> None:
+    """Ctrl-C reaches all processes of a terminal: workers, begun by this thread, take the mask of it and go on."""
+    if hasattr(signal, "pthread_sigmask"):
+        # where it is begun by the first worker it takes the mask away from the thread
+        _resource_tracker().ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+
+
+CERTIFICATES = "DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ..._CLIENT__CERT, ..._CLIENT__KEY"
+"""Variables that name the files of certificates, see `distributed.comm.tls` in the settings of `distributed`."""
+
+
+def _check_certificates(address: str) -> None:
+    """InputError where an address needs certificates and the settings of `distributed` give none that can be read."""
+    if not address.startswith("tls://") or _dask().config.get("distributed.client.security-loader", None):
+        return
+    repair = _("name their files in the settings of distributed: {variables}").format(variables=CERTIFICATES)
+    try:
+        context = _distributed().Security().get_connection_args("client")["ssl_context"]
+    except OSError as failure:
+        # of a certificate that is none too: failures of TLS are of this kind
+        what = _("the certificates cannot be read: {reason}").format(reason=failure.strerror or failure)
+        raise InputError(address, what, repair) from failure
+    if context is None:
+        raise InputError(address, _("an address of this kind needs certificates"), repair)
 
 
 def _client_of(address: str) -> Any:
+    _check_certificates(address)
     try:
         return _distributed().Client(address, timeout=CONNECTING, set_as_default=False)
     except (OSError, ValueError, TypeError) as failure:
         reason = str(failure).partition("\n")[0] or type(failure).__name__
         what = _("no scheduler answers there: {reason}").format(reason=reason)
-        repair = _(
-            "start one with: dask scheduler; for tls:// name certificates in the settings of distributed"
-        )
-        raise InputError(address, what, repair) from failure
+        raise InputError(
+            address, what, _("look at the address, or start one with: dask scheduler")
+        ) from failure
 
 
 def _close(client: Any) -> None:

@@ -22,8 +22,6 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import Any, Protocol
 
-import lazy_loader
-
 from centrode.errors import InputError
 from centrode.files.drafts import (
     clear_drafts,
@@ -211,16 +209,22 @@ class FolderStorage:
         remove_file(self.path / name)
 
     def marks(self, under: str) -> Iterator[tuple[str, dict[str, Any] | None]]:
-        # any file may lie there
-        for file in (self.path / under).glob("*/*.json"):
-            yield file.relative_to(self.path).as_posix(), table_of(read_bounded(file, GREATEST))
+        # any file may lie there; texts and not paths, as there may be a hundred thousand
+        for folder in _folders_in(self.path / under):
+            with os.scandir(folder) as entries:
+                for entry in entries:
+                    if entry.name.endswith(".json"):
+                        yield (
+                            f"{under}/{folder.name}/{entry.name}",
+                            table_of(read_bounded(entry.path, GREATEST)),
+                        )
 
     def pieces(self, name: str, size: int) -> Iterator[bytes] | None:
-        file = self.path / name
+        file = f"{self.path}/{name}"
         try:
-            status = file.stat()
+            status = os.stat(file)
         except NotADirectoryError as none:
-            raise FileNotFoundError(str(file)) from none
+            raise FileNotFoundError(file) from none
         # a size that is wrong says so without reading
         if not stat.S_ISREG(status.st_mode) or status.st_size != size:
             return None
@@ -248,9 +252,10 @@ class FolderStorage:
                 remove_file(entry)
 
     def tidy(self) -> None:
-        for draft in self.path.rglob("*.partial"):
-            if DRAFT.fullmatch(draft.name):
-                remove_file(draft)
+        for folder, _folders, files in os.walk(self.path):
+            for name in files:
+                if name.endswith(".partial") and DRAFT.fullmatch(name):
+                    remove_file(Path(folder, name))
 
     def for_zarr(self) -> Any:
         return str(self.path)
@@ -260,23 +265,32 @@ def _foreign_error(place: str) -> InputError:
     return InputError(place, _("the folder holds something else"), _("give another path"))
 
 
-def _pieces_of(file: Path) -> Iterator[bytes]:
-    with file.open("rb") as stream:
+def _folders_in(folder: Path) -> list[Path]:
+    """The folders directly in a folder; none where there is no such folder."""
+    try:
+        with os.scandir(folder) as entries:
+            return [Path(entry) for entry in entries if entry.is_dir()]
+    except (FileNotFoundError, NotADirectoryError):
+        return []
+
+
+def _pieces_of(file: str) -> Iterator[bytes]:
+    with open(file, "rb") as stream:
         yield from iter(lambda: stream.read(PIECE), b"")
 
 
-def read_bounded(file: Path, most: int) -> bytes | None:
+def read_bounded(file: Path | str, most: int) -> bytes | None:
     """Bytes of a regular file; None where it is none, cannot be read or has more than `most`."""
     try:
         status = os.stat(file)
         if not stat.S_ISREG(status.st_mode) or status.st_size > most:
             return None
-        with file.open("rb") as stream:
-            content = stream.read(most + 1)
+        with open(file, "rb", buffering=0) as stream:
+            # one byte more than there was, as the file may have grown
+            content = stream.read(status.st_size + 1)
     except OSError:
-        # one byte more than allowed, as the file may have grown
         return None
-    return content if len(content) <= most else None
+    return content if len(content) == status.st_size else None
 
 
 # An object store.
@@ -296,7 +310,8 @@ TOGETHER = 500
 BELOW = ("aiobotocore", "aiohttp", "asyncio", "botocore", "fsspec", "s3fs")
 """Libraries that an object store is reached by."""
 
-_fsspec = functools.partial(lazy_loader.load, "fsspec")
+_fsspec = functools.partial(importlib.import_module, "fsspec")
+_zarr = functools.partial(importlib.import_module, "zarr")
 _storage = functools.partial(importlib.import_module, "zarr.storage")
 
 
@@ -503,4 +518,4 @@ def _is_alive(process: object) -> bool:
 def zarr_array(storage: Storage, name: str) -> Any:
     """The numbers of an array of a store."""
     with _as_refusals():
-        return lazy_loader.load("zarr").open_group(storage.for_zarr(), mode="r")[name][...]
+        return _zarr().open_group(storage.for_zarr(), mode="r")[name][...]

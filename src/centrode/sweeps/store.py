@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import importlib
 import importlib.util
 import json
 import math
@@ -22,7 +23,6 @@ from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any, Protocol, TypeAlias
 
-import lazy_loader
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -91,16 +91,22 @@ class Blocks:
         end = (outer * self.shape[self.axis] + min((piece + 1) * self.step, self.shape[self.axis])) * inner
         return first, end
 
-    def region(self, block: int) -> tuple[slice, ...]:
-        """Where a block stands in an array of the shape."""
+    def place(self, block: int) -> tuple[int, ...]:
+        """Number of a block along each dimension."""
         outer, piece = divmod(block, self.pieces)
-        places: list[slice] = []
-        # the place of a block in the outer dimensions, the last one fastest
+        places: list[int] = []
+        # the outer dimensions, the last one fastest
         for extent in reversed(self.shape[: self.axis]):
             outer, place = divmod(outer, extent)
-            places.insert(0, slice(place, place + 1))
-        along = slice(piece * self.step, min((piece + 1) * self.step, self.shape[self.axis]))
-        return (*places, along, *[slice(0, extent) for extent in self.shape[self.axis + 1 :]])
+            places.insert(0, place)
+        return (*places, piece, *[0] * (len(self.shape) - self.axis - 1))
+
+    def region(self, block: int) -> tuple[slice, ...]:
+        """Where a block stands in an array of the shape."""
+        return tuple(
+            slice(place * step, min((place + 1) * step, extent))
+            for place, step, extent in zip(self.place(block), self.chunk, self.shape, strict=True)
+        )
 
 
 # What a sweep came to: mechanisms by how far they move, worst residual, extremes; added up block by block.
@@ -372,15 +378,17 @@ class Marks:
 
     def chunks(self, block: int) -> Iterator[tuple[str, int]]:
         """Name of a block's chunk in each column, and the bytes that it has if it is there."""
-        extents = self.blocks.chunk
-        place = [
-            str(along.start // extent)
-            for along, extent in zip(self.blocks.region(block), extents, strict=True)
+        place = "/".join(map(str, self.blocks.place(block)))
+        for column, behind, size in self._columns:
+            yield f"{column}/c/{place}{behind}", size
+
+    @functools.cached_property
+    def _columns(self) -> list[tuple[str, str, int]]:
+        """Of each column its name, what a chunk's name ends with, and the bytes of a chunk."""
+        lanes = math.prod(self.blocks.chunk)
+        return [
+            (column.name, "/0" * len(column.shape), lanes * column.bytes + CHECK) for column in self.columns
         ]
-        for column in self.columns:
-            inner = ["0"] * len(column.shape)
-            size = math.prod(extents) * column.bytes + CHECK
-            yield "/".join((column.name, "c", *place, *inner)), size
 
     def write(self, block: int, tally: Tally, contents: Mapping[str, bytes | None]) -> None:
         """Mark a block whose chunks are written; `contents` are what was written by the names of the chunks."""
@@ -404,7 +412,7 @@ class Marks:
         """
         # any file may lie there: names that are no block's are left alone
         for name, told in self.storage.marks(f"{PROGRESS}/{DONE}"):
-            block = self._block(PurePosixPath(name))
+            block = self._block(*name.split("/")[-2:])
             # no mark at all: the block is simply not done
             if block is None or told is None or not isinstance(told.get("sha256"), str):
                 continue
@@ -416,14 +424,15 @@ class Marks:
             )
             yield block, tally if whole else None
 
-    def _block(self, file: PurePosixPath) -> int | None:
-        """The block whose mark has this name, if any has."""
+    def _block(self, folder: str, file: str) -> int | None:
+        """The block whose mark has this name in a folder of this name, if any has."""
+        stem = file.removesuffix(".json")
         # digits of other scripts, and numbers longer than any block's, are refused before they are read
-        if not (file.stem.isascii() and file.stem.isdigit()) or len(file.stem) > len(str(len(self.blocks))):
+        if not (stem.isascii() and stem.isdigit()) or len(stem) > len(str(len(self.blocks))):
             return None
-        block = int(file.stem)
-        own = block < len(self.blocks) and file.parent.name == str(block // TOGETHER)
-        return block if own and file.stem == str(block) else None
+        block = int(stem)
+        own = block < len(self.blocks) and folder == str(block // TOGETHER)
+        return block if own and stem == str(block) else None
 
     def _tally(self, block: int, told: object) -> Tally | None:
         """The tally in a mark; None where it is none of this block."""
@@ -490,9 +499,9 @@ FORMAT = 3
 NAMED = 5
 """Damaged blocks that a warning names at most."""
 
-_zarr = functools.partial(lazy_loader.load, "zarr")  # an extra, and slower to import than NumPy
-_codecs = functools.partial(lazy_loader.load, "zarr.codecs")
-_storage = functools.partial(lazy_loader.load, "zarr.storage")
+_zarr = functools.partial(importlib.import_module, "zarr")  # an extra, and slower to import than NumPy
+_codecs = functools.partial(importlib.import_module, "zarr.codecs")
+_storage = functools.partial(importlib.import_module, "zarr.storage")
 
 
 class BlockWriter:

@@ -94,7 +94,7 @@ class SweepPlan:
                 count *= 4
 
 
-TRIED, MEASURED = 64, 0.1
+TRIED, MEASURED = 64, 0.05
 """Mechanisms for which kernels are made before time is taken; seconds after which a time counts."""
 
 

@@ -29,6 +29,7 @@ COMMANDS = (
     "simulate",
     "balance",
     "cam",
+    "gears",
     "centres",
     "centrodes",
     "diagrams",
@@ -79,6 +80,7 @@ CHAPTERS = (
     "walking",
     "contact",
     "choice",
+    "gear-pair",
     "conclusions",
 )
 """As a document has them."""

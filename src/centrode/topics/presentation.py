@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from centrode.model.cam_files import AnyCam
+    from centrode.model.gear_pairs import GearPair
     from centrode.model.mechanism import Display, Mechanism
     from centrode.sheets.sheet import Sheet, Table
 
@@ -132,16 +133,17 @@ def sheet_of(result: Any) -> Sheet:
 
 
 def display_of(result: Any) -> Display:
-    """The units of the description that a result knows: that of its mechanism or of its cam."""
+    """The units of the description that a result knows."""
     return description_of(result).display
 
 
-def description_of(result: Any) -> Mechanism | AnyCam:
-    """The mechanism or the cam that a result knows."""
+def description_of(result: Any) -> Mechanism | AnyCam | GearPair:
+    """The mechanism, the cam or the pair of gears that a result knows."""
     dataset = result.dataset if isinstance(result, Result) else result
     if is_result(dataset):
         return _parsed_description(dataset)
-    return cast("Mechanism | AnyCam", result.mechanism if hasattr(result, "mechanism") else result.cam)
+    known = (getattr(result, name, None) for name in ("mechanism", "cam", "gear_pair"))
+    return cast("Mechanism | AnyCam | GearPair", next(one for one in known if one is not None))
 
 
 def summary(result: Any) -> str:

@@ -1054,6 +1054,15 @@ CAM_CHOICE = Topic(
     subject="cam",
 )
 
+GEAR_PAIR = Topic(
+    name="gear-pair",
+    compute=Lazily("centrode.gears.results", "gear_pair"),
+    result=Lazily("centrode.gears.results", "GearPairResults"),
+    view=Lazily("centrode.views.gear_pair", "sheet"),
+    document=InDocuments(chapters=(ChapterOfTopic("gear-pair", mark("Gear pair")),), instants=False),
+    subject="gear pair",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1069,6 +1078,7 @@ TOPICS: tuple[Topic, ...] = (
     SHAKING,
     FOLLOWER_MOTION,
     MOTION_LAWS,
+    GEAR_PAIR,
     ROTATABILITY,
     REPAIR,
     FORCE_POLYGONS,

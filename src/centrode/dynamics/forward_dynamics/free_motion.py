@@ -71,6 +71,8 @@ Number: TypeAlias = Any
 
 RANK = 1e-9
 """A singular value below this share of the greatest counts as none."""
+CONSISTENT = 1e-9
+"""Speeds contradict one another beyond this share of the fastest."""
 CONDITION = 1e-9
 """Below this share of its greatest eigenvalue the mass matrix has no inverse."""
 LOOKS = (0.0, 0.13, -0.17, 0.29)
@@ -325,32 +327,25 @@ class FreeMotion:
         still = equations.terms(ARRAYS, values, [0.0] * count, 0.0)
         rows = [_dense(row, count) for row in still.rows]
         right = [-float(x) for x in still.speeds]
-        scales = list(1.0 / equation_units(equations.constraints, equations.numbers))
         asked = {path: _numbers_of(speed) for path, speed in speeds.items()}
-        wanted: list[tuple[str, Array, float]] = []
-        for path, numbers in asked.items():
-            wanted += [
-                (path, row, x) for row, x in zip(self._speed_rows(coordinates, path), numbers, strict=True)
-            ]
         mass = _mass_matrix(still.mass, count, units_of(self.tree, equations.numbers))
-        matrix = np.array([*rows, *(row for _path, row, _x in wanted)]).reshape(
-            len(rows) + len(wanted), count
-        )
-        targets = np.array([*right, *(x for _path, _row, x in wanted)])
-        if not len(matrix):
-            return np.zeros(count)
-        found = _least_energy(mass, matrix, targets)
-        gap = np.abs(matrix @ found - targets)
-        fastest = max(
-            [float(np.max(np.abs(found), initial=0.0)), *(abs(x) for _p, _r, x in wanted)], default=0.0
-        )
-        scale = max(1.0, float(equations.numbers.scale)) * fastest
-        del scales
-        for k, (path, _row, speed) in enumerate(wanted, start=len(rows)):
-            if gap[k] > 1e-9 * scale or np.max(gap[: len(rows)], initial=0.0) > 1e-9 * scale:
-                what = _("the speed {speed:.6g} contradicts the constraints or the other speeds").format(
-                    speed=speed
-                )
+        found = np.zeros(count)
+        if rows:
+            found = _least_energy(mass, np.array(rows), np.array(right))
+        for path, numbers in asked.items():
+            # one after the other, so that what contradicts those before it is named
+            wanted = self._speed_rows(coordinates, path)
+            if len(wanted) != len(numbers):
+                what = _("it takes {count} numbers").format(count=len(wanted))
+                raise InputError(f"[simulation.speeds] {path}", what, _("give one for each axis"))
+            rows += wanted
+            right += numbers
+            matrix, targets = np.array(rows), np.array(right)
+            found = _least_energy(mass, matrix, targets)
+            fastest = max(float(np.max(np.abs(found), initial=0.0)), *(abs(x) for x in right))
+            gap = float(np.max(np.abs(matrix @ found - targets)))
+            if gap > CONSISTENT * max(1.0, float(equations.numbers.scale)) * fastest:
+                what = _("it contradicts the constraints or the speeds before it")
                 raise InputError(f"[simulation.speeds] {path}", what, _("leave it out, or correct it"))
         return found
 

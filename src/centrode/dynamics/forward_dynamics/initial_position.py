@@ -154,14 +154,17 @@ def position_of_description(mechanism: Mechanism, tree: SpanningTree) -> Initial
 
 def _has_all_drives(mechanism: Mechanism, tree: SpanningTree) -> bool:
     """Whether drives are as many as the mobility at a random position near the described one."""
+    if len(mechanism.drives) < len(tree.coordinates) - sum(closure.size for closure in tree.closures):
+        # not even if every closure took a freedom away
+        return False
     numbers = _with_any_phases(mechanism, tree, dimensions_of(mechanism))
     generator = np.random.default_rng(29)
     guess = generator.uniform(0.1, 1.5, len(tree.coordinates)) * units_of(tree, numbers)
     try:
         place = close_position(tree, numbers, tree.closures, guess, {})
     except InputError:
-        # it may close elsewhere: the assembly says what is wrong
-        return True
+        # it closes elsewhere; anywhere closures are as independent as they are in general
+        place = guess
     _left, rows = residuals_and_rows(tree, numbers, tree.closures, place, {})
     scaled = rows * units_of(tree, numbers) / equation_units(tree.closures, numbers)[:, None]
     rank = int(np.sum(np.linalg.svd(scaled, compute_uv=False) > 1e-9)) if len(scaled) else 0

@@ -9,12 +9,12 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 DIRECTORY = Path(__file__).parent
-FOLDERS = {"linkage": DIRECTORY, "cam": DIRECTORY / "cams"}
+FOLDERS = {"linkage": DIRECTORY, "cam": DIRECTORY / "cams", "gear pair": DIRECTORY / "gears"}
 """Where the descriptions of each kind lie."""
 
 
 def example_names(kind: str = "linkage") -> tuple[str, ...]:
-    """Names of the built-in mechanisms of a kind, "linkage" or "cam", sorted.
+    """Names of the built-in mechanisms of a kind, "linkage", "cam" or "gear pair", sorted.
 
     Examples
     --------

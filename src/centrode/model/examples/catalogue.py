@@ -12,6 +12,7 @@ from centrode.model.cam_files import AnyCam, parse_cam, read_cam
 from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.follower_cam import PlateCam
+from centrode.model.gear_pairs import GearPair, parse_gear_pair, read_gear_pair
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import likely, read_file, value_text
 from centrode.model.toml import is_cam, toml_tables
@@ -21,17 +22,25 @@ PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
 MechanismSource: TypeAlias = Mechanism | str | Path
 """A mechanism, or the name of its file or of a built-in one: what every function of a mechanism takes."""
 CamSource: TypeAlias = AnyCam | str | Path
+GearPairSource: TypeAlias = GearPair | str | Path
 DescriptionSource: TypeAlias = Mechanism | AnyCam | str | Path
 
 
+GearPairName: TypeAlias = Literal[
+    "internal-gear-pair", "rack-and-pinion", "shifted-gear-pair", "helical-gear-pair"
+]
+
+
+@overload
+def example(name: GearPairName) -> GearPair: ...  # type: ignore[overload-overlap]
 @overload
 def example(name: CamName) -> Cam: ...  # type: ignore[overload-overlap]
 @overload
 def example(name: PlateName) -> PlateCam: ...  # type: ignore[overload-overlap]
 @overload
 def example(name: str) -> Mechanism: ...
-def example(name: str) -> Mechanism | Cam | PlateCam:
-    """The built-in mechanism or cam of a name; InputError if there is none.
+def example(name: str) -> Mechanism | Cam | PlateCam | GearPair:
+    """The built-in mechanism, cam or pair of gears of a name; InputError if there is none.
 
     Examples
     --------
@@ -41,6 +50,8 @@ def example(name: str) -> Mechanism | Cam | PlateCam:
     """
     if name in example_names("cam"):
         return parse_cam(example_text(name), f"{name}.toml")
+    if name in example_names("gear pair"):
+        return parse_gear_pair(example_text(name), f"{name}.toml")
     return parse_mechanism(example_text(name), f"{name}.toml")
 
 
@@ -68,11 +79,27 @@ def load_cam(file_or_example: str | Path) -> AnyCam:
     return parse_cam(example_text(name), f"{name}.toml")
 
 
+def load_gear_pair(file_or_example: str | Path) -> GearPair:
+    """The pair of gears in a TOML file, or the built-in one of that name; a file goes before an example.
+
+    Raises InputError if there is neither, or the file is no description of a pair.
+    """
+    path = _file(file_or_example)
+    if path is not None:
+        return read_gear_pair(path)
+    name = str(file_or_example)
+    return parse_gear_pair(example_text(name), f"{name}.toml")
+
+
 def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
     path = _file(file_or_example)
     if path is None:
-        return example(str(file_or_example))
+        found = example(str(file_or_example))
+        if isinstance(found, GearPair):
+            repair = _("compute it with: centrode gears; in Python with gear_pair")
+            raise InputError(str(file_or_example), _("this describes a pair of gears, not a linkage"), repair)
+        return found
     text = read_file(path)
     reads = parse_cam if is_cam(toml_tables(text, path.name)) else parse_mechanism
     return reads(text, path.name, path.parent)
@@ -91,6 +118,16 @@ def cam_of(source: CamSource) -> AnyCam:
     source = load_cam(source) if isinstance(source, str | Path) else source
     if not isinstance(source, Cam | PlateCam):
         raise _refusal(_("this function takes a cam, its file or the name of a built-in one"), source)
+    return source
+
+
+def gear_pair_of(source: GearPairSource) -> GearPair:
+    """The pair itself, or the one that `load_gear_pair` finds under a name; InputError for anything else."""
+    source = load_gear_pair(source) if isinstance(source, str | Path) else source
+    if not isinstance(source, GearPair):
+        raise _refusal(
+            _("this function takes a pair of gears, its file or the name of a built-in one"), source
+        )
     return source
 
 
@@ -114,7 +151,7 @@ def _file(file_or_example: str | Path) -> Path | None:
     name = str(file_or_example)
     if path.suffix == ".toml" or path.name != name or path.is_file():
         return path
-    names = (*example_names(), *example_names("cam"))
+    names = (*example_names(), *example_names("cam"), *example_names("gear pair"))
     if name in names:  # a folder of this name, such as one of results, does not hide it
         return None
     if path.exists():

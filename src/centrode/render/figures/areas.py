@@ -93,11 +93,15 @@ def _draw_area(axes: Axes, area: Area, lines: Sequence[np.ndarray]) -> None:
 
 def _draw_path(axes: Axes, path: AreaPath, factors: tuple[float, float]) -> Line2D:
     main = path.kind is AreaKind.MAIN
+    colour, dashes = (PALETTE[1], "-") if main else (MUTED, APPROXIMATE)
+    if path.pen is not None:  # a second round through the colours is dashed
+        colour = PALETTE[path.pen % len(PALETTE)]
+        dashes = "-" if path.pen < len(PALETTE) else APPROXIMATE
     (line,) = axes.plot(
         factors[0] * path.x,
         factors[1] * path.y,
-        color=PALETTE[1] if main else MUTED,
-        linestyle="-" if main else APPROXIMATE,
+        color=colour,
+        linestyle=dashes,
         linewidth=CURVE,
         zorder=2.5,
     )

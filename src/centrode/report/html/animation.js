@@ -50,7 +50,7 @@ class Stage extends Picture {
   }
 
   key(event) {
-    if (event.target.matches("input, button") && event.key !== "Escape") return;
+    if (event.target.matches("input, button, select") && event.key !== "Escape") return;
     const step = event.shiftKey ? 10 : 1;
     const acts = {
       " ": () => this.play(!this.playing), ArrowRight: () => this.step(step), ArrowUp: () => this.step(step),

@@ -39,7 +39,10 @@ def chosen_courses(
     keys = [str(one["key"]) for one in courses]
     moving = data["points"][data["fixed"] :]
     guided = [guide.point for guide in mechanism.guides if guide.on == FRAME and guide.point in moving]
-    last = (guided or moving)[-1:]
+    fixed = set(data["points"][: data["fixed"]])
+    # points of links that are hinged to the frame go along arcs
+    on_arcs = {point for of_link in data["link_points"].values() if fixed & set(of_link) for point in of_link}
+    last = (guided or [point for point in moving if point not in on_arcs] or moving)[-1:]
     wished = [f"{name}.{point}" for point in last for name in ("position", "velocity", "acceleration")]
     wished.append("angular_velocity" if "angular_velocity" in keys else "joint_velocity")
     wished.append("reduced_moment")

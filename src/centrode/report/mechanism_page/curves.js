@@ -1,5 +1,5 @@
 // Curves over the motion, with a cursor that is the player's place: drawn at the size they are seen at.
-const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22;
+const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22, ON_PAPER = 340;
 
 // Round steps of an axis: 1, 2 or 5 times a power of ten, of degrees parts of a turn.
 const stepsOf = (least, most, count, turns) => {
@@ -18,6 +18,10 @@ const ticksOf = (least, most, step) => {
   return found;
 };
 
+// More lines than hues: further ones are dashed.
+const HUES = 6;
+const hueOf = (k) => `line-${k % HUES}${k >= HUES ? " dashed" : ""}`;
+
 class Curves {
   constructor(holder, stage, model) {
     this.holder = holder;
@@ -33,6 +37,9 @@ class Curves {
     });
     model.watchers.push(() => this.renew());
     new ResizeObserver(() => this.widen()).observe(this.list);
+    // on paper two stand beside each other, whatever the screen was
+    window.addEventListener("beforeprint", () => this.print(true));
+    window.addEventListener("afterprint", () => this.print(false));
   }
 
   get keys() {
@@ -60,9 +67,14 @@ class Curves {
   renew() {
     for (const chart of this.charts) chart.renew();
   }
+  print(on) {
+    this.printing = on;
+    this.wide = on ? ON_PAPER : this.list.clientWidth;
+    this.renew();
+  }
   widen() {
     const wide = this.list.clientWidth;
-    if (!wide || Math.abs(wide - this.wide) < 8) return;
+    if (this.printing || !wide || Math.abs(wide - this.wide) < 8) return;
     this.wide = wide;
     this.renew();
   }
@@ -145,13 +157,14 @@ class Chart {
     const up = (value) => TALL - LOWER - ((TALL - LOWER - UPPER) * (value - least)) / (most - least);
     this.up = up;
     this.bands(svg);
-    const symbol = [parameter.symbol, parameter.label].filter(Boolean).join(", "), named = 9 * symbol.length + 22;
+    const symbol = [parameter.symbol, parameter.label].filter(Boolean).join(", "), named = 6.5 * symbol.length + 8;
     const vertical = stepsOf(low, high, wide / 70, parameter.label === "°");
     for (const tick of ticksOf(low, high, vertical)) {
       make("line", { class: "grid", x1: across(tick), x2: across(tick), y1: UPPER, y2: TALL - LOWER }, svg);
-      if (wide - RIGHT - across(tick) < named) continue;
+      const told = this.tick(tick, vertical);
+      if (wide - RIGHT - across(tick) < named + 3.5 * told.length) continue;
       const label = make("text", { x: across(tick), y: TALL - 6, "text-anchor": "middle" }, svg);
-      label.textContent = this.tick(tick, vertical);
+      label.textContent = told;
     }
     const horizontal = stepsOf(least, most, 5, this.course.unit === "°" && most - least > 20);
     for (const tick of ticksOf(least, most, horizontal)) {
@@ -172,18 +185,19 @@ class Chart {
         if (seen && model.strained(sample)) red += `M${text(this.x(sample))} ${text(up(value))}h0`;
         pen = seen;
       }
-      make("path", { class: `line line-${k % 6}`, d }, svg);
+      make("path", { class: `line ${hueOf(k)}`, d }, svg);
       if (red) make("path", { class: "strained", d: red }, svg);
     });
     this.cursor = make("line", { class: "cursor", y1: UPPER, y2: TALL - LOWER }, svg);
-    this.dots = this.lines.map((_line, k) => make("circle", { class: `spot line-${k % 6}`, r: 3.5 }, svg));
+    this.dots = this.lines.map((_line, k) => make("circle", { class: `spot ${hueOf(k)}`, r: 3.5 }, svg));
     const [from, to] = known.length ? span(known) : [NaN, NaN];
     svg.setAttribute("aria-label", fill(words.curve, {
       what: this.course.label, least: this.said(from), most: this.said(to),
     }));
     this.legend.replaceChildren(...this.lines.map((line, k) => {
       line.output = element("span", { className: "value" });
-      return element("span", { className: "entry" }, element("i", { className: `line-${k % 6}`, ariaHidden: "true" }), `${line.label} = `, line.output);
+      return element("span", { className: "entry" }, element("i", { className: hueOf(k), ariaHidden: "true" }),
+        element("span", {}, ...indexed(line.label), " = "), line.output);
     }));
   }
 

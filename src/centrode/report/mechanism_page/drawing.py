@@ -11,6 +11,7 @@ from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
 from centrode.render.drawing.colours import GROUND
 from centrode.report.html.stage import look_of_link, support_sign
+from centrode.report.mechanism_page.driving_cams import cams_of
 from centrode.report.mechanism_page.numbers_that_vary import joints_of
 from centrode.scenes.places import corners
 from centrode.scenes.sphere import view_of
@@ -33,6 +34,7 @@ def drawing_of(
     """
     joints = joints_of(mechanism)
     in_plane = mechanism.space == "plane"
+    cams, not_drawn = cams_of(mechanism, motion, points, links)
     return {
         "points": [_point(mechanism, name, joints) for name in points],
         "bodies": _bodies(mechanism, points, links),
@@ -44,6 +46,8 @@ def drawing_of(
             for drive in mechanism.drives
             if drive.distance is not None
         ],
+        "cams": cams,
+        "notDrawn": not_drawn,
         "rings": [] if in_plane else _rings(mechanism, points, links),
         "support": support_sign(),
         "view": None if in_plane else _view(mechanism, motion),

@@ -131,6 +131,10 @@ class MechanismStage extends Stage {
       if (wheel.track && wheel.on === null) [0, 1].forEach((axis) =>
         take(axis, wheel.track.centre[axis] - wheel.track.radius, wheel.track.centre[axis] + wheel.track.radius));
     }
+    for (const cam of model.data.drawing.cams) {
+      const { axis, fits } = camNow(model, cam), reach = Math.max(...cam.outline.map((corner) => Math.hypot(...corner)));
+      if (fits) axis.forEach((value, k) => take(k, value - reach, value + reach));
+    }
     for (const axis of [0, 1]) if (!(low[axis] <= high[axis])) [low[axis], high[axis]] = [-1, 1];
     // a motion that is not reached anywhere leaves its fixed hinges, which are no size
     if (!(Math.max(...minus(high, low)) > 0)) return [minus(low, [1, 1]), plus(high, [1, 1])];

@@ -47,6 +47,11 @@ class Spelling {
   }
 }
 
+// A symbol with its index below the line: v_x(B).
+const indexed = (label) => {
+  const [, symbol, index, rest] = /^([^_(]+)_([^(]+)(.*)$/.exec(label) ?? [];
+  return index ? [symbol, element("sub", {}, index), rest] : [label];
+};
 const withUnit = (text, label) => (label ? `${text}${label === "°" ? "" : " "}${label}` : text);
 const greatestOf = (numbers) => {
   let most = 0;

@@ -131,10 +131,55 @@ const groundOf = (paper, [from, to]) => {
   return hatched(plus(plus(start, away, 95), on, -220), plus(plus(end, away, 95), on, 220), away);
 };
 
-// Shapes of guides on moving links, of wheels and of cylinders: each { d, at } in the picture, made anew for other dimensions.
+// A cam that drives: where its axis is, what the follower has turned against the description, whether its arm is the cam's.
+const camNow = (model, cam) => {
+  const by = ({ path, at }) => model.value(path, at) - at, began = by(cam.start);
+  if (cam.link === null) {
+    const turn = by(cam.direction), way = turned([1, 0], cam.direction.at + turn), { through } = cam;
+    const base = through.paths ? through.paths.map((path, k) => model.value(path, through.at[k])) : model.at(through.point, 0);
+    return { axis: plus(plus(base, turned(cam.axis, turn)), way, began), turn, lean: turn, fits: true };
+  }
+  let turn = 0, fits = true;
+  if (cam.arm) {
+    const [from, to] = cam.arm.ends, before = minus(to.at, from.at), now = minus(localOf(model, to), localOf(model, from));
+    turn = Math.atan2(now[1], now[0]) - Math.atan2(before[1], before[0]);
+    const { length, most } = cam.arm;
+    fits = length === null || Math.abs(Math.hypot(...now) - length) <= most * length;
+    return { axis: plus(model.at(cam.point, 0), turned(cam.axis, turn + began)), turn: turn + began, lean: turn, fits, arm: Math.hypot(...now), length };
+  }
+  return { axis: plus(model.at(cam.point, 0), turned(cam.axis, began)), turn: began, lean: 0, fits };
+};
+
+// Profile with its mark, the follower's straight parts, its roller, the cam's axis: all of them rigid.
+const camShapes = (model, paper, cam) => {
+  const { axis, turn, lean, fits } = camNow(model, cam), { time, samples } = model.frame;
+  const picture = (corner) => flipped(corner).map((value) => value * paper.scale);
+  const profile = [], follower = [], hub = paper.place(axis);
+  for (let sample = 0; sample < samples; sample += 1) {
+    profile.push(...hub, -degrees(turn + cam.turned[0] + cam.turned[1] * time[sample]));
+    const place = model.at(cam.point, sample), angle = cam.link === null ? 0 : model.frame.angle[cam.link][sample];
+    if (place && Number.isFinite(angle)) follower.push(...paper.place(place), -degrees(angle + lean));
+    else follower.push(null, null, null);
+  }
+  const outline = drawn(cam.outline.map(picture), true), behind = true;
+  const found = [
+    { d: outline, at: profile, colour: GROUND, filled: true, behind },
+    { d: drawn(cam.mark.map(picture)), at: profile, colour: INK, behind },
+    ...cam.lines.map((line) => ({ d: drawn(line.map(picture)), at: follower, colour: INK, behind })),
+  ];
+  if (cam.roller) {
+    const centre = picture(cam.roller), rim = Array.from({ length: 49 }, (_, k) => plus(centre, turned([cam.radius * paper.scale, 0], (k * Math.PI) / 24)));
+    found.push({ d: drawn(rim, true), at: follower, colour: INK, white: true, behind });
+  }
+  found.push({ d: circleOf(SIGN), at: [...hub, 0], colour: GROUND, white: true, behind });
+  return fits ? found : found.map((shape) => ({ ...shape, d: "" }));
+};
+
+// Shapes of cams, of guides on moving links, of wheels and of cylinders: each { d, at } in the picture, made anew for other dimensions.
 const shapesOf = (model, paper) => {
   const { drawing } = model.data, found = [];
   const colourOf = (link) => (link === null ? GROUND : drawing.bodies[link].colour);
+  for (const cam of drawing.cams) found.push(...camShapes(model, paper, cam));
   for (const wheel of drawing.wheels) {
     const axes = new Axes(model, paper, wheel.on), radius = model.value(wheel.radiusPath, wheel.radius);
     if (wheel.track) {

@@ -100,10 +100,11 @@ def _data(mechanism: Mechanism, program: PageProgram, source: str) -> dict[str, 
     paths = [one.path for one in program.parameters]
     numbers = Numbers(mechanism.display)
     courses = courses_of(mechanism, data)
-    units = dict.fromkeys(one.unit for one in program.parameters)
+    drawing = drawing_of(mechanism, motion(mechanism), points, links)
+    units = dict.fromkeys([*(one.unit for one in program.parameters), *(["m"] if drawing["cams"] else [])])
     return {
         "program": data,
-        "drawing": drawing_of(mechanism, motion(mechanism), points, links),
+        "drawing": drawing,
         "handles": handles_of(mechanism, points, links, paths),
         "names": {path: name_of(mechanism, path) for path in paths},
         "units": {unit: _unit(unit, numbers) for unit in units},

@@ -78,7 +78,7 @@ class Statuses {
   }
 
   show() {
-    const { model } = this, { words, frame } = model, said = [];
+    const { model } = this, { words, frame } = model, said = [], notes = [...model.data.drawing.notDrawn];
     if (!frame.possible) said.push({ kind: "bad", text: words.impossible });
     else {
       for (const { from, to, status } of piecesOf(model)) {
@@ -98,13 +98,19 @@ class Statuses {
       }
       if (strained) said.push({ kind: "bad", text: fill(words.residual, { worst: model.spelling.number(worst, 2), bound: model.spelling.number(frame.residualBound, 2) }) });
     }
+    for (const cam of model.data.drawing.cams) {
+      const { fits, arm, length } = camNow(model, cam), { factor, label } = model.data.units.m;
+      const told = (value) => withUnit(model.spelling.number(value * factor), label);
+      if (!fits) notes.push(fill(words.cam_arm, { arm: told(arm), length: told(length) }));
+    }
     const command = frame.signsChange ? commandOf(model) : "";
-    const key = JSON.stringify([said, command]);
+    const key = JSON.stringify([said, notes, command]);
     if (key !== this.key) {
       this.key = key;
       const items = said.slice(0, 12).map((one) => element("p", { className: one.kind }, one.text));
       if (!said.length && !frame.signsChange) items.push(element("p", { className: "good" }, words.all_reached));
       if (frame.signsChange) items.push(this.changePoints(command));
+      items.push(...notes.map((told) => element("p", { className: "omitted" }, told)));
       this.holder.replaceChildren(...items);
     }
     this.strip();
@@ -180,7 +186,7 @@ class Numbers {
       const cells = lines.map((line, k) => {
         const cell = element("td", { className: "n" });
         const first = k ? [] : [element("th", { scope: "rowgroup", rowSpan: lines.length }, course.label)];
-        body.append(element("tr", {}, ...first, element("td", {}, line.label), cell, element("td", {}, course.unit)));
+        body.append(element("tr", {}, ...first, element("td", {}, ...indexed(line.label)), cell, element("td", {}, course.unit)));
         return cell;
       });
       return { course, cells };

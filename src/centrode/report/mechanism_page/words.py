@@ -29,6 +29,7 @@ def words_of_page() -> dict[str, object]:
         "residual": _(
             "The closure residual reaches {worst}, above its bound of {bound}; such samples are marked in red."
         ),
+        "cam_arm": _("The cam is not drawn: it is made for an arm of {length}, and the arm is {arm} long."),
         "all_reached": _("The mechanism reaches every position."),
         "change_points": _(
             "At change points ({places}) the signs of groups change, and derivatives near them lose digits. "

@@ -1,0 +1,1 @@
+"""Gears: pairs of involute wheels, their teeth, and what happens between them."""

@@ -1,0 +1,574 @@
+"""A pair of gear wheels: what the terminal, the files, the figures and the document show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.cams.profiles import CamOutline
+from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
+from centrode.gears.profiles import turned_pieces
+from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing, OutlineSet
+from centrode.sheets.plots import (
+    Abscissa,
+    Area,
+    AreaDiagram,
+    AreaKind,
+    AreaPath,
+    AxisLabel,
+    Curve,
+    CurvePanel,
+    Plot,
+)
+from centrode.sheets.sheet import (
+    Block,
+    Chapter,
+    Column,
+    Deferred,
+    Fact,
+    FactTable,
+    Failure,
+    Formula,
+    Paragraph,
+    Scalar,
+    Section,
+    Sheet,
+    Table,
+    illustrations,
+)
+from centrode.sheets.texts import (
+    NOTHING,
+    Expression,
+    Joined,
+    Name,
+    Number,
+    Sentence,
+    Symbol,
+    Text,
+    Title,
+    Unit,
+)
+
+if TYPE_CHECKING:
+    from centrode.gears.pair_geometry import PairGeometry
+    from centrode.gears.profiles import ProfilePiece, ToothProfile
+    from centrode.gears.results import GearPairResults
+
+Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+
+PINION, WHEEL, RACK = Sentence("pinion"), Sentence("wheel"), Sentence("rack")
+PURPOSES = {
+    "no undercut": Sentence("chosen so that the rack does not undercut"),
+    "equal sliding": Sentence("chosen for equal specific sliding"),
+    "least sliding": Sentence("chosen for the least specific sliding"),
+    "strength": Sentence("chosen for the flattest flanks at the pitch point"),
+}
+CURVES = {
+    "undercut_1": Sentence("undercut of the pinion"),
+    "undercut_2": Sentence("undercut of the wheel"),
+    "interference_1": Sentence("interference at the pinion's fillet"),
+    "interference_2": Sentence("interference at the wheel's fillet"),
+    "pointed_1": Sentence("pointed teeth of the pinion"),
+    "pointed_2": Sentence("pointed teeth of the wheel"),
+    "contact_ratio_1": Sentence("contact ratio of one"),
+    "contact_ratio_1.2": Sentence("contact ratio {ratio}", ratio=Number(LEAST_CONTACT_RATIO)),
+    "tip_0.25_1": Sentence("tips of the pinion: {share} modules", share=Number(LEAST_TIP_THICKNESS)),
+    "tip_0.25_2": Sentence("tips of the wheel: {share} modules", share=Number(LEAST_TIP_THICKNESS)),
+    "tip_0.4_1": Sentence("tips of the pinion: {share} modules", share=Number(0.4)),
+    "tip_0.4_2": Sentence("tips of the wheel: {share} modules", share=Number(0.4)),
+    "equal_sliding": Sentence("equal specific sliding"),
+}
+TEETH_SHOWN = 3
+"""Teeth on each side of the mesh in a drawing of it."""
+MOST_SLIDING = 12.0
+"""Specific sliding beyond which a curve leaves its figure: at a base circle it is infinite."""
+
+
+def sheet(results: GearPairResults) -> Sheet:
+    """Everything there is to say about a pair of wheels."""
+    contour = results.contour is not None
+    return Sheet(
+        facts=tuple(_facts(results)),
+        scalars=_scalars(results),
+        tables=Deferred(
+            {
+                "wheels": lambda: _wheels_file(results),
+                "line-of-action": lambda: _action_table(results),
+                **({"blocking-contour": lambda: _contour_table(results)} if contour else {}),
+            }
+        ),
+        pictures=Deferred(
+            {
+                "mesh": lambda: _mesh(results),
+                "sliding": lambda: _sliding(results),
+                **({"blocking-contour": lambda: _contour(results)} if contour else {}),
+            }
+        ),
+        chapters=Deferred({"gear-pair": lambda: _chapter(results)}),
+        printed=(wheels_table(results),),
+        outlines=Deferred(
+            {
+                name: lambda profile=profile: _outline(results, profile)  # type: ignore[misc]
+                for name, profile in zip(("pinion", "wheel"), results.profiles, strict=False)
+            }
+        ),
+        failure=_failure(results),
+        notes=tuple(_notes(results)),
+    )
+
+
+def _second(pair: PairGeometry) -> Sentence:
+    return RACK if pair.kind == "rack" else WHEEL
+
+
+def _facts(results: GearPairResults) -> Iterator[Fact]:
+    pair, described = results.geometry, results.gear_pair
+    kinds = {
+        "external": Sentence("external"),
+        "internal": Sentence("internal"),
+        "rack": Sentence("wheel and rack"),
+    }
+    teeth = Sentence("helical teeth") if pair.helix_angle else Sentence("spur teeth")
+    yield Fact(Sentence("pair"), Joined((kinds[pair.kind], teeth)))
+    yield Fact(Sentence("module"), Number(pair.module, "m"))
+    if pair.helix_angle:
+        yield Fact(Sentence("helix angle"), Number(pair.helix_angle, "rad"))
+    if pair.kind != "rack":
+        yield Fact(Sentence("ratio"), Number(pair.ratio))
+    first, second = pair.shifts
+    shifts: Text = Joined((Number(first), Number(second)), "; ")
+    if described.purpose is not None:
+        shifts = Sentence("{shifts}, {purpose}", shifts=shifts, purpose=PURPOSES[described.purpose])
+    yield Fact(Sentence("shift coefficients"), shifts)
+    yield Fact(Sentence("working pressure angle"), Number(pair.working_angle, "rad"))
+    if pair.kind != "rack":
+        distance = Sentence(
+            "{working}, without shifts {plain}",
+            working=Number(pair.centre_distance, "m"),
+            plain=Number(pair.pitch_distance, "m"),
+        )
+        yield Fact(Sentence("centre distance"), distance)
+    yield Fact(Sentence("contact ratio"), Number(pair.contact_ratio))
+    if results.true_contact_ratio < pair.contact_ratio * (1 - 1e-9):
+        yield Fact(
+            NOTHING,
+            Sentence("{ratio} of the flanks that undercut leaves", ratio=Number(results.true_contact_ratio)),
+        )
+    if pair.overlap_ratio:
+        total = Sentence(
+            "{overlap}, total {total}",
+            overlap=Number(pair.overlap_ratio),
+            total=Number(pair.overlap_ratio + pair.contact_ratio),
+        )
+        yield Fact(Sentence("overlap ratio"), total)
+    pinion, wheel = (Number(one.sliding, digits=".4g") for one in pair.wheels)
+    sliding = Sentence("pinion {pinion}, {second} {wheel}", pinion=pinion, wheel=wheel, second=_second(pair))
+    yield Fact(Sentence("greatest specific sliding"), sliding)
+    if results.output_speed is not None:
+        unit = "m/s" if pair.kind == "rack" else "rad/s"
+        yield Fact(
+            Sentence("speed of the rack") if pair.kind == "rack" else Sentence("speed of the wheel"),
+            Number(results.output_speed, unit, unit_fixed=unit == "rad/s"),
+        )
+    if results.forces is not None:
+        forces = results.forces
+        parts = [
+            Sentence("tangential {force}", force=Number(forces.tangential, "N")),
+            Sentence("radial {force}", force=Number(forces.radial, "N")),
+        ]
+        if forces.axial:
+            parts.append(Sentence("axial {force}", force=Number(forces.axial, "N")))
+        yield Fact(Sentence("forces between the teeth"), Joined(tuple(parts)))
+
+
+def _scalars(results: GearPairResults) -> dict[str, Scalar]:
+    pair = results.geometry
+    found = {
+        "module": Scalar(pair.module, "m"),
+        "shift_1": Scalar(pair.shifts[0], "1"),
+        "shift_2": Scalar(pair.shifts[1], "1"),
+        "working_pressure_angle": Scalar(pair.working_angle, "rad"),
+        "centre_distance": Scalar(pair.centre_distance, "m"),
+        "contact_ratio": Scalar(pair.contact_ratio, "1"),
+        "overlap_ratio": Scalar(pair.overlap_ratio, "1"),
+        "greatest_sliding_1": Scalar(pair.wheels[0].sliding, "1"),
+        "greatest_sliding_2": Scalar(pair.wheels[1].sliding, "1"),
+    }
+    if results.forces is not None:
+        found["tangential_force"] = Scalar(results.forces.tangential, "N")
+        found["radial_force"] = Scalar(results.forces.radial, "N")
+        found["axial_force"] = Scalar(results.forces.axial, "N")
+    return {name: scalar for name, scalar in found.items() if math.isfinite(scalar.value)}
+
+
+Row = tuple[Text, str, list[float]]
+
+
+def _rows(results: GearPairResults) -> list[Row]:
+    """Dimensions of both wheels: what it is, its SI unit, the values; those that neither has are left out."""
+    pair = results.geometry
+    rows: list[Row] = []
+
+    def row(head: Text, unit: str, values: list[float]) -> None:
+        if not all(math.isnan(value) for value in values):
+            rows.append((head, unit, values))
+
+    def of_wheels(head: Text, unit: str, attribute: str) -> None:
+        row(head, unit, [float(getattr(wheel, attribute)) for wheel in pair.wheels])
+
+    def of_measurements(head: Text, unit: str, attribute: str) -> None:
+        values = [float(getattr(one, attribute)) for one in results.measurements]
+        row(head, unit, values + [math.nan] * (2 - len(values)))
+
+    teeth = [pair.teeth[0], math.nan if math.isinf(pair.teeth[1]) else pair.teeth[1]]
+    row(Sentence("number of teeth"), "1", teeth)
+    of_wheels(Sentence("shift coefficient"), "1", "shift")
+    of_wheels(Sentence("least shift without undercut"), "1", "least_shift")
+    of_wheels(Sentence("pitch diameter"), "m", "pitch")
+    of_wheels(Sentence("base diameter"), "m", "base")
+    of_wheels(Sentence("working pitch diameter"), "m", "working_pitch")
+    of_wheels(Sentence("tip diameter"), "m", "tip")
+    of_wheels(Sentence("root diameter"), "m", "root")
+    of_wheels(Sentence("addendum"), "m", "addendum")
+    of_wheels(Sentence("dedendum"), "m", "dedendum")
+    of_wheels(Sentence("tooth thickness on the pitch circle"), "m", "pitch_thickness")
+    of_wheels(Sentence("tooth thickness at the tip"), "m", "tip_thickness")
+    of_measurements(Sentence("constant chord"), "m", "constant_chord")
+    of_measurements(Sentence("height to the constant chord"), "m", "constant_chord_height")
+    of_measurements(Sentence("teeth of the span"), "1", "span_teeth")
+    of_measurements(Sentence("span over these teeth"), "m", "span")
+    of_measurements(Sentence("pin diameter"), "m", "pin")
+    of_measurements(Sentence("dimension over pins"), "m", "over_pins")
+    return rows
+
+
+def wheels_table(results: GearPairResults) -> Table:
+    """Dimensions of both wheels, in the units of the display."""
+    heads, units, numbers = zip(*_rows(results), strict=True)
+    values = np.array(numbers)
+    spelled = tuple(NOTHING if unit == "1" else Unit(unit, shown=True) for unit in units)
+    return Table(
+        (
+            Column("quantity", heads, head=Sentence("dimension")),
+            Column("unit", spelled, head=Sentence("unit")),
+            Column("pinion", values[:, 0], head=PINION, units=units),
+            Column("wheel", values[:, 1], head=_second(results.geometry), units=units),
+        ),
+        Sentence("Dimensions of the wheels"),
+    )
+
+
+def _wheels_file(results: GearPairResults) -> Table:
+    """The same in SI and in full."""
+    heads, units, numbers = zip(*_rows(results), strict=True)
+    values = np.array(numbers)
+    return Table(
+        (
+            Column("quantity", heads),
+            Column("unit", tuple(Name("" if unit == "1" else unit) for unit in units)),
+            Column("pinion", values[:, 0]),
+            Column("wheel", values[:, 1]),
+        )
+    )
+
+
+def _action_table(results: GearPairResults) -> Table:
+    action = results.line_of_action
+    columns = [
+        Column("place", action.places, "m", head=Sentence("from the pitch point")),
+        Column("radius_1", action.radii[:, 0], "m", head=Sentence("radius of curvature of the pinion")),
+        Column("radius_2", action.radii[:, 1], "m", head=Sentence("radius of curvature of the other flank")),
+        Column("sliding_1", action.sliding[:, 0], head=Sentence("specific sliding of the pinion")),
+        Column("sliding_2", action.sliding[:, 1], head=Sentence("specific sliding of the other flank")),
+        Column("pressure", action.pressure, head=Sentence("pressure coefficient")),
+    ]
+    if action.speeds is not None:
+        columns.append(Column("sliding_speed", action.speeds, "m/s", head=Sentence("sliding speed")))
+    return Table(tuple(columns), Sentence("Along the line of action"))
+
+
+def _contour_table(results: GearPairResults) -> Table:
+    contour = results.contour
+    assert contour is not None
+    kept = {name: places[~np.isnan(places).any(axis=1)] for name, places in contour.curves.items()}
+    names = tuple(CURVES[name] for name, places in kept.items() for _place in places)
+    places = np.concatenate([*kept.values(), np.empty((0, 2))])
+    return Table(
+        (
+            Column("curve", names, head=Sentence("curve")),
+            Column("shift_1", places[:, 0], head=Sentence("shift of the pinion")),
+            Column("shift_2", places[:, 1], head=Sentence("shift of the wheel")),
+        ),
+        Sentence("Curves of the blocking contour"),
+    )
+
+
+# What is wrong
+
+
+def _failure(results: GearPairResults) -> Failure | None:
+    """Why the pair cannot work."""
+    pair = results.geometry
+    names = (PINION, _second(pair))
+    advice = Sentence(
+        "choose other shifts: those of least sliding satisfy all bounds where that is possible"
+    )
+    if not pair.contact_ratio >= 1:
+        what = Sentence(
+            "the contact ratio {ratio} is below one", ratio=Number(pair.contact_ratio, digits=".4g")
+        )
+        return Failure(what, Sentence("reduce the sum of the shifts, or raise the numbers of teeth"))
+    for wheel, name in zip(pair.wheels, names, strict=True):
+        if not wheel.tip_thickness > 0:
+            what = Sentence("{wheel}: the teeth are pointed below their tip", wheel=name)
+            return Failure(what, Sentence("reduce its shift"))
+        if wheel.interferes:
+            what = Sentence("{wheel}: the tips of the other one run into its fillets", wheel=name)
+            return Failure(what, advice)
+    return None
+
+
+def _notes(results: GearPairResults) -> Iterator[Text]:
+    """What a designer should know besides."""
+    pair = results.geometry
+    for wheel, name in zip(pair.wheels, (PINION, _second(pair)), strict=True):
+        if wheel.undercut:
+            yield Sentence(
+                "{wheel}: undercut; without undercut the shift is at least {least}",
+                wheel=name,
+                least=Number(wheel.least_shift, digits=".5g"),
+            )
+        if 0 < wheel.tip_thickness < LEAST_TIP_THICKNESS * pair.module:
+            yield Sentence(
+                "{wheel}: the tips are {share} modules thick; at least {least} is usual",
+                wheel=name,
+                share=Number(wheel.tip_thickness / pair.module, digits=".3g"),
+                least=Number(LEAST_TIP_THICKNESS),
+            )
+    if 1 <= results.true_contact_ratio + pair.overlap_ratio < LEAST_CONTACT_RATIO:
+        yield Sentence("the contact ratio is below the usual {least}", least=Number(LEAST_CONTACT_RATIO))
+
+
+# Pictures
+
+
+def _outline(results: GearPairResults, profile: ToothProfile) -> OutlineSet:
+    """All teeth of a wheel about its axis."""
+    pieces = [
+        _piece(piece, "profile")
+        for tooth in range(profile.teeth)
+        for piece in turned_pieces(profile, 2 * math.pi * tooth / profile.teeth)
+    ]
+    return OutlineSet(Title(results.gear_pair.title), tuple(pieces))
+
+
+def _piece(piece: ProfilePiece, layer: str) -> CamOutline:
+    sign = 1.0 if piece.parameter[0] < piece.parameter[-1] else -1.0
+    return CamOutline(layer, sign * piece.parameter, piece.places, sign * piece.slopes)  # type: ignore[arg-type]
+
+
+def _mesh(results: GearPairResults) -> OutlineDrawing:
+    """The teeth about the pitch point, with the circles and the line of action."""
+    pair = results.geometry
+    pieces: list[CamOutline] = []
+    centres = [(0.0, 0.0)]
+    radius = pair.wheels[0].working_pitch / 2
+    for number, profile in enumerate(results.profiles):
+        step = 2 * math.pi / profile.teeth
+        centre, half, turn = (0.0, 0.0), 0.0, 0.0
+        if number:
+            # A gap of the wheel takes the pinion's tooth: below its centre where it is external, above where internal.
+            centre = (0.0, pair.sign * pair.centre_distance)
+            half, turn = step / 2, math.pi if pair.sign > 0 else 0.0
+            centres.append(centre)
+        shown = min(TEETH_SHOWN, (profile.teeth - 1) // 2)
+        # The gap of the wheel lies in the middle: as many teeth on either side.
+        for tooth in range(-shown, shown + 1 - number):
+            angle = turn + half + tooth * step
+            pieces += [
+                _piece(piece, ("profile", "shoe")[number]) for piece in turned_pieces(profile, angle, centre)
+            ]
+    shapes = []
+    if pair.kind == "rack":
+        shapes.append(DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (_rack_line(pair),)))
+    else:
+        circles = [
+            _arc(centre, wheel.working_pitch / 2, up)
+            for centre, wheel, up in zip(centres, pair.wheels, (1, -pair.sign), strict=True)
+        ]
+        shapes.append(DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles)))
+    begin, end = pair.action_ends
+    middle, angle = pair.pitch_curvature_radius, pair.working_angle
+    # The contact moves with the driven flank: along the inner tangent of both base circles through the pitch point.
+    direction = np.array([-math.cos(angle), math.sin(angle)])
+    ends = np.array([[0.0, radius]]) + np.outer(np.array([max(begin, 0.0), end]) - middle, direction)
+    shapes.append(DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (ends,)))
+    layers = {"profile": PINION, "shoe": WHEEL} if pair.kind != "rack" else {"profile": PINION}
+    return OutlineDrawing(
+        Sentence("Teeth in mesh"),
+        Title(results.gear_pair.title),
+        tuple(pieces),
+        layers,
+        tuple(shapes),
+        Sentence("axis of the pinion"),
+    )
+
+
+def _arc(centre: tuple[float, float], radius: float, up: int) -> Array:
+    angles = np.linspace(-0.6, 0.6, 121)
+    return np.stack([centre[0] + radius * np.sin(angles), centre[1] + up * radius * np.cos(angles)], axis=-1)
+
+
+def _rack_line(pair: PairGeometry) -> Array:
+    """Teeth of the rack whose gap takes the pinion's tooth."""
+    module, angle = pair.transverse.module, pair.transverse.pressure_angle
+    line = pair.wheels[0].pitch / 2 + pair.shifts[0] * pair.module
+    tip, root = pair.rack.addendum * pair.module, pair.transverse.dedendum
+    # Half of a tooth at the rack's reference line, and what the flank gains towards the tip and the root.
+    half, slope = math.pi * module / 4, math.tan(angle)
+    corners = []
+    for tooth in range(-4, 5):
+        middle = (tooth + 0.5) * math.pi * module
+        corners += [
+            (middle - half - root * slope, line + root),
+            (middle - half + tip * slope, line - tip),
+            (middle + half - tip * slope, line - tip),
+            (middle + half + root * slope, line + root),
+        ]
+    return np.array(corners)
+
+
+def _sliding(results: GearPairResults) -> Plot:
+    """Specific sliding and pressure along the line of action."""
+    action, pair = results.line_of_action, results.geometry
+    names = (PINION, _second(pair))
+    sliding = np.where(np.abs(action.sliding) > MOST_SLIDING, np.nan, action.sliding)
+    curves = [Curve(name, sliding[:, place], place) for place, name in enumerate(names)]
+    label = AxisLabel(Sentence("along the line of action, from the pitch point"), unit="m")
+    count = np.arange(len(action.places), dtype=np.intp)
+    rows = [
+        (CurvePanel(AxisLabel(Sentence("specific sliding")), tuple(curves)),),
+        (
+            CurvePanel(
+                AxisLabel(Sentence("pressure coefficient")),
+                (
+                    Curve(
+                        Sentence("pressure coefficient"),
+                        np.where(action.pressure > 1e3, np.nan, action.pressure),
+                        2,
+                    ),
+                ),
+                legend=False,
+                from_zero=True,
+            ),
+        ),
+    ]
+    if action.speeds is not None:
+        speed = Curve(Sentence("sliding speed"), action.speeds, 3)
+        rows.append(
+            (
+                CurvePanel(
+                    AxisLabel(Sentence("sliding speed"), unit="m/s"), (speed,), legend=False, from_zero=True
+                ),
+            )
+        )
+    places = []
+    if action.single is not None:
+        places = [
+            (Sentence("one pair bears from here"), action.single[0]),
+            (Sentence("one pair bears up to here"), action.single[1]),
+        ]
+    return Plot(
+        Sentence("Sliding along the line of action"),
+        Title(results.gear_pair.title),
+        Abscissa(label, action.places, count),
+        tuple(rows),
+        places=tuple(places),
+    )
+
+
+def _contour(results: GearPairResults) -> AreaDiagram:
+    """The blocking contour with its curves, and the place of this pair."""
+    contour = results.contour
+    assert contour is not None
+    paths = [
+        AreaPath(CURVES[name], places[:, 0], places[:, 1], AreaKind.MAIN, pen)
+        for pen, (name, places) in enumerate(contour.curves.items())
+        if len(places) and np.isfinite(places).any()
+    ]
+    return AreaDiagram(
+        Sentence("Blocking contour"),
+        Title(results.gear_pair.title),
+        AxisLabel(symbol=Symbol("x", "1")),
+        AxisLabel(symbol=Symbol("x", "2")),
+        contour.first,
+        contour.second,
+        (Area(Sentence("possible shifts"), contour.possible),),
+        tuple(paths),
+        ((Sentence("this pair"), *results.geometry.shifts),),
+    )
+
+
+# The chapter
+
+
+def _chapter(results: GearPairResults) -> Chapter:
+    """Data, formulas with their numbers, dimensions, figures."""
+    blocks: list[Block] = [FactTable(tuple(_facts(results)), Sentence("The pair"))]
+    sections = [
+        Section(NOTHING, tuple(blocks)),
+        Section(Sentence("Meshing"), tuple(_formulas(results))),
+        Section(Sentence("Dimensions of the wheels"), (wheels_table(results),)),
+    ]
+    pictures = ["mesh", "sliding", *(["blocking-contour"] if results.contour is not None else [])]
+    notes = tuple(Paragraph(note) for note in _notes(results))
+    if notes:
+        sections.append(Section(NOTHING, notes))
+    sections.append(illustrations(pictures))
+    return Chapter(Sentence("Gear pair"), tuple(sections))
+
+
+def _formulas(results: GearPairResults) -> Iterator[Block]:
+    """Formulas of the pair, each with its numbers."""
+    pair = results.geometry
+    if pair.kind == "rack":
+        yield Paragraph(Sentence("A rack meshes at the pressure angle of its flanks, whatever the shift."))
+        return
+    sign, other = ("+", "-") if pair.sign > 0 else ("-", "+")
+    total = "x_1 + x_2" if pair.sign > 0 else "x_2 - x_1"
+    teeth = "z_1 + z_2" if pair.sign > 0 else "z_2 - z_1"
+    yield Paragraph(
+        Sentence(
+            "The sum of the shifts gives the working pressure angle. That gives the centre distance, and the amount by "
+            "which the tips are lowered."
+        )
+    )
+    yield Formula(
+        (
+            (
+                Expression('"inv" alpha_w'),
+                Expression(f'"inv" alpha_t + frac(2 ({total}) tan alpha, {teeth})'),
+                Number(pair.working_involute),
+            ),
+            (Expression("alpha_w"), Number(pair.working_angle, "rad")),
+            (Expression("a"), Expression(f"frac(m ({teeth}), 2 cos beta)"), Number(pair.pitch_distance, "m")),
+            (
+                Expression("a_w"),
+                Expression("a frac(cos alpha_t, cos alpha_w)"),
+                Number(pair.centre_distance, "m"),
+            ),
+            (Expression("y"), Expression("frac(a_w - a, m)"), Number(pair.distance_coefficient)),
+            (Expression("Delta y"), Expression(f"{total} - y"), Number(pair.equalising_coefficient)),
+            (
+                Expression("epsilon_alpha"),
+                Expression(
+                    f"frac(sqrt(r_(a 1)^2 - r_(b 1)^2) {sign} sqrt(r_(a 2)^2 - r_(b 2)^2) {other} a_w sin alpha_w, "
+                    "pi m_t cos alpha_t)"
+                ),
+                Number(pair.contact_ratio),
+            ),
+        )
+    )

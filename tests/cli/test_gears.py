@@ -1,0 +1,86 @@
+"""`centrode gears` as a user meets it; pairs that cannot work; other commands about pairs."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import centrode as ct
+
+Centrode = Callable[..., Any]
+PAIR = """kind = "gear pair"
+module = "3 mm"
+"""
+
+
+@pytest.mark.parametrize(
+    ("rest", "said"),
+    [
+        ("teeth = [12, 24]\nshifts = [1.1, -0.3]", "pointed"),
+        ("teeth = [12, 24]\nshifts = [1.2, 1.2]", "below one"),
+        ("teeth = [12, 24]\nshifts = [1.19, 0.25]", "run into its fillets"),
+    ],
+)
+def test_a_pair_that_cannot_work_is_shown_and_ends_with_code_three(
+    centrode: Centrode, folder: Path, rest: str, said: str
+) -> None:
+    (folder / "pair.toml").write_text(PAIR + rest, encoding="utf-8")
+    done = centrode("gears", "pair.toml")
+    assert done.code == 3
+    assert "pinion" in done.out
+    assert said in done.err
+    assert done.err.startswith("Error: pair.toml: ")
+
+
+def test_tables_drawings_and_outlines(centrode: Centrode, folder: Path) -> None:
+    done = centrode("gears", "shifted-gear-pair", "--out", "pair")
+    assert done.code == 0, done
+    pictures = {
+        f"{name}.{kind}" for name in ("mesh", "sliding", "blocking-contour") for kind in ("png", "svg")
+    }
+    outlines = {f"{name}.{kind}" for name in ("pinion", "wheel") for kind in ("svg", "dxf")}
+    tables = {"wheels.csv", "line-of-action.csv", "blocking-contour.csv", "summary.json"}
+    assert {path.name for path in (folder / "pair").iterdir()} == pictures | outlines | tables
+    assert "contact ratio              1.2021" in done.out
+    with (folder / "pair" / "wheels.csv").open(encoding="utf-8", newline="") as file:
+        rows = {row["quantity"]: row for row in csv.DictReader(file)}
+    assert float(rows["tip diameter"]["pinion"]) == pytest.approx(44.8397e-3, abs=5e-8)
+    assert rows["tip diameter"]["unit"] == "m"
+    summary = json.loads((folder / "pair" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["centre_distance"]["value"] == pytest.approx(
+        ct.gear_pair("shifted-gear-pair").geometry.centre_distance
+    )
+
+
+@pytest.mark.parametrize("language", ["en", "ru", "uk"])
+@pytest.mark.parametrize("name", ct.example_names("gear pair"))
+def test_every_pair_is_said_in_every_language(centrode: Centrode, name: str, language: str) -> None:
+    done = centrode("--lang", language, "gears", name)
+    assert done.code == 0, done
+    assert "nan" not in done.out
+    if language != "en":
+        assert "pinion" not in done.out
+
+
+@pytest.mark.parametrize("command", ["run", "report", "cam", "describe"])
+def test_other_commands_say_which_one_computes_a_pair(centrode: Centrode, command: str) -> None:
+    done = centrode(command, "shifted-gear-pair")
+    assert done.code == 2
+    assert "centrode gears" in done.err
+
+
+def test_a_linkage_is_no_pair(centrode: Centrode) -> None:
+    done = centrode("gears", "crank-rocker")
+    assert done.code == 2
+    assert "this describes no pair of gears" in done.err
+
+
+def test_the_schema_of_pairs(centrode: Centrode) -> None:
+    schema = json.loads(centrode("schema", "--gears").out)
+    assert schema["properties"]["kind"]["const"] == "gear pair"
+    assert centrode("schema", "--gears", "--cam").code == 2

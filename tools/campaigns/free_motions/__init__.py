@@ -1,0 +1,1 @@
+"""Random mechanisms left to gravity: energy, closures, and the way back."""
