@@ -41,6 +41,10 @@ SIX: Mapping[str, tuple[str, ...]] = {
     "spherical-four-bar": (
         *DIMENSIONS["spherical-four-bar"], "frame.points.D.latitude", "frame.points.A.longitude",
     ),
+    "slider-crank-offset": (
+        "links.OA.length", "links.AB.length", "guides.B.through.y", "guides.B.direction", "frame.points.O.x",
+        "frame.points.O.y",
+    ),
     "third-class-triad": (
         "links.OA.length", "links.AB.length", "links.DC.length", "links.EF.length", "frame.points.D.x",
         "frame.points.E.x",

@@ -90,7 +90,8 @@ def _called(lever: Solver) -> Task:
     assert called.move(lever.own, memory)
     run, at, sines, cosines, angles = called.run, memory.address, memory.sines, memory.cosines, memory.angles
 
-    def task() -> None:
+    # the table has addresses alone: what they lead to has to be there as long as the task
+    def task(_kept: object = memory) -> None:
         run(at, MOVE)
         np.arctan2(sines, cosines, angles)
         run(at, TURN)

@@ -66,7 +66,7 @@ length = "mm"
         ("centres", "six-bar-press", "the instants of [study]: 120 deg"),
         ("diagrams", "crank-rocker", "the initial position: 0 rad"),
         # the value of a drive by a law may come again: an instant is a time
-        ("diagrams", "cam-driven-linkage", "the initial position: 0 s"),
+        ("diagrams", "wiper", "the initial position: 0 s"),
     ],
 )
 def test_the_instants_that_are_taken_are_told(

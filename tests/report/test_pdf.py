@@ -21,7 +21,7 @@ from centrode.render.document.blocks import (
     TableBlock,
 )
 from centrode.report.figure_places import Layout, well_placed
-from centrode.report.pdf_document import Source, pdf_document
+from centrode.report.pdf_document import Source, document_files, pdf_document
 
 from .made import HOSTILE, report, svg
 from .pdf_reading import PdfFile
@@ -197,6 +197,32 @@ def test_a_number_and_its_unit_stay_on_one_line() -> None:
         (page,) = pages_of(ChapterBlocks("a", "A", (SectionBlocks("", (ParagraphBlock(words),)),)))
         assert not re.search(r"1\.5\s*\n\s*rad|rad/\s*\n", page), width
         assert re.search(r"1\.5\Drad/s", page)
+
+
+def test_a_number_keeps_its_sign_of_equality() -> None:
+    for width in range(1, 12):
+        words = "a" * width + " " + " ".join(f"lever = −{k}.5°," for k in range(60))
+        (page,) = pages_of(ChapterBlocks("a", "A", (SectionBlocks("", (ParagraphBlock(words),)),)))
+        assert not re.search(r"=\s*\n", page), width
+
+
+def test_each_chapter_is_a_file_that_does_not_change_with_others() -> None:
+    """Typst lays out again what has changed: here the first of two chapters."""
+
+    def files(first: str) -> dict[str, bytes]:
+        chapters = tuple(
+            ChapterBlocks(name, name, (SectionBlocks("", (ParagraphBlock(text),)),))
+            for name, text in (("a", first), ("b", "the same"))
+        )
+        source = Source(Report("", "", "en", chapters))
+        return document_files(source.text, source.head)
+
+    short, long = files("short"), files("much longer")
+    assert {name for name in short if short[name] != long[name]} == {"chapter-1.typ"}
+    assert short["main"].decode().splitlines()[-2:] == [
+        '#include "chapter-1.typ"',
+        '#include "chapter-2.typ"',
+    ]
 
 
 @pytest.mark.parametrize("titled", [True, False])

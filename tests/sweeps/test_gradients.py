@@ -201,3 +201,26 @@ def test_both_ways_to_carry_a_sum_agree(monkeypatch: pytest.MonkeyPatch) -> None
     # the arcs are of the order of 1, the least sine is that of the crank: each of some hundred operations rounds once
     allowed = 200 * EPS * max(1.0, np.abs(by_paths).max()) / np.sin(ct.value_at(mechanism, paths[0]))
     np.testing.assert_allclose(by_parts, by_paths, rtol=0.0, atol=allowed)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize(("name", "path", "point"), [
+    ("crank-rocker", "links.AB.length", "B"), ("spherical-four-bar", "links.BC.length", "C"),
+    ("third-class-triad", "links.AB.length", "C"),
+])  # fmt: skip
+def test_of_an_extreme_is_that_of_its_sample(name: str, path: str, point: str, executor: str) -> None:
+    """An extreme has the derivatives that the first sample with its number has by itself, along a walk as well."""
+    mechanism = ct.example(name)
+    vary = {path: ct.value_at(mechanism, path) * np.array([1.0, 1.01, 1.02])}
+
+    def computed(**more: Any) -> Any:
+        return ct.sweep(mechanism, vary, f"position.{point}", 37, gradient=True, executor=executor, **more)
+
+    every = computed()
+    values, slopes = (every[x].to_numpy() for x in (f"position.{point}", f"gradient.position.{point}"))
+    for fold, choose in (("max", np.argmax), ("min", np.argmin)):
+        found = computed(reduce=fold)[f"gradient.position.{point}"].to_numpy()
+        at = choose(values, axis=1)[:, None, :, None]
+        expected = np.take_along_axis(slopes, at, axis=1)[:, 0]
+        # with groups of higher class a walk past other places ends in other last bits
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e3 * EPS * np.abs(slopes).max())

@@ -36,6 +36,7 @@ PARSER: Any = MathTextParser
 REMEMBERED = functools.lru_cache(20_000)(inspect.unwrap(PARSER._parse_cached))
 """Sizes of formulas in labels, as often as they are asked for; matplotlib itself remembers 50."""
 PAGE_SOURCE = "document set by typst"
+INCLUDED = re.compile(r'#include "(chapter-\d+\.typ)"')
 
 
 @dataclass
@@ -114,12 +115,21 @@ class Typesetter:
         self, input: Mapping[str, bytes], format: str, **_options: Any
     ) -> tuple[bytes, list[str]]:
         """What typst would make of the files in `input`."""
-        source = input["main"].decode()
+        source = INCLUDED.sub(lambda found: _chapter(input[found[1]]), input["main"].decode())
         if format == "html":
             formulas = FORMULA.findall(source)
             return "\n".join(f"<math><mtext>{escape(one)}</mtext></math>" for one in formulas).encode(), []
-        beside = {name: content for name, content in sorted(input.items()) if name != "main"}
+        beside = {
+            name: content
+            for name, content in sorted(input.items())
+            if name != "main" and not name.startswith("chapter-")
+        }
         lists = "\n".join(
             f"{name} {len(content)} bytes" for name, content in beside.items() if content[:1] != b"<"
         )
         return f"{PAGE_SOURCE}\n{source}\n{lists}\n".encode(), []
+
+
+def _chapter(content: bytes) -> str:
+    """A chapter as the source of a document has it: behind the line that imports the style."""
+    return content.decode().partition("\n")[2]

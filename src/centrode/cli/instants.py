@@ -49,7 +49,7 @@ def default_instants(
     with about(name):
         places = library.default_instants(mechanism)
     values = ", ".join(_value_text(mechanism, place, unit_name=terminal_unit) for place in places)
-    if mechanism.study.instants and mechanism.motion_parameter.states_instants:
+    if mechanism.study.instants:
         output.tell(_("without --at, the instants of [study]: {values}").format(values=values))
         yield
         return

@@ -58,7 +58,9 @@ _options, _writing, _outline = (
     "instants",
     multiple=True,
     metavar=mark("A"),
-    help=mark('A value of the drive ("99.1 deg") that tables and diagrams show; may be repeated.'),
+    help=mark(
+        'A value of the drive ("99.1 deg"), or time ("1 s"), that tables and diagrams show; may be repeated.'
+    ),
 )
 @click.option(
     "--points",

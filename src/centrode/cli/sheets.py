@@ -37,7 +37,8 @@ FORMATS = ("pdf", "dxf")
     multiple=True,
     metavar=mark("VALUE"),
     help=mark(
-        "Value of the drive at which plans of velocities, accelerations and forces are drawn; may be repeated."
+        "Value of the drive, or time, at which plans of velocities, accelerations and forces are drawn; "
+        "may be repeated."
     ),
 )
 @click.option(

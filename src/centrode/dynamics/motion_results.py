@@ -222,24 +222,14 @@ def with_instants(results: MotionResults, instants: Sequence[float], points: Seq
     `points` are those whose places and rates tables have.
     """
     mechanism = results.mechanism
-    places = instants_of(mechanism, results.motion, instants)
+    places = instants_of(mechanism, instants)
     shown = motion(mechanism, at=places)
     return replace(results, shown=shown, instants=shown if instants else None, points=tuple(points))
 
 
-def instants_of(mechanism: Mechanism, course: xr.Dataset, wished: Sequence[float]) -> list[float]:
-    """Instants [rad, m or s] of values of the motion's parameter, each once; that of the initial position without any.
-
-    A law of time may pass a value more than once: then it is the time of the nearest sample of `course`.
-    """
-    parameter, values = mechanism.motion_parameter, list(dict.fromkeys(wished))
-    if not values:
-        return [initial_place(mechanism)]
-    if parameter.states_instants:
-        return values
-    passed = parameter.values(course)
-    nearest = dict.fromkeys(int(np.argmin(np.abs(passed - value))) for value in values)
-    return [float(course["time"][sample]) for sample in nearest]
+def instants_of(mechanism: Mechanism, wished: Sequence[float]) -> list[float]:
+    """Instants [rad, m or s] that are wished, each once; that of the initial position without any."""
+    return list(dict.fromkeys(wished)) or [initial_place(mechanism)]
 
 
 def _reactions(mechanism: Mechanism, solved: Solved, over_range: bool) -> ReactionResults:
@@ -254,12 +244,9 @@ def _reactions(mechanism: Mechanism, solved: Solved, over_range: bool) -> Reacti
 
 
 def _at_instants(prepared: Ready) -> xr.Dataset | None:
-    """The motion exactly at the instants the description asks for; None without any.
-
-    They are values of the drive, which a law of time may pass more than once: then the nearest samples have to do.
-    """
+    """The motion exactly at the instants of the description; None without any."""
     places = prepared.mechanism.study.instants
-    if not places or not prepared.parameter.states_instants:
+    if not places:
         return None
     try:
         span = grid_at(prepared.kinematics.path, np.array(places))

@@ -405,12 +405,8 @@ def initial_place(mechanism: Mechanism) -> float:
 
 
 def default_instants(mechanism: Mechanism) -> tuple[float, ...]:
-    """Instants [rad, m or s] of the study, else that of the initial position.
-
-    Those of a study are values of the drive; by a law of time these may come again, and state no instant.
-    """
-    stated = mechanism.study.instants if mechanism.motion_parameter.states_instants else ()
-    return stated or (initial_place(mechanism),)
+    """Instants [rad, m or s] of the study, else that of the initial position."""
+    return mechanism.study.instants or (initial_place(mechanism),)
 
 
 def _solve_range(

@@ -28,10 +28,9 @@ from centrode.model.reading import (
 from centrode.model.values import (
     READING,
     Angle,
-    EndOfMotion,
     Flag,
+    InstantOfMotion,
     Name,
-    PlaceOfMotion,
     Text,
     angular_speed,
     not_negative,
@@ -184,8 +183,8 @@ class Study(DescriptionPart):
     ----------
     samples : int
         Number of samples.
-    instants : tuple of float [rad or m; s if there are several drives]
-        Values of the drive at which positions are shown.
+    instants : tuple of float [rad or m; s if the drive is a law of time or there are several]
+        Values of the drive, or times, at which positions are shown.
     start, stop : float [rad or m; s if the drive is a law of time or there are several]
         Range of the drive's value; "from" and "to" in a file.
     range : "reachable"
@@ -201,9 +200,9 @@ class Study(DescriptionPart):
     """
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None
-    instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
-    start: Annotated[EndOfMotion | None, Field(alias="from")] = None
-    stop: Annotated[EndOfMotion | None, Field(alias="to")] = None
+    instants: Annotated[tuple[InstantOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
+    start: Annotated[InstantOfMotion | None, Field(alias="from")] = None
+    stop: Annotated[InstantOfMotion | None, Field(alias="to")] = None
     range: Annotated[Literal["reachable"], choice(REACHABLE)] | None = None
     coordinate: ChosenCoordinate | None = None
 
@@ -419,8 +418,8 @@ class ReportWishes(ExplanatoryNote):
     Attributes
     ----------
     chapters : names of chapters (`centrode report --help` lists them), in any order
-    instants : tuple of float [rad or m; s if there are several drives]
-        Values of the drive at which tables, diagrams and forces are shown; those of `[study]` if left out.
+    instants : tuple of float [rad or m; s if the drive is a law of time or there are several]
+        Values of the drive, or times, at which tables, diagrams and forces are shown; those of `[study]` if left out.
     points : names of points
         Whose velocities and paths are told.
     digits : int
@@ -447,7 +446,7 @@ class ReportWishes(ExplanatoryNote):
     """
 
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
-    instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
+    instants: Annotated[tuple[InstantOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
     points: Annotated[tuple[Name, ...], bounded_list(reading.POINTS)] = ()
     digits: Annotated[int, whole_number(LEAST_DIGITS, MOST_DIGITS)] | None = None
     rows: Annotated[int, whole_number(LEAST_ROWS, MOST_ROWS)] | None = None

@@ -269,7 +269,9 @@ Angle = Annotated[float, quantity("angle")]
 PlaceOfMotion = Annotated[
     float, PlainValidator(lambda value: si(value, READING.get().parameter.variable.kind))
 ]
-EndOfMotion = Annotated[float, PlainValidator(lambda value: si(value, READING.get().parameter.instant.kind))]
+InstantOfMotion = Annotated[
+    float, PlainValidator(lambda value: si(value, READING.get().parameter.instant.kind))
+]
 NamedPositions = Annotated[
     Mapping[str, Position], table(read_name, reading.POINTS), AfterValidator(FrozenMap[str, Vector | Placed])
 ]

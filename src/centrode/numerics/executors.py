@@ -101,20 +101,6 @@ def bare_call(take: Take, rows: Array, out: Array) -> tuple[int, ...] | None:
     return made
 
 
-def bare_function(take: Take, rows: Array, out: Array) -> Callable[[], object]:
-    """One call of a streamer with one step from `rows` to `out`: of machine code, nothing is looked at any more."""
-    arguments = bare_call(take, rows, out)
-    if arguments is None:
-        return functools.partial(take, rows, out)
-    kept = (rows, out)
-    call = take.kernel.function.call  # type: ignore[attr-defined]
-
-    def run(_kept: object = kept) -> None:
-        call(*arguments[1:])
-
-    return run
-
-
 def functions_before(take: Take) -> Graph:
     """What a streamer computes of its inputs alone, behind which its numbers stand; nothing on NumPy."""
     found: Graph = take.functions if hasattr(take, "functions") else Graph({})

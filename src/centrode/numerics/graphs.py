@@ -266,7 +266,9 @@ def _root(node: Node, x: Node) -> tuple[Operand, ...]:
 
 
 def _quotient(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
-    reciprocal = 1.0 / b
+    # a power of two over b is 1 / b but for the exponent: no second division
+    whole = a.operation == CONSTANT and abs(math.frexp(float(a.detail))[0]) == 0.5
+    reciprocal = node * (1.0 / float(a.detail)) if whole else 1.0 / b
     # -a / b^2 from the quotient itself: no second division
     return reciprocal, -(node * reciprocal)
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import mmap
+import threading
+import weakref
 from typing import TypeAlias
 
 import numpy as np
@@ -15,12 +19,65 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 BLANK = 32_000_000
 """Bytes from which on the operating system gives zeros as pages that it has not made yet; less would be cleared."""
+KEPT = 256_000_000
+"""Bytes of memory that are kept for the next result, at most."""
 
 
 def fresh_room(numbers: int) -> tuple[Array, bool]:
-    """Memory for so many numbers, and whether it is blank: zeros that take no page until they are written over."""
-    blank = numbers * np.dtype(np.float64).itemsize > BLANK
-    return (np.zeros if blank else np.empty)(numbers), blank
+    """Memory for so many numbers, and whether it is blank: zeros that take no page until they are written over.
+
+    Memory of a result that nothing refers to any more is handed out again: its pages are there, and to make pages takes
+    the operating system longer than a kernel to write them. One such room is kept, of at most `KEPT` bytes.
+    """
+    size = numbers * np.dtype(np.float64).itemsize
+    if size <= BLANK:
+        return np.empty(numbers), False
+    if size > KEPT:
+        return np.zeros(numbers), True
+    memory = _given_back.take(size)
+    blank = memory is None
+    if memory is None:
+        memory = _pages(size)
+    room = np.frombuffer(memory, np.float64, numbers)
+    # views of an array keep the array itself: when it goes, nothing refers to its memory
+    weakref.finalize(room, _given_back.put, memory).atexit = False
+    return room, blank
+
+
+def _pages(size: int) -> mmap.mmap:
+    """Pages that are not made yet, huge ones where there are some."""
+    memory = mmap.mmap(-1, size)
+    if hasattr(mmap, "MADV_HUGEPAGE"):
+        # a system without huge pages refuses, and gives small ones
+        with contextlib.suppress(OSError):
+            memory.madvise(mmap.MADV_HUGEPAGE)
+    return memory
+
+
+class _GivenBack:
+    """The memory that was given back last."""
+
+    def __init__(self) -> None:
+        self._memory: mmap.mmap | None = None
+        # an array may go at any moment, while its thread takes memory too
+        self._one_at_a_time = threading.RLock()
+
+    def take(self, size: int) -> mmap.mmap | None:
+        """What is there, where it is large enough and not more than twice as large."""
+        with self._one_at_a_time:
+            memory = self._memory
+            if memory is None or not size <= len(memory) <= 2 * size:
+                return None
+            self._memory = None
+            return memory
+
+    def put(self, memory: mmap.mmap) -> None:
+        """Keep it in the place of what was there."""
+        with self._one_at_a_time:
+            self._memory = memory
+
+
+_given_back = _GivenBack()
 
 
 def is_blank(number: float) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import singledispatchmethod
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +56,7 @@ LONGEST_NUMBER = 24
 """Characters of a number that is not parted from its unit."""
 POINTS = 72.0 / 25.4
 """Points in a millimetre."""
+STYLE_IMPORT = '#import "style.typ": *'
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 
@@ -64,18 +66,24 @@ class Source:
 
     Attributes
     ----------
-    text : of the main file
+    text : of the document
+    head : lines of it before the first chapter
     files : name -> bytes of every picture
     """
 
     def __init__(self, report: Report) -> None:
         self.files: dict[str, bytes] = {}
-        self.text = "\n".join(self._document(number_blocks(report))) + "\n"
-
-    def _document(self, report: Report) -> Iterator[str]:
-        contents = _("Contents")
-        yield '#import "style.typ": *'
+        report = number_blocks(report)
         outline = list(outline_of(report))
+        head = "\n".join(self._head(report, outline))
+        chapters = (self._chapter(one, report) for one in outline if one.chapter.role != "front")
+        self.head = head.count("\n") + 1
+        self.text = "\n".join([head, *chain.from_iterable(chapters)]) + "\n"
+
+    def _head(self, report: Report, outline: Sequence[OutlinedChapter]) -> Iterator[str]:
+        """What stands before the first chapter."""
+        contents = _("Contents")
+        yield STYLE_IMPORT
         front = [one for one in outline if one.chapter.role == "front"]
         opening = "none" if report.is_note else self._opening(report.opening)
         before = "\n".join(line for one in front for line in self._chapter(one, report))
@@ -93,9 +101,6 @@ class Source:
             f" opening: {opening}"
             f"{note})"
         )
-        for one in outline:
-            if one.chapter.role != "front":
-                yield from self._chapter(one, report)
 
     def _opening(self, blocks: Sequence[Block]) -> str:
         """What stands below the title: pictures stay there, all others float; paper plays no motion."""
@@ -285,6 +290,10 @@ def content(marked: str) -> str:
     return f"[{''.join(parts)}]"
 
 
+_EQUAL = re.compile(r"= (?=[−+-]?\d)")
+"""Before a number, which is not parted from its sign of equality."""
+
+
 @functools.cache
 def _measured_quantity(language: str) -> re.Pattern[str]:
     """A number, the blank behind it, and its unit."""
@@ -300,6 +309,7 @@ def _whole_quantities(text: str) -> list[str]:
     """Pieces of a text as typst's strings: a number stays on one line with its unit, a unit whole."""
     found: list[str] = []
     end = 0
+    text = _EQUAL.sub(f"={NO_BREAK}", text)
     for one in _measured_quantity(chosen_language()).finditer(text):
         quantity = _kept_together(one)
         before = text[end : one.start()]
@@ -319,7 +329,7 @@ def _kept_together(quantity: re.Match[str]) -> str:
 
 def _with_units(text: str) -> str:
     """A text whose numbers keep their units."""
-    return _measured_quantity(chosen_language()).sub(_kept_together, text)
+    return _measured_quantity(chosen_language()).sub(_kept_together, _EQUAL.sub(f"={NO_BREAK}", text))
 
 
 def _joined(text: str) -> str:
@@ -420,6 +430,29 @@ EPOCH = 315_532_800
 """The date of every document: PDF/A wants one, and the same report gives the same bytes. That of the other formats."""
 
 
+def document_files(text: str, head: int) -> dict[str, bytes]:
+    """The source of a document as files: the main one, and each chapter in one of its own.
+
+    Typst remembers what it has laid out by the place of the source within its file. So a chapter whose figures move is
+    laid out anew, and no other one.
+
+    Parameters
+    ----------
+    text, head : of a `Source`
+    """
+    lines = text.splitlines()
+    main, chapter = lines[:head], [STYLE_IMPORT]
+    files: dict[str, bytes] = {}
+    for line in lines[head:]:
+        chapter.append(line)
+        if line.startswith(CHAPTER_END):
+            name = f"chapter-{len(files) + 1}.typ"
+            files[name] = "\n".join(chapter).encode()
+            main.append(f'#include "{name}"')
+            chapter = [STYLE_IMPORT]
+    return {"main": "\n".join(main).encode(), **files}
+
+
 def pdf_document(report: Report) -> bytes:
     """A report as PDF/UA-1 and PDF/A-2a: tagged, with an outline and page numbers; the same bytes from the same report.
 
@@ -431,13 +464,14 @@ def pdf_document(report: Report) -> bytes:
     beside = {**style_files(report), **source.files}
 
     def layout_of(text: str) -> Layout:
-        inputs: Any = {"main": text.encode(), **beside}
+        inputs: Any = {**document_files(text, source.head), **beside}
         return Layout.read(typst.Compiler(input=inputs, ignore_system_fonts=True).eval(EXPRESSION))
 
     page = page_style(report.standard)
     text = well_placed(source.text, layout_of, page.top * POINTS, (297.0 - page.top - page.bottom) * POINTS)
-    files: Any = {"main": text.encode(), **beside}
-    compiler = typst.Compiler(ignore_system_fonts=True)
+    files: Any = {**document_files(text, source.head), **beside}
+    # a compiler with the same input as the one that was asked for places finds what that laid out
+    compiler = typst.Compiler(input=files, ignore_system_fonts=True)
     *strict, plain = STANDARDS
     for standards in strict:
         with suppress(typst.TypstError):

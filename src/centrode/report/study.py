@@ -52,7 +52,7 @@ class ReportOptions:
     Attributes
     ----------
     chapters : names of chapters, in any order; all that apply if nobody chooses
-    instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with several drives],
+    instants : values of the drive at which tables, diagrams and forces are shown [rad or m; s with a law or several],
         or texts with a unit ("120 deg")
     points : names of points whose velocities and paths are given
     digits : significant digits of numbers
@@ -187,12 +187,12 @@ def _rows_and_options(
 
 
 def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> float:
-    """Value of the drive, a time with several drives, an angle of a cam [rad, m or s], of a number or a text.
+    """Value of the drive, a time with a law or several drives, an angle of a cam [rad, m or s], of a number or a text.
 
     Raises InputError, which names `where`, for a unit of another kind.
     """
     if isinstance(description, Mechanism):
-        return description.motion_parameter.variable.read(text, where)
+        return description.motion_parameter.instant.read(text, where)
     return read_quantity(text, "angle", where, refuses_bare=description.display.refuses_bare_angles)
 
 
@@ -385,7 +385,7 @@ def moments_of(study: ReportStudy) -> tuple[Moment, ...]:
 
 def _moments(study: ReportStudy) -> list[Moment]:
     mechanism = study.mechanism
-    places = instants_of(mechanism, study.motion, study.wishes.instants)
+    places = instants_of(mechanism, study.wishes.instants)
     data = motion(mechanism, at=places)
     return [Moment(data, k, at, _title(study, data, k)) for k, at in enumerate(places)]
 

@@ -23,7 +23,7 @@ class MechanismPicture:
     title : what it shows
     mechanism : kinds of its links, joints and drives
     motion : its motion, without batch dimensions
-    values : of the motion's parameter at the instants [rad, m or s]; each is shown at the nearest sample
+    values : instants [rad, m or s]; each is shown at the nearest sample
     instants : the motion exactly there; None where the samples of the motion have to do
     """
 

@@ -118,18 +118,26 @@ Through: TypeAlias = Sequence[tuple[Node, Operand]]
 m = EXPRESSIONS
 
 
+NUMBER_OF_SAMPLE = "number of sample"
+"""An input of a pass: 0 at the first sample, 1 at the next one."""
+
+
 @dataclass(frozen=True)
 class States:
     """Derivatives of a fold.
 
     Attributes
     ----------
-    parts : state -> what is folded into it: a derivative of the formula at a sample
+    parts : state -> what is folded into it: a derivative of the formula at a sample, or which sample it is
     at_end : path -> derivative by the value there, from the states when all samples are passed
+    sample : of an extreme, the state that says at which sample it is, and
+    there : the inputs of that sample by names of their own: name -> input
     """
 
     parts: Mapping[str, Node]
     at_end: Mapping[str, Node]
+    sample: str = ""
+    there: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -142,6 +150,8 @@ class Slopes:
     standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
     folds : whose results have derivatives of their own
     moving : variables that differ from sample to sample
+    inputs : those of them that are the same for all mechanisms; with these the derivatives of an extreme are computed
+        once a mechanism, at its sample, if nothing else moves
     known : fold -> its states, once they have been requested
     """
 
@@ -149,15 +159,22 @@ class Slopes:
     standing: Mapping[str, Node]
     folds: Folds
     moving: frozenset[str]
+    inputs: frozenset[str] = frozenset()
     known: dict[str, States] = field(default_factory=dict)
 
     @classmethod
     def of(
-        cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds, moving: frozenset[str]
+        cls,
+        paths: Sequence[str],
+        varied: Varied,
+        traced: Traced,
+        folds: Folds,
+        moving: frozenset[str],
+        inputs: frozenset[str] = frozenset(),
     ) -> Slopes:
         """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
         through = {path: _through(path, varied) for path in paths}
-        return cls(through, traced.standing, folds, moving)
+        return cls(through, traced.standing, folds, moving, inputs)
 
     def of_node(self, node: Node) -> dict[str, Node]:
         # what jumps, or was found by iteration, is put aside as a variable: it has no derivative
@@ -196,13 +213,23 @@ class Slopes:
         """States by which a scan carries the derivatives of a fold of this name: those with less work at a sample."""
         if name not in self.known:
             fold = next(fold for fold in self.folds.found.values() if fold.name == name)
-            ways = [self._by_paths(fold)]
-            if (
-                fold.kind == "sum"
-            ):  # an extreme selects for each state, and its two ends have the chain in common
-                ways.append(self._by_parts(fold))
-            self.known[name] = min(ways, key=self._work)
+            by_paths = self._by_paths(fold)
+            if fold.kind == "sum":
+                self.known[name] = min(by_paths, self._by_parts(fold), key=self._work)
+            else:
+                self.known[name] = self._at_sample(fold, by_paths) or by_paths
         return self.known[name]
+
+    def _at_sample(self, fold: Fold, by_paths: States) -> States | None:
+        """One state for all paths: at which sample the extreme is. None where more moves than inputs."""
+        slopes = Graph(dict(zip(by_paths.at_end, by_paths.parts.values(), strict=True)))
+        moving = [name for name in slopes.variables if name in self.moving]
+        if not self.inputs or not self.inputs.issuperset(moving):
+            return None
+        sample = f"{fold.name} at"
+        there = {f"{sample} {name}": name for name in moving}
+        ends = slopes.substitute({name: variable(own) for own, name in there.items()})
+        return States({sample: variable(NUMBER_OF_SAMPLE)}, ends.outputs, sample, there)
 
     def _by_paths(self, fold: Fold) -> States:
         """A state for each path."""

@@ -35,8 +35,8 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import MECHANISM, Design, path_digests
 from centrode.sweeps.drawn_designs import Drawn, lazy_values
 from centrode.sweeps.executors import bare
-from centrode.sweeps.machine import StreamedColumns, columns_for
 from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
+from centrode.sweeps.result_columns import StreamedColumns, columns_for
 from centrode.sweeps.storage import DONE, GREATEST, METADATA, PROGRESS, Storage, place_refusals, table_of
 
 # The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.
@@ -252,6 +252,8 @@ class SweepFrame:
             for path in self.units
             if path not in self.design.coordinates
         }
+        if not drawn:
+            return self.empty.coords
         return xr.Dataset(coords={**self.empty.coords, **drawn}).coords
 
     @property
@@ -269,32 +271,89 @@ class SweepFrame:
         )
 
 
+@dataclass(frozen=True)
+class MotionLabels:
+    """Words and labels of results of one task, taken from a motion of the mechanism; made once.
+
+    Attributes
+    ----------
+    coordinates : the motion's that results have
+    attributes : what results say of the mechanism
+    """
+
+    coordinates: xr.Dataset
+    attributes: Mapping[str, Any]
+    _designs: dict[Any, xr.Dataset] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, motion: xr.Dataset, asked: SweepOutputs) -> MotionLabels:
+        """The labels of what is requested."""
+        used = {dimension for column in asked.columns for dimension in column.dimensions}
+        labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
+        if SAMPLE in used:
+            labels += ["time", "drive", "drive_value"]
+        coordinates: dict[Any, Any] = {name: motion[name] for name in labels}
+        if SAMPLE in used:
+            # what formulas compare the motion with stands beside it
+            coordinates |= {
+                name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
+            }
+        told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
+        attributes = {**told, "samples": motion.sizes["sample"]}
+        found = xr.Dataset(coords=coordinates)
+        # the drive along the samples is a label of a motion, and a number beside it here
+        return cls(
+            found.drop_indexes([name for name in found.xindexes if name not in found.dims]), attributes
+        )
+
+    def with_design(
+        self, design: Design, units: Mapping[str, str], asked: SweepOutputs, attributes: Mapping[str, Any]
+    ) -> xr.Dataset:
+        """The coordinates of a result: these, the paths that vary, and the values of a design."""
+        given = {path: (along, x, {"units": units[path]}) for path, (along, x) in design.coordinates.items()}
+        key = tuple((path, along, x.shape, x.dtype) for path, (along, x, _units) in given.items())
+        kept = self._designs.get(key)
+        if kept is None:
+            added: dict[Any, Any] = {}
+            if any(PATH in column.dimensions for column in asked.columns):
+                # texts of any length, as all other labels: a store has no standard for those of one length
+                added[PATH] = (PATH, np.array(list(design.paths), dtype=object))
+            # values of a grid are indexes, and stay what they are
+            is_grid = any(along == path for path, (along, _x, _units) in given.items())
+            added |= given if is_grid else {path: _in_its_place(*one) for path, one in given.items()}
+            kept = self.coordinates.assign_coords(added)
+            if not is_grid:
+                self._designs.clear()
+                self._designs[key] = kept
+        # to align coordinates takes as long as hundreds of motions: those of designs of one shape are put together
+        # once, and values take their places
+        found = kept.copy()
+        for name, variable in found.variables.items():
+            if isinstance(variable, xr.IndexVariable):
+                continue
+            # whoever writes to a result must not write to the next one
+            variable.data = given[str(name)][1] if name in given else variable.data.copy()
+        found.attrs = {**self.attributes, **attributes}
+        return found
+
+
+def _in_its_place(
+    along: str, values: AnyArray, told: Mapping[str, str]
+) -> tuple[str, AnyArray, Mapping[str, str]]:
+    """A coordinate of that shape without its values, which takes no memory."""
+    return along, np.broadcast_to(np.zeros(1, values.dtype), values.shape), told
+
+
 def frame_of(
-    motion: xr.Dataset, design: Design, units: Mapping[str, str], asked: SweepOutputs, executor: str
+    labels: MotionLabels, design: Design, units: Mapping[str, str], asked: SweepOutputs, executor: str
 ) -> SweepFrame:
-    """The frame of a sweep; `motion` is a motion of the mechanism, and gives it words and labels."""
-    used = {dimension for column in asked.columns for dimension in column.dimensions}
-    labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
-    if SAMPLE in used:
-        labels += ["time", "drive", "drive_value"]
-    # the motion may be kept for the next sweep: whoever writes to a result must not write to it
-    coordinates: dict[Any, Any] = {name: motion[name].copy() for name in labels}
-    if SAMPLE in used:
-        # what formulas compare the motion with stands beside it
-        coordinates |= {
-            name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
-        }
-    if PATH in used:
-        # texts of any length, as all other labels: a store has no standard for those of one length
-        coordinates[PATH] = (PATH, np.array(list(design.paths), dtype=object))
-    for path, (dimension, values) in design.coordinates.items():
-        coordinates[path] = ((dimension,), values, {"units": units[path]})
-    told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
-    attributes = {**told, "samples": motion.sizes["sample"], "executor": executor}
+    """The frame of a sweep."""
+    attributes = {"executor": executor}
     if isinstance(design, Drawn):
         # values of a drawn design are in no store: this says what they are
         attributes["drawn"] = design.text
-    return SweepFrame(design, asked, xr.Dataset(coords=coordinates, attrs=attributes), dict(units))
+    empty = labels.with_design(design, units, asked, attributes)
+    return SweepFrame(design, asked, empty, dict(units))
 
 
 class InMemory:
@@ -351,8 +410,9 @@ def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
         ends = [(math.nan, math.nan) if pair is None else tuple(pair) for pair in extremes]
         least, greatest = [end[0] for end in ends], [end[1] for end in ends]
         single = not column.shape
-        data[column.name].attrs["least"] = least[0] if single else least
-        data[column.name].attrs["greatest"] = greatest[0] if single else greatest
+        told = data.variables[column.name].attrs
+        told["least"] = least[0] if single else least
+        told["greatest"] = greatest[0] if single else greatest
     return data
 
 

@@ -157,7 +157,9 @@ def sweep(
         mechanism, design, name, outputs, reduce, gradient, tables, span, check_threads(threads), named
     )
     if store is None:
-        return _in_memory(plan, progress, out).assign_attrs(topic="sweep")
+        data = _in_memory(plan, progress, out)
+        data.attrs["topic"] = "sweep"
+        return data
     _check_size(plan.frame, designs.IN_STORE, _("reduce it, or choose fewer"))
     storage = storage_of(store)
     facts = study_of(plan.frame, plan.task, plan.target)

@@ -29,10 +29,10 @@ from centrode.sweeps.arrays import Results, SweepTask
 from centrode.sweeps.designs import Design, unit_of
 from centrode.sweeps.executors import Executor, executor_of
 from centrode.sweeps.kept_plans import KeptValues
-from centrode.sweeps.machine import StreamedColumns
 from centrode.sweeps.outputs import Outputs, Reduce, asked_of, with_slopes
+from centrode.sweeps.result_columns import StreamedColumns
 from centrode.sweeps.sample_tables import Tables
-from centrode.sweeps.store import Blocks, SweepFrame, Tally, frame_of, tally_of
+from centrode.sweeps.store import Blocks, MotionLabels, SweepFrame, Tally, frame_of, tally_of
 
 Span: TypeAlias = tuple[Any, Any, Any]
 """Samples, start and stop, as they were given."""
@@ -40,7 +40,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 MOST_SAMPLES = 20_000
 """Samples of a sweep whose plan is kept for the next one."""
-_plans: KeptValues[tuple[xr.Dataset, SweepTask]] = KeptValues(16)
+_plans: KeptValues[tuple[MotionLabels, SweepTask]] = KeptValues(16)
 
 
 @dataclass(frozen=True)
@@ -111,11 +111,11 @@ def plan_of(
     target: str | None = None,
 ) -> SweepPlan:
     """The plan of a sweep; arguments as those of `sweep`, `name` that of the executor."""
-    motion, task = _task_of(mechanism, design, outputs, reduce, gradient, tables, span, target)
+    labels, task = _task_of(mechanism, design, outputs, reduce, gradient, tables, span, target)
     with compiling_for(target):
         chosen, told_of_it = executor_of(name, task, design, threads)
     units = {path: unit_of(mechanism, path) for path in design.paths}
-    frame = frame_of(motion, design, units, task.asked, told_of_it)
+    frame = frame_of(labels, design, units, task.asked, told_of_it)
     return SweepPlan(task, chosen, frame, target if chosen.name == MACHINE_CODE else None)
 
 
@@ -169,21 +169,19 @@ def _task_of(
     tables: Tables,
     span: Span,
     target: str | None,
-) -> tuple[xr.Dataset, SweepTask]:
-    """The description's own motion, and the task; what was requested before is not made again."""
+) -> tuple[MotionLabels, SweepTask]:
+    """The labels of results, and the task; what was requested before is not made again."""
 
-    def make() -> tuple[xr.Dataset, SweepTask]:
+    def make() -> tuple[MotionLabels, SweepTask]:
         prepared = ready(mechanism)
         grid_of_samples = requested_grid(prepared, *span)
         # the description's own motion says what there is to name
         motion = motion_with_names(solve(prepared, grid_of_samples), f"{outputs} {reduce}")
         asked = asked_of(motion, design, outputs, reduce, tables)
-        return motion, SweepTask(
-            prepared,
-            grid_of_samples,
-            with_slopes(asked, len(design.paths)) if gradient else asked,
-            design.paths,
-        )
+        if gradient:
+            asked = with_slopes(asked, len(design.paths))
+        task = SweepTask(prepared, grid_of_samples, asked, design.paths)
+        return MotionLabels.of(motion, asked), task
 
     # tables are compared by nobody; a long motion would stay in memory
     if tables is not None or not isinstance(span[0], int | None) or (span[0] or 0) > MOST_SAMPLES:

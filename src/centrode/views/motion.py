@@ -70,7 +70,9 @@ PRESCRIBED = Sentence(
 def sheet(results: MotionResults) -> Sheet:
     """Structure, range, statuses and notes of a motion, its tables and figures; its parts have sheets of their own."""
     mechanism, exact = results.mechanism, results.instants
-    values = mechanism.study.instants if exact is None else mechanism.motion_parameter.values(exact).tolist()
+    values = (
+        mechanism.study.instants if exact is None else mechanism.motion_parameter.instants(exact).tolist()
+    )
     pictures = motion_pictures(mechanism, results.motion, values, exact)
     datasets = {"motion": results.motion}
     chapters = {
@@ -270,7 +272,7 @@ def motion_pictures(
     ----------
     motion : Dataset
         Of `motion`, without batch dimensions.
-    values : sequence of float [rad or m; s with several drives]
+    values : sequence of float [rad or m; s with a law or several drives]
         At which the mechanism is drawn, each at the nearest sample; in the initial position without any.
     instants : Dataset
         The motion exactly there.

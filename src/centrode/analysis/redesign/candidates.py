@@ -384,21 +384,28 @@ def signs_at_start(
     prepared: Ready, kinematics: Kinematics, angles: Mapping[str, Number], size: int
 ) -> dict[int, Array]:
     """Signs (size, 1) of all groups in the initial positions: stated, by initial angles, or those of the original."""
-    mechanism = prepared.mechanism
-    placed = places_anew(mechanism)
-    signs: dict[int, Array] = {}
+    mechanism, groups = prepared.mechanism, kinematics.structure.groups
+    signs = {
+        index: np.full((size, 1), prepared.assembled.signs[index])
+        for index, group in enumerate(groups)
+        if group.signed
+    }
+    # a side that the description states stays; initial angles decide only where they place
+    hints: dict[int, dict[str, Number]] = {}
+    if places_anew(mechanism):
+        free = (index for index in signs if stated_side(kinematics, groups[index]) is None)
+        hints = {index: found for index in free if (found := _hints(mechanism, groups[index], angles))}
     at = kinematics.frame(ARRAYS, np.full((1, 1), kinematics.path.initial))
+    last = max(hints, default=-1)
     with np.errstate(all="ignore"):
-        for index, group in enumerate(kinematics.structure.groups):
-            # in the plan's order: later groups stand on positions of earlier ones
-            if group.signed:
-                own = np.full((size, 1), prepared.assembled.signs[index])
-                # a side that the description states stays; initial angles decide only where they place
-                decided = not placed or stated_side(kinematics, group) is not None
-                hints = {} if decided else _hints(mechanism, group, angles)
-                signs[index] = _nearer(kinematics, group, index, at, hints) if hints else own
-            choices = SideChoices(FixedSigns(ARRAYS, signs), index)
-            solve_group(group, ARRAYS, kinematics.numbers, at, choices)
+        for index, group in enumerate(groups[: last + 1]):
+            if index in hints:
+                signs[index] = _nearer(kinematics, group, index, at, hints[index])
+            if index < last:
+                # in the plan's order: later groups stand on positions of earlier ones
+                solve_group(
+                    group, ARRAYS, kinematics.numbers, at, SideChoices(FixedSigns(ARRAYS, signs), index)
+                )
     return {index: np.broadcast_to(sign, (size, 1)) for index, sign in signs.items()}
 
 

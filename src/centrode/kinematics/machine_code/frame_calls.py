@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -32,7 +33,6 @@ from centrode.numerics.executors import (
     Take,
     address_of,
     bare_call,
-    bare_function,
     functions_before,
     machine_function,
     streamer,
@@ -45,7 +45,7 @@ from centrode.numerics.scans import FUNCTIONS, Scan, room_of
 Array: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 Given: TypeAlias = Sequence[float]
-MOVE, TURN, JUDGE = int(Task.MOVE), int(Task.TURN), int(Task.JUDGE)
+MOVE, TURN, JUDGE, CALL = (int(x) for x in (Task.MOVE, Task.TURN, Task.JUDGE, Task.CALL))
 CLEAR, WINDINGS = int(Answer.CLEAR), int(Answer.WINDINGS)
 
 
@@ -71,24 +71,66 @@ class _Stage:
 
     def for_thread(self) -> Callable[[list[Any]], None]:
         """What adds its numbers to those that are known; with memory of its own."""
-        groups, plain, kernel, inputs = self.groups, self.plain, self.kernel, self.inputs
+        plain, kernel, inputs = self.plain, self.kernel, self.inputs
+        packs: dict[tuple[int, ...], _Row] = {}
+        groups = []
+        for function, rows in self.groups:
+            # functions of the same numbers, as sines and cosines are, share a row
+            fresh = [row for row in dict.fromkeys(rows) if row not in packs]
+            packs |= {row: _Row(row) for row in fresh}
+            fill = [packs[row].fill for row in fresh]
+            groups.append((fill, function, [packs[row].numbers for row in rows], np.empty(len(rows[0]))))
         if kernel is not None:
-            row, room = np.zeros((len(inputs), 1)), room_of(self.outputs, 1, LANES)
-            pack: Callable[..., None] = struct.Struct(f"{len(inputs)}d").pack_into
-            first = room[:, 0, 0]
-            call = bare_function(kernel, row, room)
+            given, room = _Row(tuple(inputs)), room_of(self.outputs, 1, LANES)
+            fill_kernel, first = given.fill, room[:, 0, 0]
+            call = _one_call(kernel, given.numbers[:, None], room)
 
         def add(numbers: list[Any]) -> None:
-            for function, rows in groups:
-                numbers += function(*(np.array([numbers[k] for k in each]) for each in rows)).tolist()
+            for fill, function, rows, results in groups:
+                for each in fill:
+                    each(numbers)
+                numbers += function(*rows, results).tolist()
             if kernel is not None:
-                pack(row, 0, *[numbers[k] for k in inputs])
+                fill_kernel(numbers)
                 call()
                 numbers += first.tolist()
             for operation, at in plain:
                 numbers.append(operation(*[numbers[k] for k in at]))
 
         return add
+
+
+class _Row:
+    """Numbers at some places of a list, as an array."""
+
+    def __init__(self, places: Sequence[int]) -> None:
+        self.numbers = np.zeros(len(places))
+        self._pack: Callable[..., None] = struct.Struct(f"{len(places)}d").pack_into
+        self._pick = _picked(places)
+
+    def fill(self, numbers: list[Any]) -> None:
+        """Take them from the list."""
+        self._pack(self.numbers, 0, *self._pick(numbers))
+
+
+def _picked(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:
+    """What gives the numbers at some places of a list; twice as fast as one after the other."""
+    if len(places) < 2:
+        return lambda numbers: [numbers[k] for k in places]
+    return itemgetter(*places)
+
+
+def _one_call(kernel: Take, row: Array, room: Array) -> Callable[[], object]:
+    """One call of a kernel with one step, by a table: to hand over fourteen numbers takes longer than the kernel."""
+    arguments = bare_call(kernel, row, room)
+    assert arguments is not None
+    table, run = np.array(arguments, dtype=np.int64), machine_function(frame_text)
+    at = table.ctypes.data
+
+    def call(_kept: object = (kernel, table, row, room)) -> None:
+        run(at, CALL)
+
+    return call
 
 
 class PlainFunction:
@@ -116,18 +158,18 @@ class PlainFunction:
             self._stages.append(_stage_of(inner, places, later))
         self._ends = [places[node] for node in graph.outputs.values()]
 
-    def for_thread(self) -> Callable[[Given], list[float]]:
+    def for_thread(self) -> Callable[[Given], Sequence[float]]:
         """The function of the numbers at the paths, with memory of its own."""
-        start, given, ends = self._start, self._given, self._ends
+        start, given, ends = self._start, self._given, _picked(self._ends)
         stages = [stage.for_thread() for stage in self._stages]
 
-        def run(values: Given) -> list[float]:
+        def run(values: Given) -> Sequence[float]:
             numbers = start.copy()
             for k, which in given:
                 numbers[k] = values[which]
             for stage in stages:
                 stage(numbers)
-            return [numbers[k] for k in ends]
+            return ends(numbers)
 
         return run
 
@@ -268,13 +310,15 @@ class CalledFrames:
             **turned,
             **{f"{k}: {name}": x for k, g in enumerate(before) for name, x in g.outputs.items()},
         }
-        graph = Graph(nodes)
+        # scans have functions in common: each is computed once
+        distinct = {node: len(numbers.paths) + k for k, node in enumerate(dict.fromkeys(nodes.values()))}
+        graph = Graph({str(k): node for k, node in enumerate(distinct)})
         if set(graph.variables) - set(numbers.paths):
             return None
         layout, winders = kernels.judge.layout, kernels.judge.winders
         places = {name: k for name, k in numbers.copied.items()}
-        places |= {name: len(numbers.paths) + k for k, name in enumerate(nodes)}
-        first_reduced = len(numbers.paths) + len(nodes)
+        places |= {name: distinct[node] for name, node in nodes.items()}
+        first_reduced = len(numbers.paths) + len(distinct)
         first_greatest = first_reduced + len(layout.least)
         places |= {name: first_greatest + k for k, name in enumerate(layout.greatest)}
         first_centre = first_greatest + len(layout.greatest)

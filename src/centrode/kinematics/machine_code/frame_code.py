@@ -62,6 +62,8 @@ class Task(IntEnum):
     MOVE = 0
     TURN = 1
     JUDGE = 2
+    CALL = 3
+    """Of a table that has one kernel alone."""
 
 
 def frame_text(width: int) -> str:
@@ -447,13 +449,15 @@ def _entry() -> str:
     return f"""
 define i64 @{FUNCTION}(ptr %table, i64 %task) {{
 entry:
-  %turns = icmp eq i64 %task, {Task.TURN}
-  br i1 %turns, label %turn, label %move
+  switch i64 %task, label %move [ i64 {Task.TURN}, label %turn i64 {Task.CALL}, label %call ]
 move:
   %answer = call i64 @move(ptr %table, i64 %task)
   ret i64 %answer
 turn:
   call void @turn(ptr %table)
+  ret i64 {Answer.CLEAR}
+call:
+  call void @call(ptr %table, i64 0)
   ret i64 {Answer.CLEAR}
 }}
 """

@@ -175,13 +175,10 @@ def _draw_angle(
 
 def write_facts(page: DrawingPage, field: Field, lines: list[tuple[str, str]]) -> None:
     """What is given and found, one below the other from the top of a field, the values in a column of their own."""
-    # a value that does not fit beside its label goes on below, in the column of values
     rows = [
         ("" if number else label, part)
         for label, value in lines
-        for number, part in enumerate(
-            wrapped(value, float(field.size[0]) - letters_width(label, USUAL), USUAL)
-        )
+        for number, part in enumerate(_value_lines(label, value, float(field.size[0])))
     ]
     step = min(2.2 * USUAL, float(field.size[1]) / max(1, len(rows)))
     left, top = float(field.corner[0]), float(field.end[1])
@@ -189,3 +186,10 @@ def write_facts(page: DrawingPage, field: Field, lines: list[tuple[str, str]]) -
         up = top - (number + 1) * step
         page.write_in(USUAL, left, up, label, ha="left", va="bottom")
         page.write_in(USUAL, float(field.end[0]), up, value, ha="right", va="bottom")
+
+
+def _value_lines(label: str, value: str, width: float) -> list[str]:
+    """A value beside its label; where it does not fit there, below it, or else in as many lines as it needs."""
+    beside = wrapped(value, width - letters_width(label, USUAL), USUAL)
+    whole = wrapped(value, width, USUAL)
+    return ["", *whole] if len(beside) > 1 and len(whole) == 1 else beside

@@ -100,7 +100,7 @@ def write_caption(page: DrawingPage, field: Field, title: str, scales: Sequence[
 def begin(page: DrawingPage, field: Field) -> Field:
     """Forget lines and names of other drawings; the part of a field above its caption."""
     page.segments.clear()
-    page.boxes.clear()
+    page.forget_texts()
     return field.part(bottom=CAPTION)
 
 

@@ -6,16 +6,20 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.layout_engine import LayoutEngine
 from matplotlib.spines import Spine
 from matplotlib.transforms import Bbox
 
+Array = npt.NDArray[np.float64]
 PAD = 1 / 24
 """Inches about each panel with its ticks and labels."""
-FIRST = (0.09, 0.1, 0.98, 0.97)
-"""Left, lower, right and upper edge of the grid where panels are measured first: about where most come to stand."""
-GAP = 0.06
-"""Of the figure, between its panels then."""
+FIRST = (0.6, 0.42, 0.6, 0.04)
+"""Inches on the left, below, on the right and above of the grid where panels are measured first: what most need."""
+GAPS = (0.6, 0.1)
+"""Inches between columns and between rows of panels then."""
+LEAST = 0.02
+"""Of the figure, a side of a panel then."""
 MOST_TICKS = 9
 """No axis has more ticks, however long it is."""
 
@@ -39,12 +43,12 @@ class GridLayout(LayoutEngine):
         panels = [one for one in fig.axes if one.get_subplotspec() is not None and one.get_in_layout()]
         if not panels:
             return
-        if not self._has_run:
-            for axes in panels:
-                _put(axes, _first_place(axes))
-            self._has_run = True
         renderer = fig._get_renderer()
         above = _title_height(fig, renderer)
+        if not self._has_run:
+            for axes in panels:
+                _put(axes, _first_place(axes, fig.get_size_inches(), above))
+            self._has_run = True
         for _pass in range(2):
             room = [_tick_room(one) for one in panels]
             _place(fig, panels, renderer, above)
@@ -61,7 +65,8 @@ def _place(fig: Any, panels: Sequence[Any], renderer: Any, above: float) -> None
     beside_columns, beside_rows = np.zeros((2, columns)), np.zeros((2, rows))
     for axes in panels:
         row, column = _cell(axes)
-        inner, outer = axes.get_position(original=True), _outer_box(axes, renderer).transformed(to_figure)
+        inner = axes.get_position(original=True)
+        outer = _outer_box(axes, renderer, _is_last_with_legend(axes, panels)).transformed(to_figure)
         for side, beside in enumerate((inner.x0 - outer.x0, outer.x1 - inner.x1)):
             beside_columns[side, column] = max(beside_columns[side, column], beside)
         for side, beside in enumerate((outer.y1 - inner.y1, inner.y0 - outer.y0)):
@@ -77,13 +82,15 @@ def _place(fig: Any, panels: Sequence[Any], renderer: Any, above: float) -> None
         _put(axes, (lefts[column], lowers[row], wide, high))
 
 
-def _first_place(axes: Any) -> tuple[float, float, float, float]:
-    """Lower left corner and sides of a panel that is not measured yet."""
-    left, lower, right, upper = FIRST
+def _first_place(axes: Any, size: Array, above: float) -> tuple[float, float, float, float]:
+    """Lower left corner and sides of a panel that is not measured yet, in a figure of a size [inch]."""
+    left, lower, right, upper = np.array(FIRST) / np.tile(size, 2)
+    across, up = np.array(GAPS) / size
     (columns, rows), (row, column) = _grid_of([axes]), _cell(axes)
-    wide, high = (right - left) / columns, (upper - lower) / rows
-    gaps = GAP if columns > 1 else 0.0, GAP if rows > 1 else 0.0
-    return left + column * wide, upper - (row + 1) * high, wide - gaps[0], high - gaps[1]
+    wide = max((1.0 - left - right - (columns - 1) * across) / columns, LEAST)
+    high = max((1.0 - above - lower - upper - (rows - 1) * up) / rows, LEAST)
+    top = 1.0 - above - upper - row * (high + up)
+    return left + column * (wide + across), top - high, wide, high
 
 
 def _put(axes: Any, place: tuple[float, float, float, float]) -> None:
@@ -91,10 +98,28 @@ def _put(axes: Any, place: tuple[float, float, float, float]) -> None:
     axes.set_in_layout(True)  # who gives axes a place of their own takes them out of it
 
 
-def _outer_box(axes: Any, renderer: Any) -> Any:
-    """A panel with its ticks, labels, legend and what else is not cut at its edges; the frame is the panel's own."""
+def _outer_box(axes: Any, renderer: Any, may_hang: bool) -> Any:
+    """A panel with its ticks, labels, legend and what else is not cut at its edges; the frame is the panel's own.
+
+    A legend beside a panel that `may_hang` stands beside the panels below it too, as far as the figure goes.
+    """
     others = [one for one in axes.get_default_bbox_extra_artists() if not isinstance(one, Spine)]
-    return axes.get_tightbbox(renderer, bbox_extra_artists=others, for_layout_only=True)
+    legend = axes.get_legend()
+    if legend not in others or not may_hang:
+        return axes.get_tightbbox(renderer, bbox_extra_artists=others, for_layout_only=True)
+    others.remove(legend)
+    own = axes.get_tightbbox(renderer, bbox_extra_artists=others, for_layout_only=True)
+    box = legend.get_tightbbox(renderer)
+    if box is None or box.x0 < axes.bbox.x1 or box.y0 < 0.0:
+        return own if box is None else Bbox.union([own, box])
+    return Bbox.from_extents(own.x0, own.y0, max(own.x1, box.x1), own.y1)
+
+
+def _is_last_with_legend(axes: Any, panels: Sequence[Any]) -> bool:
+    """Whether there are panels below one, and none of them has a legend."""
+    row, column = _cell(axes)
+    below = [one for one in panels if _cell(one)[1] == column and _cell(one)[0] > row]
+    return bool(below) and all(one.get_legend() is None for one in below)
 
 
 def _title_height(fig: Any, renderer: Any) -> float:

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 
 from centrode.errors import Status
 from centrode.locale import _
+from centrode.model.motion_parameter import TIME, MotionVariable
 from centrode.model.settings import shown_as
 from centrode.quantities import spelled_unit, status_word, with_unit
 from centrode.render.drawing.globe import draw_globe
@@ -171,8 +172,10 @@ def link_key(mechanism: Mechanism) -> list[tuple[Line2D, str]]:
 
 
 def caption(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> str:
-    """The instant, and why there is nothing to see where there is not."""
+    """The instant, and why there is nothing to see where there is not; of a drive by a law the time too."""
     text = instant_text(mechanism, dataset, sample)
+    if not mechanism.motion_parameter.states_instants:
+        text = f"{_value_text(mechanism, TIME, float(dataset['time'][sample]))}, {text}"
     status = int(dataset["status"][sample])
     return text if status == Status.OK else f"{text} ({status_word(status)})"
 
@@ -181,18 +184,22 @@ def instant_text(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> 
     """The instant: the value of the motion's parameter at a sample."""
     parameter = mechanism.motion_parameter
     values = parameter.values(dataset)
-    factor, unit = shown_as(parameter.variable.unit, mechanism.display)
-    value = factor * float(values[sample])
-    if not parameter.by_time and abs(value) < 1e-9 * factor * float(np.nanmax(np.abs(values))):
+    value = float(values[sample])
+    if not parameter.by_time and abs(value) < 1e-9 * float(np.nanmax(np.abs(values))):
         value = 0.0  # rounding of the range's middle or end
-    return f"{formula(parameter.variable.symbol)} = {with_unit(f'{value:.5g}', spelled_unit(unit))}".replace(
-        "-", "−"
-    )
+    return _value_text(mechanism, parameter.variable, value)
+
+
+def _value_text(mechanism: Mechanism, variable: MotionVariable, value: float) -> str:
+    """A value [SI] with its letter."""
+    factor, unit = shown_as(variable.unit, mechanism.display)
+    shown = with_unit(f"{factor * value:.5g}", spelled_unit(unit))
+    return f"{formula(variable.symbol)} = {shown}".replace("-", "−")
 
 
 def nearest_sample(mechanism: Mechanism, dataset: xarray.Dataset, value: float) -> int:
-    """The sample nearest to a value of the motion's parameter."""
-    return int(np.argmin(np.abs(mechanism.motion_parameter.values(dataset) - value)))
+    """The sample nearest to an instant."""
+    return int(np.argmin(np.abs(mechanism.motion_parameter.instants(dataset) - value)))
 
 
 def initial_sample(scene: LinkageScene | Globe, dataset: xarray.Dataset) -> int:

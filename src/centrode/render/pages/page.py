@@ -38,6 +38,8 @@ THICK = 0.4
 """Half the width of a link's line [mm]."""
 GAP = 0.5
 """Room around a name [mm]."""
+OVERHANG = 0.5
+"""What of a letter may stand before the place where its text begins [mm]."""
 BELOW = 4.0
 """Room below a column of lines [mm]."""
 
@@ -64,6 +66,8 @@ class Page:
     overlay: Axes
     segments: list[tuple[Array, Array]] = field(default_factory=list)
     wishes: list[Wish] = field(default_factory=list)
+    texts: list[Text] = field(default_factory=list)
+    """Texts that are not measured yet: what stands beside a drawing is far from its names."""
     boxes: list[Array] = field(default_factory=list)
     size: tuple[float, float] = (WIDE, HIGH)
     signs: float = 1.0
@@ -100,8 +104,13 @@ class Page:
     def write(self, x: float, y: float, text: str, size: float = NAME, **how: Any) -> Text:
         """A text at a place that is given; names keep clear of it."""
         written = self.overlay.text(x, y, text, fontsize=size, color=how.pop("color", INK), **how)
-        self.boxes.append(self.box_of(written))
+        self.texts.append(written)
         return written
+
+    def forget_texts(self) -> None:
+        """Let names stand where they find room, whatever was written before."""
+        self.boxes.clear()
+        self.texts.clear()
 
     def write_lines(
         self,
@@ -137,6 +146,7 @@ class Page:
 
     def place_names(self, room: Array) -> None:
         """Put every wished name where it covers no other and as few lines as can be, inside a room [mm]."""
+        self._measure_texts(float(room[1, 0]))
         for wish in self.wishes:
             text = self.overlay.text(
                 0, 0, wish.text, fontsize=wish.size, color=wish.colour, ha="center", va="center", zorder=9,
@@ -151,6 +161,16 @@ class Page:
             if np.hypot(*(foot - wish.place)) > wish.clear + LEADER:
                 self.overlay.plot(*np.array([foot, wish.place]).T, color=MUTED, linewidth=0.4, zorder=7.5)
         self.wishes.clear()
+
+    def _measure_texts(self, right: float) -> None:
+        """Note where texts stand, except those that begin on the right of all names."""
+        beside: list[Text] = []
+        for text in self.texts:
+            if text.get_ha() == "left" and float(text.get_position()[0]) >= right + OVERHANG:
+                beside.append(text)
+            else:
+                self.boxes.append(self.box_of(text))
+        self.texts = beside
 
     def _best(self, wish: Wish, half: Array, room: Array) -> Array:
         """The centre of the cheapest place for a name."""
