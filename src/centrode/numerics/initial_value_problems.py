@@ -1,8 +1,8 @@
 """Initial value problems with constraints, as expressions: what an integrator needs to know of them.
 
-The scheme is DOP853: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., 1993,
-section II.10. Twelve stages have order 8, embedded formulas of orders 5 and 3 tell the error. After a step that is taken
-everything may be brought back to where constraints hold.
+The scheme is DOP853: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
+1993, section II.10. Twelve stages have order 8, embedded formulas of orders 5 and 3 tell the error. After a step that
+is taken everything may be brought back to where constraints hold.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class InitialValueProblem:
     rates : what is followed -> its derivative by time
     closing : what is followed, and what stays as it is during a step -> its value after a step that is taken
     error : the error of a step over the tolerance, in `OF_FIFTH`, `OF_THIRD`, `BEFORE` and the values behind the step
-    limit : name of what, among that which stays during a step, the next step must not exceed; empty where nothing limits
+    limit : name of what, among that which stays during a step, the next step must not exceed; or empty
     guard : name of what stops the integration where it is not zero; empty where nothing does
     """
 

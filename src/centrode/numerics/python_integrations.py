@@ -1,4 +1,4 @@
-"""Initial value problems on plain Python numbers, real or complex: where there is no machine code, and off the real axis."""
+"""Initial value problems on plain Python numbers, real or complex: without machine code, and off the real axis."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ class PythonIntegration:
     ) -> tuple[list[Number], list[list[Number]]]:
         """What is followed behind a step, and the rates of all stages.
 
-        `times` are those of the stages; rates are multiplied by `slope(stage)`, the derivative of time by what steps are
-        taken in.
+        `times` are those of the stages; rates are multiplied by `slope(stage)`, the derivative of time by what steps
+        are taken in.
         """
         count = len(self.problem.followed)
         start, fixed = list(carried[:count]), list(carried[count:])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -89,7 +90,7 @@ def test_squares_pass_their_change_points(loops: int, tolerance: float, bound: f
 
 
 def test_instants_inside_a_detour_lie_on_the_motion() -> None:
-    """Around a change point positions come from Taylor's coefficients: against the closed form of the turning squares."""
+    """Around a change point positions come from Taylor's coefficients: against the energy of the turning squares."""
     free = free_motion_of(mechanism(squares(1)))
     start = free.initial({"points.B0": (1.0, 0.0)})
     first = free.integrate(start, 1.0, TIGHT, at=[1.0]).events[0].time
@@ -137,7 +138,9 @@ def test_momentum_about_a_free_axis_stays() -> None:
     parts = {
         "frame": {"points": {"O": [0.0, 0.0]}},
         "links": {"one": rod("O", "Q", 1.0, 0.3), "two": rod("Q", "R", 0.6, 1.2)},
-        "loads": [{"kind": "spring", "link": "two", "relative_to": "one", "stiffness": 4.0, "free_angle": 0.4}],
+        "loads": [
+            {"kind": "spring", "link": "two", "relative_to": "one", "stiffness": 4.0, "free_angle": 0.4}
+        ],
     }
     free = free_motion_of(mechanism(parts))
     course = free.integrate(free.initial({"links.one": 2.0, "links.two": -3.0}), 3.0, TIGHT, samples=31)
@@ -168,7 +171,7 @@ def test_the_error_falls_with_the_tolerance() -> None:
         float(np.max(np.abs(free.integrate(start, 1.0, tolerance, at=[1.0]).coordinates[0] - best)))
         for tolerance in (1e-4, 1e-6, 1e-8, 1e-10)
     ]
-    assert all(after < 0.2 * before for before, after in zip(errors, errors[1:], strict=False))
+    assert all(after < 0.2 * before for before, after in itertools.pairwise(errors))
 
 
 def test_four_times_as_long_it_swings_twice_as_slowly() -> None:
@@ -247,7 +250,7 @@ def test_what_jumps_with_the_sense_of_the_motion_is_refused_by_name(load: dict[s
 
 
 def test_a_kept_drive_takes_what_the_motion_takes() -> None:
-    """A crank at constant speed under its weights: positions are those of the motion, its moment that of the reactions."""
+    """A crank at constant speed under its weights: positions of the motion, and the moment of the reactions."""
     made = mechanism(four_bar())
     free = free_motion_of(made, keeps=["AB"])
     assert free.mobility == 0
@@ -399,7 +402,7 @@ def test_near_misses_are_told_from_change_points(wider: float, kind: str | None)
     parts = four_bar(0.3, 0.8, 0.5 * (1.0 + wider), 0.6)
     parts["drives"][0]["start"] = 1.0
     parts["links"]["DC"]["mass"] = 0.5
-    free, course = moved(parts, 1.0, TIGHT, links_AB=6.0)
+    _free, course = moved(parts, 1.0, TIGHT, links_AB=6.0)
     assert course.ended == "duration"
     assert {event.kind for event in course.events} == ({kind} if kind else set())
     assert np.max(np.abs(course.energy_residual)) <= 1e-7 * np.max(course.kinetic_energy)

@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 
 import centrode as ct
-from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, InitialState, Trajectory, free_motion_of
+from centrode.dynamics.forward_dynamics.free_motion import (
+    FreeMotion,
+    InitialState,
+    Trajectory,
+    free_motion_of,
+)
 from tools.campaigns.campaign import Campaign, Outcome, random_of
 from tools.campaigns.grown.higher import grown_higher
 from tools.campaigns.grown.plane import KINDS, grown
@@ -54,7 +59,8 @@ def parallel(random: np.random.Generator) -> Parts:
     places = np.sort(random.uniform(0.0, 3.0, count)) + np.arange(count)
     crank, turn = float(random.uniform(0.3, 1.0)), float(random.uniform(0.4, 1.2))
     links: Parts = {
-        f"crank{k}": {"points": {f"A{k}": [0.0, 0.0], f"B{k}": [crank, 0.0]}, "angle": turn} for k in range(count)
+        f"crank{k}": {"points": {f"A{k}": [0.0, 0.0], f"B{k}": [crank, 0.0]}, "angle": turn}
+        for k in range(count)
     }
     links["bar"] = {"points": {f"B{k}": [float(x), 0.0] for k, x in enumerate(places)}, "angle": 0.0}
     return {"frame": {"points": {f"A{k}": [float(x), 0.0] for k, x in enumerate(places)}}, "links": links}
@@ -63,7 +69,9 @@ def parallel(random: np.random.Generator) -> Parts:
 def drawn(random: np.random.Generator) -> tuple[str, Parts]:
     """A mechanism and the row it belongs to."""
     seed = int(random.integers(2**32))
-    row = str(random.choice(["dyads", "several", "higher", "parallel", "sphere"], p=[0.4, 0.2, 0.1, 0.1, 0.2]))
+    row = str(
+        random.choice(["dyads", "several", "higher", "parallel", "sphere"], p=[0.4, 0.2, 0.1, 0.1, 0.2])
+    )
     if row == "parallel":
         parts = parallel(random)
     elif row == "sphere":
@@ -71,7 +79,12 @@ def drawn(random: np.random.Generator) -> tuple[str, Parts]:
         parts = grown_on_sphere(kinds, seed).parts()
         for body in parts["links"].values():
             mass = float(random.uniform(0.3, 1.0))
-            body |= {"mass": mass, "centre": [0.2, 0.1], "centre_radius": 0.8, "inertia": [0.2 * mass, 0.25 * mass, 0.3 * mass]}
+            body |= {
+                "mass": mass,
+                "centre": [0.2, 0.1],
+                "centre_radius": 0.8,
+                "inertia": [0.2 * mass, 0.25 * mass, 0.3 * mass],
+            }
         parts |= {"gravity": [0.0, 0.0, -GRAVITY], "radius": 1.0}
         return row, parts
     elif row == "higher":
@@ -88,7 +101,9 @@ def drawn(random: np.random.Generator) -> tuple[str, Parts]:
 def scale_of(free: FreeMotion, course: Trajectory) -> float:
     """What energies are compared with [J]: m g l, or what moves."""
     weight = GRAVITY * sum(float(mass.mass) for mass in free.equations.masses)
-    return max(weight * float(free.equations.numbers.scale), float(np.max(course.kinetic_energy, initial=0.0)))
+    return max(
+        weight * float(free.equations.numbers.scale), float(np.max(course.kinetic_energy, initial=0.0))
+    )
 
 
 def run(seed: int, number: int) -> Outcome:
@@ -115,7 +130,9 @@ def run(seed: int, number: int) -> Outcome:
         there = free.integrate(start, BACK, TOLERANCE, at=[BACK])
         if there.ended != "duration":
             return outcome
-        back = free.integrate(InitialState(there.coordinates[0], -there.speeds[0]), BACK, TOLERANCE, at=[BACK])
+        back = free.integrate(
+            InitialState(there.coordinates[0], -there.speeds[0]), BACK, TOLERANCE, at=[BACK]
+        )
         outcome.measure(row, "way back", float(np.max(np.abs(back.coordinates[0] - start.coordinates))))
     return outcome
 
@@ -124,7 +141,7 @@ CAMPAIGN = Campaign(
     name="free motions",
     title="Mechanisms left to gravity",
     about=(
-        "Random mechanisms of rods (dyads with gears and rolling wheels, pendulums hung on them, groups of higher class, "
+        "Random mechanisms of rods (dyads with gears and rolling wheels, pendulums hung on them, higher groups, "
         "parallel cranks, spherical ones) fall from rest for ten seconds by forward dynamics."
     ),
     columns={

@@ -72,7 +72,7 @@ def equations_of_many(free: FreeMotion, numbers: Mapping[str, npt.ArrayLike]) ->
 def start_of_many(
     free: FreeMotion, equations: EquationsOfMotion, speeds: Mapping[str, float]
 ) -> InitialState:
-    """Coordinates and speeds (coordinates, lanes): drives where the description has them, with these speeds [rad/s, m/s]."""
+    """Coordinates and speeds (coordinates, lanes): drives at their described places, with these speeds [rad/s, m/s]."""
     values = free.drive_values(free.position.coordinates)
     held = []
     for constraint in constraints_of(free.mechanism):

@@ -1,11 +1,11 @@
 """Change points of a free motion, passed on a half circle of complex time.
 
-In a change point the closures lose rank: two motions cross there, and the equations of motion become 0/0. The motion that
-goes on smoothly is an analytic function of time, so it is followed around the place, at a distance at which nothing is
-lost: from the time before, along a half circle above the real axis, to as long behind. The same numbers give Taylor's
-coefficients of everything on the disc (Cauchy's integral), from which instants near the change point are taken. A
-singularity inside the circle, as where the closures only come near to losing rank, gives coefficients of negative powers:
-then there is nothing to pass, and the motion is integrated straight on.
+In a change point the closures lose rank: two motions cross there, and the equations of motion become 0/0. The motion
+that goes on smoothly is an analytic function of time, so it is followed around the place, at a distance at which
+nothing is lost: from the time before, along a half circle above the real axis, to as long behind. The same numbers
+give Taylor's coefficients of everything on the disc (Cauchy's integral), from which instants near the change point
+are taken. A singularity inside the circle, as where the closures only come near to losing rank, gives coefficients of
+negative powers: then there is nothing to pass, and the motion is integrated straight on.
 """
 
 from __future__ import annotations

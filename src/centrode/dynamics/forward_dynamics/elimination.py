@@ -1,9 +1,9 @@
 """Symmetric elimination in straight lines: L D L' of sparse matrices over any algebra.
 
-Matrices are given by their entries below and on the diagonal; what is a plain zero stays one and costs nothing. The order
-of the pivots is that of least degree, so that trees fill nothing and chains of loops stay bands. (A. George and J. Liu,
-Computer Solution of Large Sparse Positive Definite Systems, 1981, chapter 5.) No pivot is sought by its value: what is
-computed is the same for all values, so it can be traced.
+Matrices are given by their entries below and on the diagonal; what is a plain zero stays one and costs nothing. The
+order of the pivots is that of least degree, so that trees fill nothing and chains of loops stay bands. (A. George and
+J. Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, chapter 5.) No pivot is sought by its
+value: what is computed is the same for all values, so it can be traced.
 """
 
 from __future__ import annotations

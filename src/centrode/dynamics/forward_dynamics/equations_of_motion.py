@@ -43,6 +43,8 @@ Namespace: TypeAlias = Any
 Flags: TypeAlias = Mapping[int, Number]
 """Equation -> condition under which it counts."""
 
+_NO_LAYOUT: Any = None
+_NO_VALUE = float("nan")
 DEPENDENT = 1e-5
 """An equation that others imply is left out where its pivot is below this share of its diagonal."""
 
@@ -170,8 +172,10 @@ class EquationsOfMotion:
 
     def _state(self, jets: JetFunctions, at: Positions, time: Number, order: int) -> JointState:
         mechanism = self.tree.mechanism
+        # samples have a layout of columns; here positions take their place
         state = JointState(
-            mechanism, None, time, float("nan"), 1.0, 0, 0.0, {}, jets, order=order, at=at, numbers=self.numbers, pivots=self.tree.pivots,  # type: ignore[arg-type]
+            mechanism, _NO_LAYOUT, time, _NO_VALUE, 1.0, 0, 0.0, {}, jets,  # type: ignore[arg-type]
+            order=order, at=at, numbers=self.numbers, pivots=self.tree.pivots,
         )  # fmt: skip
         if len(mechanism.drives) == 1 and self.loads_use_drive:
             value = state.drive(mechanism.drives[0]).value
@@ -386,7 +390,7 @@ class MassSystem:
     flags: Mapping[int, Number] = field(default_factory=dict)
 
     def independence(self, m: Namespace) -> Number:
-        """The least root of a pivot over what it is elsewhere: it falls to zero where closures lose rank, as a distance does."""
+        """The least root of a pivot over its usual size: zero where closures lose rank, as a distance is."""
         least: Number = 1.0
         for row, pivot in self.closures.pivots.items():
             if is_zero(pivot):

@@ -23,8 +23,6 @@ from centrode.dynamics.forward_dynamics.initial_position import (
     residuals_and_rows,
     units_of,
 )
-from centrode.dynamics.forward_dynamics.joint_state import JointState
-from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
 from centrode.dynamics.forward_dynamics.integration import (
     AHEAD,
     CONTROLS,
@@ -38,12 +36,14 @@ from centrode.dynamics.forward_dynamics.integration import (
     motion_problem,
     worked_loads,
 )
+from centrode.dynamics.forward_dynamics.joint_state import JointState
+from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointCoordinate,
     SpanningTree,
     spanning_tree_of,
 )
-from centrode.dynamics.loads import EnergyClass, MassesAndLoads
+from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.masses import massless_links
 from centrode.dynamics.state import length_unit
 from centrode.errors import InputError, NotComputedYet
@@ -606,7 +606,7 @@ class FreeMotion:
     def _pass(
         self, parameters: Array, state: Array, tolerance: float
     ) -> tuple[Detour | None, Event | None] | str:
-        """Pass the change point ahead, if it is one; the state is that behind it then, or the same with nothing to look for.
+        """Pass the change point ahead, if it is one; the state is that behind it then.
 
         Returns the detour and the event, or why it is not passed.
         """

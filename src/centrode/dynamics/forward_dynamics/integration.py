@@ -1,8 +1,9 @@
 """Free motion as an initial value problem: what is followed, how it is closed, how great an error counts.
 
-Followed are coordinates, cosine and sine of the angles among them, speeds and works. The rotors are states like the others,
-so no stage has a function of an angle; after each step that is taken they are computed anew from the angle. There the
-coordinates and speeds are closed too, by one step of Newton's method of least change in the measure of the masses.
+Followed are coordinates, cosine and sine of the angles among them, speeds and works. The rotors are states like the
+others, so no stage has a function of an angle; after each step that is taken they are computed anew from the angle.
+There the coordinates and speeds are closed too, by one step of Newton's method of least change in the measure of the
+masses.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ FLOOR = 0.1
 SHARE = 0.2
 """Of the tolerance that a step may err by its estimate: errors of many steps add up."""
 NEAR, FAR = 0.25, 0.4
-"""A change point is looked for where closures are no more independent than this, and the fastest link is to turn by less
+"""A change point is looked for where closures are no more independent than this, and the fastest link will turn by
+less
 than this until they lose rank."""
 NEVER = 1e300
 CONTROLS = (END, SMALLEST, TOLERANCE, RATE, LENGTH)

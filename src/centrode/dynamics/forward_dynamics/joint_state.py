@@ -12,7 +12,7 @@ from centrode.errors import NotComputedYet
 from centrode.geometry.plane import dot, rotate_vector, subtract
 from centrode.geometry.sphere import Attitude
 from centrode.locale import _
-from centrode.model.mechanism import FRAME, Drive
+from centrode.model.mechanism import Drive
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
@@ -33,8 +33,8 @@ class JointState(State):
     """A mechanism at values of its joint coordinates, along time or along one of them.
 
     Its jets run along time where all coordinates change by their speeds, and along a coordinate where this one alone
-    changes, by 1: the derivative of what a load works along is then a velocity, or a column of its Jacobian. In place of
-    columns of samples it has positions.
+    changes, by 1: the derivative of what a load works along is then a velocity, or a column of its Jacobian. In place
+    of columns of samples it has positions.
 
     Attributes
     ----------

@@ -1,9 +1,9 @@
 """The spanning tree of a mechanism: what each of its coordinates turns or moves, and which loops are cut.
 
-From the frame outwards every link hangs in one hinge of a body that is placed already and has one coordinate: its angle,
-in the plane against the frame, on the sphere against that body. A slider has the displacement along its guide; what
-hangs on nothing has the coordinates of a point. Each constraint of the one list is kept by the tree or cuts a loop;
-cut ones are the closures. (J. Wittenburg, Dynamics of Multibody Systems, 2nd ed., 2008, section 5.3.)
+From the frame outwards every link hangs in one hinge of a body that is placed already and has one coordinate: its
+angle, in the plane against the frame, on the sphere against that body. A slider has the displacement along its guide;
+what hangs on nothing has the coordinates of a point. Each constraint of the one list is kept by the tree or cuts a
+loop; cut ones are the closures. (J. Wittenburg, Dynamics of Multibody Systems, 2nd ed., 2008, section 5.3.)
 """
 
 from __future__ import annotations
@@ -372,7 +372,7 @@ class _Builder:
         self._place(link, pivot)
 
     def _reference(self, link: str, pivot: str) -> tuple[str, str, bool]:
-        """On the sphere: base and end of the arc from which a link's angle is counted; whether the description says so."""
+        """On the sphere: base and end of the arc that an angle is counted from; whether it is the described one."""
         reference = self.mechanism.links[link].reference
         if reference is not None and reference[0] == pivot:
             for base in self._bases(link):

@@ -1,8 +1,9 @@
-"""Initial value problems as machine code: the loop over steps, their stages and lanes, around the problem's expressions.
+"""Initial value problems as machine code: loops over lanes, steps and stages around the problem's expressions.
 
-The derivatives stand in the code once, whatever the number of stages, so it is built fast; the sums over stages are loops
-over vectors of whatever is followed. Lanes of a vector take their steps each with its own size, and wait where they have
-arrived. One mechanism alone is a vector of one lane; then the sums run over several things followed at once.
+The derivatives stand in the code once, whatever the number of stages, so it is built fast; the sums over stages are
+loops over vectors of whatever is followed. Lanes of a vector take their steps each with its own size, and wait where
+they have arrived. One mechanism alone is a vector of one lane; then the sums run over several things followed at
+once.
 """
 
 from __future__ import annotations
@@ -351,7 +352,7 @@ class _Writer:
             self._weighted(table, array)
 
     def _sum(self, row: Value, count: Value | int, step: Value, into: Value) -> None:
-        """into = now + step times the sum of a row's weights times the rates of the stages before."""
+        """Put now + step times the sum of a row's weights times the rates of the stages before into an array."""
         block, wide = self.block, self.wide
         start = block.put(f"mul i64 {row}, {STAGES}")
         with self._loop("chunk", self.length // wide.vector.width) as chunk:

@@ -1,0 +1,170 @@
+"""Forward dynamics beside MuJoCo: integration alone, whole motions, many mechanisms, forty loops."""
+
+from __future__ import annotations
+
+import functools
+import math
+import time
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+import centrode as ct
+from benchmarks.table import Promise, Row
+from benchmarks.timing import best_times
+from centrode.dynamics.forward_dynamics.batches import integrate_many
+from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+
+CRANK, COUPLER, ROCKER, BASE = 0.3, 0.8, 0.6, 0.9
+START, SPEED, MOMENT, DURATION = math.pi / 3, 10.0, 0.1, 10.0
+LANES, LOOPS = 10_000, 40
+STEP, SOLREF = 2.5e-5, 2e-4
+"""MuJoCo's step [s] and time constant of a closure [s], with which its energy errs by some 3e-7 J."""
+
+
+def _rod(length: float) -> dict[str, object]:
+    return {"length": length, "mass": length, "shape": "rod"}
+
+
+def four_bar() -> FreeMotion:
+    """A four-bar linkage of rods, 1 kg/m, with 0.1 N m on its crank."""
+    mechanism = ct.Mechanism(
+        gravity=[0.0, -9.81],
+        frame={"points": {"A": [0.0, 0.0], "D": [BASE, 0.0]}},
+        links={"AB": _rod(CRANK), "BC": _rod(COUPLER), "DC": _rod(ROCKER)},
+        drives=[{"link": "AB", "start": START, "speed": 1.0}],
+        assembly={"sides": {"C": "left"}},
+        loads=[{"kind": "torque", "link": "AB", "value": MOMENT}],
+    )
+    return free_motion_of(mechanism)
+
+
+def squares(loops: int) -> FreeMotion:
+    """IFToMM's chain of squares (A02)."""
+    rod = {"mass": 1.0, "shape": "rod", "length": 1.0}
+    links: dict[str, object] = {}
+    for k in range(loops + 1):
+        links[f"A{k}B{k}"] = {**rod, "points": {f"A{k}": [0, 0], f"B{k}": [1, 0]}, "angle": math.pi / 2}
+    for k in range(loops):
+        links[f"B{k}B{k + 1}"] = {**rod, "points": {f"B{k}": [0, 0], f"B{k + 1}": [1, 0]}, "angle": 0.0}
+    for link in links.values():
+        link.pop("length")  # type: ignore[attr-defined]
+    frame = {"points": {f"A{k}": [float(k), 0.0] for k in range(loops + 1)}}
+    return free_motion_of(ct.Mechanism(gravity=[0.0, -9.81], frame=frame, links=links))
+
+
+def free_motions() -> Iterator[Row]:
+    """Times by the clock, best of several."""
+    free = four_bar()
+    start = free.initial({"links.AB": SPEED})
+    tolerance = 3e-9
+    begun = time.perf_counter()
+    course = free.integrate(start, DURATION, tolerance)
+    first = time.perf_counter() - begun
+    error = float(np.max(np.abs(course.energy_residual)))
+    times = best_times(
+        {
+            "steps": functools.partial(free.course, start, DURATION, tolerance),
+            "whole": functools.partial(free.integrate, start, DURATION, tolerance),
+        },
+        rounds=5,
+    )
+    seconds, theirs = _mujoco(start.coordinates, start.speeds)
+    ratio = seconds / times["steps"]
+    yield Row(
+        "four-bar, 10 s",
+        {
+            "steps [ms]": 1e3 * times["steps"],
+            "whole [ms]": 1e3 * times["whole"],
+            "first [ms]": 1e3 * first,
+            "MuJoCo / steps": ratio,
+            "energy error [J]": error,
+            "MuJoCo's [J]": theirs,
+        },
+        promises=[
+            Promise("steps of the four-bar [ms]", 1e3 * times["steps"], at_most=4.0),
+            Promise("whole motion of the four-bar [ms]", 1e3 * times["whole"], at_most=20.0),
+            Promise("MuJoCo's time over the steps'", ratio, at_least=1200.0),
+            Promise("energy error over MuJoCo's", error / theirs, at_most=1.0),
+        ],
+    )
+    random = np.random.default_rng(1)
+    lengths = {
+        f"links.{link}.length": length * (1.0 + 0.01 * random.standard_normal(LANES).clip(-2.0, 2.0))
+        for link, length in (("AB", CRANK), ("BC", COUPLER), ("DC", ROCKER))
+    }
+    many = functools.partial(integrate_many, free, lengths, {"AB": SPEED}, DURATION, 1e-6, 2)
+    worst = float(np.max(np.abs(many().energy_residual)))
+    taken = best_times({"many": many}, rounds=2)["many"]
+    yield Row(
+        f"{LANES} four-bars, 10 s, two threads",
+        {"[s]": taken, "energy error [J]": worst},
+        promises=[
+            Promise(f"{LANES} four-bars, two threads [s]", taken, at_most=1.5),
+            Promise("their energy error [J]", worst, at_most=1e-4),
+        ],
+    )
+    chain = squares(LOOPS)
+    upright = chain.initial({"points.B0": (1.0, 0.0)})
+    begun = time.perf_counter()
+    chain.course(upright, 1.0, 1e-12)
+    built = time.perf_counter() - begun
+    taken = best_times({"chain": functools.partial(chain.course, upright, 20.0, 1e-12)}, rounds=1)["chain"]
+    yield Row(
+        f"A02, {LOOPS} loops, 20 s, 20 change points",
+        {"[s]": taken, "first [s]": built},
+        promises=[Promise(f"A02 with {LOOPS} loops [s]", taken, at_most=2.0)],
+    )
+
+
+def _mujoco(coordinates: np.ndarray, speeds: np.ndarray) -> tuple[float, float]:
+    """MuJoCo's time [s] for the four-bar linkage, and how far its energy goes astray [J]."""
+    model = mujoco.MjModel.from_xml_string(_model())
+    data = mujoco.MjData(model)
+    model.eq_data[0, :6] = [COUPLER, 0.0, 0.0, ROCKER, 0.0, 0.0]
+    crank, rocker, coupler = coordinates
+    data.qpos[:] = [crank, coupler - crank, rocker]
+    data.qvel[:] = [speeds[0], speeds[2] - speeds[0], speeds[1]]
+    data.ctrl[0] = MOMENT
+    mujoco.mj_forward(model, data)
+    began = _energy(data)
+    worst, parts = 0.0, 20
+    begun = time.perf_counter()
+    for _part in range(parts):
+        mujoco.mj_step(model, data, round(DURATION / STEP) // parts)
+        worst = max(worst, abs(_energy(data) - began))
+    return time.perf_counter() - begun, worst
+
+
+def _model() -> str:
+    def rod(length: float) -> str:
+        moment = length**3 / 12.0
+        return f'<inertial pos="{length / 2} 0 0" mass="{length}" diaginertia="1e-9 {moment} {moment}"/>'
+
+    return f"""<mujoco><option timestep="{STEP}" integrator="RK4" gravity="0 -9.81 0" iterations="50" tolerance="1e-14">
+<flag contact="disable"/></option><worldbody>
+<body><joint name="crank" axis="0 0 1"/>{rod(CRANK)}
+<body name="BC" pos="{CRANK} 0 0"><joint axis="0 0 1"/>{rod(COUPLER)}</body></body>
+<body name="DC" pos="{BASE} 0 0"><joint axis="0 0 1"/>{rod(ROCKER)}</body></worldbody>
+<actuator><motor joint="crank"/></actuator>
+<equality><connect body1="BC" body2="DC" anchor="{COUPLER} 0 0" solref="{SOLREF} 1" solimp=".9999 .9999 .001"/></equality>
+</mujoco>"""
+
+
+def _energy(data: mujoco.MjData) -> float:
+    crank, turned, rocker = data.qpos
+    angles = (crank, crank + turned, rocker)
+    rates = (data.qvel[0], data.qvel[0] + data.qvel[1], data.qvel[2])
+    pin = CRANK * np.array([math.cos(crank), math.sin(crank)])
+    way = CRANK * rates[0] * np.array([-math.sin(crank), math.cos(crank)])
+    total = -MOMENT * crank
+    for length, angle, rate, at, speed in zip(
+        (CRANK, COUPLER, ROCKER), angles, rates, (np.zeros(2), pin, np.array([BASE, 0.0])),
+        (np.zeros(2), way, np.zeros(2)), strict=True,
+    ):  # fmt: skip
+        along = np.array([math.cos(angle), math.sin(angle)])
+        velocity = speed + 0.5 * length * rate * np.array([-along[1], along[0]])
+        total += 0.5 * length * float(velocity @ velocity) + length**3 / 24.0 * rate * rate
+        total += length * 9.81 * float(at[1] + 0.5 * length * along[1])
+    return float(total)
