@@ -32,6 +32,7 @@ from centrode.cli.main import main
 from centrode.dynamics.simulation.routes import moves_freely
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
+from centrode.model.gear_pairs import gear_pair_text, parse_gear_pair
 from centrode.sweeps.sweep import read_sweep
 from samples import few
 
@@ -150,6 +151,11 @@ def read_toml(example: Example) -> None:
     tables = tomllib.loads(text)
     if named and "mechanism" in tables:
         read_sweep(named.group(1))
+        return
+    if tables.get("kind") == "gear pair":
+        pair = parse_gear_pair(text)
+        assert parse_gear_pair(gear_pair_text(pair)) == pair
+        ct.gear_pair(pair)
         return
     if tables.get("kind") == "cam":
         cam = ct.parse_cam(text)

@@ -40,7 +40,7 @@ def pressure_angle_of(value: float) -> float:
     if value == 0:
         return 0.0
     # inv(a) >= a^3/3 gives an upper end for small values; tan(a) <= value + pi/2 one for great values.
-    angle = min((3 * value) ** (1 / 3), math.atan(value + math.pi / 2))
+    angle: float = min((3 * value) ** (1 / 3), math.atan(value + math.pi / 2))
     for _step in range(_STEPS):
         tangent = math.tan(angle)
         nearer = angle - (involute(angle) - value) / (tangent * tangent)

@@ -80,7 +80,6 @@ CHAPTERS = (
     "walking",
     "contact",
     "choice",
-    "gear-pair",
     "conclusions",
 )
 """As a document has them."""

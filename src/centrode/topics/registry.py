@@ -1059,7 +1059,6 @@ GEAR_PAIR = Topic(
     compute=Lazily("centrode.gears.results", "gear_pair"),
     result=Lazily("centrode.gears.results", "GearPairResults"),
     view=Lazily("centrode.views.gear_pair", "sheet"),
-    document=InDocuments(chapters=(ChapterOfTopic("gear-pair", mark("Gear pair")),), instants=False),
     subject="gear pair",
 )
 

@@ -1,4 +1,4 @@
-"""A pair of gear wheels: what the terminal, the files, the figures and the document show."""
+"""A pair of gear wheels: what the terminal, the files and the figures show."""
 
 from __future__ import annotations
 
@@ -24,24 +24,16 @@ from centrode.sheets.plots import (
     Plot,
 )
 from centrode.sheets.sheet import (
-    Block,
-    Chapter,
     Column,
     Deferred,
     Fact,
-    FactTable,
     Failure,
-    Formula,
-    Paragraph,
     Scalar,
-    Section,
     Sheet,
     Table,
-    illustrations,
 )
 from centrode.sheets.texts import (
     NOTHING,
-    Expression,
     Joined,
     Name,
     Number,
@@ -107,7 +99,6 @@ def sheet(results: GearPairResults) -> Sheet:
                 **({"blocking-contour": lambda: _contour(results)} if contour else {}),
             }
         ),
-        chapters=Deferred({"gear-pair": lambda: _chapter(results)}),
         printed=(wheels_table(results),),
         outlines=Deferred(
             {
@@ -313,9 +304,7 @@ def _failure(results: GearPairResults) -> Failure | None:
     """Why the pair cannot work."""
     pair = results.geometry
     names = (PINION, _second(pair))
-    advice = Sentence(
-        "choose other shifts: those of least sliding satisfy all bounds where that is possible"
-    )
+    advice = Sentence("choose other shifts: those of least sliding satisfy all bounds where that is possible")
     if not pair.contact_ratio >= 1:
         what = Sentence(
             "the contact ratio {ratio} is below one", ratio=Number(pair.contact_ratio, digits=".4g")
@@ -509,66 +498,4 @@ def _contour(results: GearPairResults) -> AreaDiagram:
         (Area(Sentence("possible shifts"), contour.possible),),
         tuple(paths),
         ((Sentence("this pair"), *results.geometry.shifts),),
-    )
-
-
-# The chapter
-
-
-def _chapter(results: GearPairResults) -> Chapter:
-    """Data, formulas with their numbers, dimensions, figures."""
-    blocks: list[Block] = [FactTable(tuple(_facts(results)), Sentence("The pair"))]
-    sections = [
-        Section(NOTHING, tuple(blocks)),
-        Section(Sentence("Meshing"), tuple(_formulas(results))),
-        Section(Sentence("Dimensions of the wheels"), (wheels_table(results),)),
-    ]
-    pictures = ["mesh", "sliding", *(["blocking-contour"] if results.contour is not None else [])]
-    notes = tuple(Paragraph(note) for note in _notes(results))
-    if notes:
-        sections.append(Section(NOTHING, notes))
-    sections.append(illustrations(pictures))
-    return Chapter(Sentence("Gear pair"), tuple(sections))
-
-
-def _formulas(results: GearPairResults) -> Iterator[Block]:
-    """Formulas of the pair, each with its numbers."""
-    pair = results.geometry
-    if pair.kind == "rack":
-        yield Paragraph(Sentence("A rack meshes at the pressure angle of its flanks, whatever the shift."))
-        return
-    sign, other = ("+", "-") if pair.sign > 0 else ("-", "+")
-    total = "x_1 + x_2" if pair.sign > 0 else "x_2 - x_1"
-    teeth = "z_1 + z_2" if pair.sign > 0 else "z_2 - z_1"
-    yield Paragraph(
-        Sentence(
-            "The sum of the shifts gives the working pressure angle. That gives the centre distance, and the amount by "
-            "which the tips are lowered."
-        )
-    )
-    yield Formula(
-        (
-            (
-                Expression('"inv" alpha_w'),
-                Expression(f'"inv" alpha_t + frac(2 ({total}) tan alpha, {teeth})'),
-                Number(pair.working_involute),
-            ),
-            (Expression("alpha_w"), Number(pair.working_angle, "rad")),
-            (Expression("a"), Expression(f"frac(m ({teeth}), 2 cos beta)"), Number(pair.pitch_distance, "m")),
-            (
-                Expression("a_w"),
-                Expression("a frac(cos alpha_t, cos alpha_w)"),
-                Number(pair.centre_distance, "m"),
-            ),
-            (Expression("y"), Expression("frac(a_w - a, m)"), Number(pair.distance_coefficient)),
-            (Expression("Delta y"), Expression(f"{total} - y"), Number(pair.equalising_coefficient)),
-            (
-                Expression("epsilon_alpha"),
-                Expression(
-                    f"frac(sqrt(r_(a 1)^2 - r_(b 1)^2) {sign} sqrt(r_(a 2)^2 - r_(b 2)^2) {other} a_w sin alpha_w, "
-                    "pi m_t cos alpha_t)"
-                ),
-                Number(pair.contact_ratio),
-            ),
-        )
     )

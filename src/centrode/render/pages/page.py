@@ -166,7 +166,7 @@ class Page:
         """Note where texts stand, except those that begin on the right of all names."""
         beside: list[Text] = []
         for text in self.texts:
-            if text.get_ha() == "left" and float(text.get_position()[0]) >= right + OVERHANG:
+            if text.get_horizontalalignment() == "left" and float(text.get_position()[0]) >= right + OVERHANG:
                 beside.append(text)
             else:
                 self.boxes.append(self.box_of(text))
