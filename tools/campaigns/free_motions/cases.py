@@ -138,7 +138,7 @@ def run(seed: int, number: int) -> Outcome:
 
 
 CAMPAIGN = Campaign(
-    name="free motions",
+    name="free-motions",
     title="Mechanisms left to gravity",
     about=(
         "Random mechanisms of rods (dyads with gears and rolling wheels, pendulums hung on them, higher groups, "

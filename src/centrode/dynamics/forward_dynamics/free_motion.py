@@ -48,14 +48,15 @@ from centrode.dynamics.masses import massless_links
 from centrode.dynamics.state import length_unit
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.path import DrivenBy, path_of
-from centrode.laws import TextLaw, Uniform
+from centrode.laws import Law
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.executors import choose_executor
+from centrode.numerics.expressions import EXPRESSIONS, variable
 from centrode.numerics.initial_value_problems import HEADER, SMALLEST, STEP, TIME, InitialValueProblem
 from centrode.numerics.integrators import Integrator, integrator_of
-from centrode.numerics.jets import Jet
+from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import (
@@ -346,7 +347,7 @@ class FreeMotion:
             gap = float(np.max(np.abs(matrix @ found - targets)))
             if gap > CONSISTENT * max(1.0, float(equations.numbers.scale)) * fastest:
                 what = _("it contradicts the constraints or the speeds before it")
-                raise InputError(f"[simulation.speeds] {path}", what, _("leave it out, or correct it"))
+                raise InputError(f"[simulation.speeds] {path}", what, _("remove it, or correct it"))
         return found
 
     def _speed_rows(self, coordinates: Array, path: str) -> list[Array]:
@@ -857,6 +858,15 @@ def free_motion_of(
     return FreeMotion(mechanism, equations, position, mobility, count - rank)
 
 
+def _is_formula(law: Law) -> bool:
+    """Whether a law can be traced: a table chooses its row by the value of the time."""
+    try:
+        law.jet(JetFunctions(EXPRESSIONS), Jet((variable(TIME), 1.0, 0.0)))
+    except TypeError:
+        return False
+    return True
+
+
 def _kept_drives(mechanism: Mechanism, scale: float, keeps: Sequence[str]) -> tuple[KeptDrive, ...]:
     if not keeps:
         return ()
@@ -868,7 +878,7 @@ def _kept_drives(mechanism: Mechanism, scale: float, keeps: Sequence[str]) -> tu
             and constraint.drive in keeps
         ):
             law = driven[constraint.drive].law
-            if not isinstance(law, Uniform | TextLaw):
+            if not _is_formula(law):
                 what = _("a drive that keeps a law by a table is not computed here")
                 raise NotComputedYet(f"[[drives]] {constraint.drive}", what, _("give a speed or a formula"))
             found.append(KeptDrive(constraint, driven[constraint.drive]))
