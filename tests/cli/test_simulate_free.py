@@ -89,7 +89,11 @@ def test_a_limit_is_a_place(centrode: Centrode, files: Path) -> None:
         (DOUBLE_PENDULUM, ["--speed-of", "links.XX=1"], 'unknown link "XX"'),
         (DOUBLE_PENDULUM, ["--speed-of", "points.A=1"], "expected [x, y]"),
         (DOUBLE_PENDULUM, ["--speed", "1"], "speed is that of the first drive, and there is none"),
-        (DOUBLE_PENDULUM, ["--driving", "1"], "nothing says along what the driving moment acts"),
+        (
+            DOUBLE_PENDULUM,
+            ["--driving", "1"],
+            "the coordinate along which the driving moment acts is not given",
+        ),
         (DOUBLE_PENDULUM, ["--keep", "OA"], 'there is no drive "OA"'),
         (DOUBLE_PENDULUM, ["--duration", "0 s"], "duration must be positive"),
         (DOUBLE_PENDULUM, ["--turns", "2"], "turns end a simulation by the reduced equation alone"),

@@ -56,7 +56,7 @@ def _efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
     if law == "0":
         return ()
     if not mechanism.drives:
-        what = _("nothing says along what the driving moment acts")
+        what = _("the coordinate along which the driving moment acts is not given")
         raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
     first = mechanism.motion_parameter.drives[0]
     driving = Driving(
