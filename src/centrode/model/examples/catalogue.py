@@ -27,7 +27,7 @@ DescriptionSource: TypeAlias = Mechanism | AnyCam | str | Path
 
 
 GearPairName: TypeAlias = Literal[
-    "internal-gear-pair", "rack-and-pinion", "shifted-gear-pair", "helical-gear-pair"
+    "internal-gear-pair", "rack-gear-pair", "shifted-gear-pair", "helical-gear-pair"
 ]
 
 
