@@ -30,6 +30,7 @@ from benchmarks import (  # noqa: E402
     simulation,
     solver,
     sweeps,
+    workbench,
 )
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
@@ -63,10 +64,12 @@ SECTIONS: Mapping[str, Section] = {
     "solver": (f"One mechanism whose numbers change, {solver.SAMPLES} samples", solver.moves),
     "cluster": ("A sweep on two workers of this machine, by the clock", cluster.clusters),
     "page": (f"A page in Node: changed numbers to a motion of {pages.SAMPLES} samples", pages.recomputes),
+    "workbench": (f"A joint dragged in the workbench, {workbench.STEPS} steps", workbench.drags),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
 NEED_NODE = {"page"}
+NEED_BROWSER = {"workbench"}
 NEED_COMPILER = {"kernels", "sweeps", "simulation", "cluster"}
 
 
@@ -87,6 +90,9 @@ def main(wanted: list[str]) -> int:
             continue
         if name in NEED_NODE and NODE is None:
             print(f"\n{title}\n  left out: {MISSING}")
+            continue
+        if name in NEED_BROWSER and not workbench.PRESENT:
+            print(f"\n{title}\n  left out: {workbench.MISSING}")
             continue
         rows += print_section(title, measure())
     return 0 if print_promises(rows) else 1

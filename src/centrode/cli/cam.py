@@ -15,16 +15,11 @@ from centrode.cli.announcements import announce_samples
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
-from centrode.cli.topic_command import (
-    option_arguments,
-    option_name,
-    option_parameters,
-    parameters_of,
-    write_sheet,
-)
+from centrode.cli.topic_command import option_parameters, parameters_of, write_sheet
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 from centrode.optional_packages import how_to_install
+from centrode.topics.arguments import option_arguments, option_name
 from centrode.topics.registry import TOPICS
 from centrode.topics.topic import Command, RangeOptions, Topic
 

@@ -22,6 +22,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.animate import animate
+from centrode.cli.app import app as workbench
 from centrode.cli.cam import cam
 from centrode.cli.chains import chains
 from centrode.cli.draw import draw
@@ -48,6 +49,7 @@ COLLECTION = (50_000, 50, 100)
 OWN: tuple[click.Command, ...] = (
     report,
     page,
+    workbench,
     animate,
     variants,
     cam,

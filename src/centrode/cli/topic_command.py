@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, assert_never
 
@@ -30,6 +30,7 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, chosen_language, mark, speaking
+from centrode.topics.arguments import option_arguments, option_name
 from centrode.topics.sheets import sheet_with_parts
 from centrode.topics.topic import (
     ChoiceOption,
@@ -164,11 +165,6 @@ def parameters_of(decorators: list[Any]) -> list[click.Parameter]:
     return click.command()(decorated).params
 
 
-def option_name(name: str) -> str:
-    """An option as it is written."""
-    return "--" + name.replace("_", "-")
-
-
 def _with_numbers(mechanism: Mechanism, texts: tuple[str, ...]) -> Mechanism:
     """The mechanism with the numbers of `--set`."""
     if not texts:
@@ -209,20 +205,6 @@ def _check_instants(
         raise InputError(other, _("use --at for instants"), _("remove one of the two"))
     for text in places:
         mechanism.motion_parameter.instant.read(text, "--at")
-
-
-def option_arguments(command: Command, mechanism: Any, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of the computation; those that the user left out are left to it."""
-    if command.arguments is not None:
-        return dict(command.arguments(given))
-    arguments = {name: value for name, value in given.items() if value is not None and value != ()}
-    for option in command.options:
-        if isinstance(option, ValueOption) and option.name in arguments:
-            value = arguments.pop(option.name)
-            if option.read is not None:
-                value = option.read(mechanism, value, option_name(option.name))
-            arguments[option.parameter or option.name] = value
-    return arguments
 
 
 def _result(

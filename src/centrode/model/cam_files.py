@@ -73,6 +73,12 @@ def cam_from(
     bare_angles: BareAngles = "radians",
 ) -> AnyCam:
     """The cam described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
+    kind: type[Cam] | type[PlateCam] = kind_of_cam(mapping, where)
+    return parse_tables(kind, mapping, where, folder, bare_angles)
+
+
+def kind_of_cam(mapping: Mapping[str, Any], where: str = "") -> type[Cam] | type[PlateCam]:
+    """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage."""
     if mapping.get("kind") == "gear pair":
         repair = _("compute it with: centrode gears; in Python with gear_pair")
         raise InputError(where, _("this describes a pair of gears, not a cam"), repair)
@@ -83,7 +89,7 @@ def cam_from(
         )
     given = [key for key in _OF_FOLLOWER if key in mapping]
     if not given:
-        return parse_tables(Cam, mapping, where, folder, bare_angles)
+        return Cam
     other = [key for key in _OF_CURVATURE if key in mapping]
     if other:
         what = _(
@@ -93,7 +99,7 @@ def cam_from(
             one=f"[{other[0]}]", other="[follower]" if given[0] == "follower" else "[[segments]]"
         )
         raise InputError(where, told, _("keep one of them"))
-    return parse_tables(PlateCam, mapping, where, folder, bare_angles)
+    return PlateCam
 
 
 def require_curvature_cam(cam: AnyCam) -> Cam:

@@ -240,12 +240,12 @@ def _reading_of(data: object, outer: Reading) -> Reading:
     space = "sphere" if data.get("space") == "sphere" else "plane"
     given = data.get("drives")
     drives = given if isinstance(given, list | tuple) else ()
-    coordinates = tuple(_coordinate(drive, space) for drive in drives)
+    coordinates = tuple(coordinate_of_drive(drive, space) for drive in drives)
     parameter = MotionParameter(coordinates, len(drives) > 1) if drives else UNDRIVEN
     return replace(outer, space=space, parameter=parameter)
 
 
-def _coordinate(drive: object, space: str) -> DriveCoordinate:
+def coordinate_of_drive(drive: object, space: str) -> DriveCoordinate:
     """What is driven, and whether at a constant speed, as the raw data of a drive have it."""
     if isinstance(drive, Drive):
         return drive_coordinate(drive.id, drive.kind, space, drive.speed)

@@ -78,11 +78,19 @@ def parse_tables(
     bare_angles: BareAngles = "radians",
 ) -> Described:
     """What plain dicts and lists describe, files beside it in `folder`; raises InputError that starts with `where`."""
+    try:
+        return validated_tables(kind, mapping, folder, bare_angles)
+    except ValidationError as error:
+        raise input_error(error, where) from None
+
+
+def validated_tables(
+    kind: type[Described], mapping: Mapping[str, Any], folder: Path | None, bare_angles: BareAngles
+) -> Described:
+    """What plain dicts and lists describe; raises pydantic's ValidationError, in which each problem has its place."""
     token = READING.set(Reading(folder=folder or Path(), bare_angles=bare_angles))
     try:
         return kind.model_validate(dict(mapping))
-    except ValidationError as error:
-        raise input_error(error, where) from None
     finally:
         READING.reset(token)
 

@@ -268,6 +268,24 @@ class Scalar:
 
 
 @dataclass(frozen=True)
+class PointArrows:
+    """Vectors at points over a motion, which a moving picture draws.
+
+    Attributes
+    ----------
+    title : what they are
+    unit : SI unit
+    points : where each begins
+    vectors : (samples, points, 2); NaN where there is none
+    """
+
+    title: Text
+    unit: str
+    points: tuple[str, ...]
+    vectors: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Failure:
     """Why a result falls short of what a command computes, although there is something to show; and what helps."""
 
@@ -295,6 +313,7 @@ class Sheet:
     notes : what a reader should know besides; a terminal prints them behind all
     brief : what a result that has this one as a part shows of it among its own facts; without it, all its facts below
     outlines : name of a file without its ending -> outlines, as SVG and DXF
+    arrows : name -> vectors at points over the motion, as a moving picture shows them
     """
 
     facts: tuple[Fact, ...] = ()
@@ -311,6 +330,7 @@ class Sheet:
     outlines: Mapping[str, OutlineSet] = field(default_factory=dict)
     notes: tuple[Text, ...] = ()
     brief: tuple[Fact, ...] = ()
+    arrows: Mapping[str, PointArrows] = field(default_factory=dict)
 
     def with_parts(self, parts: Mapping[str, Sheet]) -> Sheet:
         """A sheet with what the sheets of the parts of its result have for a terminal and for files.

@@ -13,6 +13,7 @@ COMMANDS = (
     "run",
     "report",
     "page",
+    "app",
     "animate",
     "check",
     "describe",

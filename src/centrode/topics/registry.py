@@ -12,6 +12,7 @@ from centrode.topics.topic import (
     InstantsOption,
     Lazily,
     NumbersOption,
+    Panel,
     RangeOptions,
     Topic,
     ValueOption,
@@ -78,6 +79,7 @@ INTEGRATE = Topic(
         instants=False,
         options=("rk4_steps",),
     ),
+    panel=Panel(needs=mark("these equations are integrated in the plane only")),
 )
 
 LIMITS = Topic(
@@ -105,6 +107,7 @@ LIMITS = Topic(
         kinds=("json", "csv"),
         samples=False,
     ),
+    panel=Panel(mark("Limits of a drive"), mark("this takes one drive by a link, a guide or a distance")),
 )
 
 REGION = Topic(
@@ -147,6 +150,7 @@ REGION = Topic(
         folder="region",
         samples=False,
     ),
+    panel=Panel(mark("Reachable region of two drives"), mark("this takes two drives")),
 )
 
 ANGLES = Topic(
@@ -158,6 +162,7 @@ ANGLES = Topic(
     command=Command(
         help=mark("Compute transmission and pressure angles over the motion."), folder="angles", dark=True
     ),
+    panel=Panel(mark("Transmission angles")),
 )
 
 REDUCTION = Topic(
@@ -174,6 +179,7 @@ REDUCTION = Topic(
     document=InDocuments(
         chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive"), code="ct.reduce(mechanism)"),)
     ),
+    panel=Panel(needs=mark("no link has a mass, and there is no load: switch Mass or Load on")),
 )
 
 FLYWHEEL = Topic(
@@ -208,6 +214,7 @@ FLYWHEEL = Topic(
         ),
         may_be_left_out=True,
     ),
+    panel=Panel(needs=mark("the description has no [machine] with a mean speed")),
 )
 
 SIMULATION = Topic(
@@ -269,6 +276,7 @@ SIMULATION = Topic(
         chapters=(ChapterOfTopic("simulation", mark("Motion under loads"), code="ct.simulate(mechanism)"),),
         instants=False,
     ),
+    panel=Panel(needs=mark("the description has no [simulation] with a motor or a driving moment")),
 )
 
 REACTIONS = Topic(
@@ -310,6 +318,7 @@ REACTIONS = Topic(
         may_be_left_out=True,
         may_be_incomplete=True,
     ),
+    panel=Panel(needs=mark("no link has a mass, and there is no load: switch Mass or Load on")),
 )
 
 BALANCE = Topic(
@@ -366,6 +375,7 @@ BALANCE = Topic(
         arguments=Lazily("centrode.cli.option_values", "balance_arguments"),
         dark=True,
     ),
+    panel=Panel(mark("Balancing"), mark("no link has a mass: switch Mass on")),
 )
 
 SHAKING = Topic(
@@ -465,6 +475,7 @@ CENTRODES = Topic(
         animation=Lazily("centrode.animation.animate", "animate_rolling"),
         animation_help=mark("Also write an animation: one centrode rolls on the other."),
     ),
+    panel=Panel(mark("Centrodes")),
 )
 
 FOLLOWER_MOTION = Topic(
@@ -481,6 +492,7 @@ FOLLOWER_MOTION = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Motion of the follower"), mark("a curvature law gives this cam: it has no lift")),
 )
 
 MOTION_LAWS = Topic(
@@ -596,6 +608,7 @@ FORCE_POLYGONS = Topic(
         arguments={"paper": "A5", "complete": False},
         motion=True,
     ),
+    panel=Panel(needs=mark("no link has a mass, and there is no load: switch Mass or Load on")),
 )
 
 PLAN = Topic(
@@ -626,6 +639,7 @@ PLAN = Topic(
         options=("positions",),
         points=True,
     ),
+    panel=Panel(needs=mark("this is drawn in the plane only")),
 )
 
 DIAGRAMS = Topic(
@@ -683,6 +697,7 @@ DIAGRAMS = Topic(
         arguments={"incomplete": True},
         options=("angle_step",),
     ),
+    panel=Panel(needs=mark("this is drawn in the plane only")),
 )
 
 RUN = Topic(
@@ -722,6 +737,7 @@ RUN = Topic(
         wished=True,
         points=True,
     ),
+    panel=Panel(pictures=False),
 )
 
 CHECK = Topic(
@@ -741,6 +757,7 @@ CHECK = Topic(
         ),
         instants=False,
     ),
+    panel=Panel(mark("Structure")),
 )
 
 CHAIN = Topic(
@@ -871,6 +888,7 @@ BASE_RADIUS = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Choice of the base radius"), mark("the cam has no size to choose")),
 )
 
 FOLLOWER_PROFILE = Topic(
@@ -895,6 +913,7 @@ FOLLOWER_PROFILE = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Profile of the cam"), mark("the cam has no size yet: its base radius is missing")),
 )
 
 ROLLER_PATH = Topic(
@@ -912,6 +931,9 @@ ROLLER_PATH = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(
+        mark("Path of the roller's centre"), mark("a follower gives this cam: it has no curvature law")
+    ),
 )
 
 PATH_ROUTES = Topic(
@@ -937,6 +959,7 @@ PATH_ROUTES = Topic(
     ),
     document=InDocuments(chapters=(ChapterOfTopic("routes", mark("Three routes to the path")),)),
     subject="cam",
+    panel=Panel(needs=mark("a follower gives this cam: it has no curvature law")),
 )
 
 CAM_SERIES = Topic(
@@ -974,6 +997,7 @@ FOLLOWER_FORCES = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Forces on the cam and the follower"), mark("the follower has no mass, spring or load")),
 )
 
 CAM_PROFILE = Topic(
@@ -995,6 +1019,7 @@ CAM_PROFILE = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(needs=mark("a follower gives this cam: it has no curvature law")),
 )
 
 WALKING_WHEEL = Topic(
@@ -1019,6 +1044,7 @@ WALKING_WHEEL = Topic(
         )
     ),
     subject="cam",
+    panel=Panel(mark("Walking wheel"), mark("the cam has no mover")),
 )
 
 CAM_CONTACT = Topic(
@@ -1033,6 +1059,7 @@ CAM_CONTACT = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(mark("Contact of roller and cam"), mark("the cam has no materials in contact")),
 )
 
 CAM_CHOICE = Topic(
@@ -1052,6 +1079,7 @@ CAM_CHOICE = Topic(
         instants=False,
     ),
     subject="cam",
+    panel=Panel(needs=mark("the cam has nothing to choose"), arguments={"front": False}),
 )
 
 GEAR_PAIR = Topic(

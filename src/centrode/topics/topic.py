@@ -218,6 +218,24 @@ class InDocuments:
 
 
 @dataclass(frozen=True)
+class Panel:
+    """How the workbench shows a topic.
+
+    Attributes
+    ----------
+    title : marked for the catalogues; that of the first chapter if empty
+    needs : what a description lacks that the topic does not concern, marked for the catalogues
+    arguments : of the computation
+    pictures : whether its pictures are shown
+    """
+
+    title: str = ""
+    needs: str = ""
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    pictures: bool = True
+
+
+@dataclass(frozen=True)
 class Topic:
     """One analysis of a mechanism, of a cam, or of many mechanisms of one structure.
 
@@ -238,6 +256,7 @@ class Topic:
     value : class of what a plain function of the topic returns, which is neither a dataset nor the result; None if
         there is none. It knows its `mechanism` or its `cam`
     complete : (mechanism or cam, value) -> result
+    panel : how the workbench shows it; without one it does so where the topic has a command and a chapter
     """
 
     name: str
@@ -252,3 +271,13 @@ class Topic:
     restore: Lazily | None = None
     value: Lazily | None = None
     complete: Lazily | None = None
+    panel: Panel | None = None
+
+    @property
+    def title(self) -> str:
+        """What the workbench calls the topic, to be translated; empty where it does not show it."""
+        if self.panel is not None and self.panel.title:
+            return self.panel.title
+        chapters = self.document.chapters
+        shown = self.panel is not None or (self.command is not None and not self.flag)
+        return chapters[0].title if chapters and shown else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import degrees
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,11 +22,13 @@ from centrode.sheets.sheet import (
     Chapter,
     Check,
     Column,
+    Deferred,
     Fact,
     FactTable,
     Failure,
     Formula,
     Paragraph,
+    PointArrows,
     Reference,
     Scalar,
     Section,
@@ -139,7 +142,17 @@ def sheet(results: ReactionResults) -> Sheet:
         printed=(_joints(results.mechanism, joints, spoken=True), *_printed_parts(results)),
         failure=_failure(results),
         brief=_greatest_joint_force(results),
+        arrows=Deferred({"reactions": partial(joint_arrows, results)}) if not results.at else {},
     )
+
+
+def joint_arrows(results: ReactionResults) -> PointArrows:
+    """The force in each joint on the link that the description names first there, over the motion."""
+    found = results.reactions
+    points = found["side_point"].to_numpy().tolist()
+    first = [points.index(point) for point in dict.fromkeys(points)]
+    forces = found["joint_force"].to_numpy()[:, first, :2]
+    return PointArrows(Sentence("reactions in the joints"), "N", tuple(points[k] for k in first), forces)
 
 
 def _failure(results: ReactionResults) -> Failure | None:

@@ -1,0 +1,308 @@
+"""What the workbench answers: a function of a message, with what is kept of the descriptions seen last."""
+
+from __future__ import annotations
+
+import math
+import traceback
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from centrode.app.cam_scene import cam_scene
+from centrode.app.completion import completions
+from centrode.app.documents import TEXT_SIZE, Document, digest_of, read_document
+from centrode.app.exports import export_list, exported_file
+from centrode.app.folders import WorkFolder
+from centrode.app.frames import frame_bytes
+from centrode.app.moving import motion_answer, place_on_way, way_of
+from centrode.app.operations import Patch, apply_operations
+from centrode.app.panels import panel_of, topic_list, topics_of
+from centrode.app.readiness import readiness_of
+from centrode.app.reshaping import reshape
+from centrode.app.scene import scene_of
+from centrode.app.sketch import Sketch
+from centrode.app.templates import template_list
+from centrode.app.words import spoken_words
+from centrode.errors import CentrodeError, InputError
+from centrode.locale import LANGUAGES, _, chosen_language, decimal_mark, speaking
+from centrode.model.examples import example_text
+from centrode.model.files import mechanism_text
+from centrode.model.pmks import from_pmks
+from centrode.version import __version__
+
+import numpy as np  # isort: skip
+
+Message: TypeAlias = Mapping[str, Any]
+Answer: TypeAlias = dict[str, Any] | bytes
+
+KEPT_TEXTS = 64
+"""Texts that are known by their digest."""
+CAM_READINESS: Mapping[str, Any] = {"mobility": None, "facts": [], "loose": [], "missing": [], "limit": None}
+OPERATIONS = 200
+"""Operations of one message."""
+LANGUAGE_NAMES = {"en": "English", "ru": "Русский", "uk": "Українська"}
+
+
+class UnknownText(Exception):
+    """The text of a digest is not here (any more)."""
+
+    def __init__(self, digest: str) -> None:
+        self.digest = digest
+        super().__init__(digest)
+
+
+class Workbench:
+    """Answers messages about descriptions; it holds nothing that a message could not bring again.
+
+    Parameters
+    ----------
+    work : the folder whose files may be read and written
+    """
+
+    def __init__(self, work: WorkFolder) -> None:
+        self.work = work
+        self._texts: dict[str, str] = {}
+        self._names: dict[str, Callable[[Message], Answer]] = {
+            "hello": self.hello,
+            "read": self.read,
+            "edit": self.edit,
+            "drag": self.drag,
+            "motion": self.motion,
+            "example": self.example,
+            "files": self.files,
+            "open": self.open,
+            "save": self.save,
+            "panel": self.panel,
+            "complete": self.complete,
+            "import": self.imported,
+            "export": self.export,
+            "page": self.page,
+        }
+
+    def answer(self, message: Message) -> Answer:
+        """Answer a message; whatever is wrong with it or with what it holds is an answer too."""
+        number = message.get("id")
+        number = number if isinstance(number, int) and not isinstance(number, bool) else 0
+        language = message.get("language")
+        with speaking(language if language in LANGUAGES else "en"):
+            try:
+                name = message.get("do")
+                handle = self._names.get(name) if isinstance(name, str) else None
+                if handle is None:
+                    raise InputError("", _("the server does not know this request"))
+                answer = handle(message)
+            except UnknownText as unknown:
+                return {"id": number, "unknown": unknown.digest}
+            except CentrodeError as failure:
+                where = f"{failure.where}: " if failure.where else ""
+                return {"id": number, "error": {"message": where + failure.what, "repair": failure.repair}}
+            except (RecursionError, MemoryError):
+                what = _("this takes more memory than the workbench has")
+                return {"id": number, "error": {"message": what, "repair": ""}}
+        if isinstance(answer, bytes):
+            return answer
+        return {"id": number, **answer}
+
+    def fault(self, message: Message, fault: Exception) -> dict[str, Any]:
+        """The answer to a message that met a fault of the program."""
+        number, language = message.get("id"), message.get("language")
+        with speaking(language if language in LANGUAGES else "en"):
+            said = "".join(traceback.format_exception_only(fault)).strip()[:500]
+            what = _("this is an error in centrode: {fault}").format(fault=said)
+            repair = _("please report it with the description")
+        return {"id": number if isinstance(number, int) else 0, "error": {"message": what, "repair": repair}}
+
+    # texts
+
+    def _text(self, message: Message) -> str:
+        text = message.get("text")
+        if text is None:
+            digest = message.get("digest")
+            if not isinstance(digest, str):
+                raise InputError("", _("the message names no description"))
+            if digest not in self._texts:
+                raise UnknownText(digest[:64])
+            return self._texts[digest]
+        if not isinstance(text, str):
+            raise InputError("", _("the message names no description"))
+        if len(text) > TEXT_SIZE:
+            what = _("the text has {size} characters, at most {most} are allowed")
+            raise InputError("", what.format(size=len(text), most=TEXT_SIZE))
+        self._keep(text)
+        return text
+
+    def _keep(self, text: str) -> str:
+        digest = digest_of(text)
+        self._texts.pop(digest, None)
+        self._texts[digest] = text
+        while len(self._texts) > KEPT_TEXTS:
+            del self._texts[next(iter(self._texts))]
+        return digest
+
+    def document(self, message: Message) -> Document:
+        """The description that a message is about."""
+        return read_document(self._text(message), self.work.folder)
+
+    # answers
+
+    def hello(self, message: Message) -> Answer:
+        """What the page needs to begin."""
+        return {
+            "version": __version__,
+            "language": chosen_language(),
+            "languages": [{"code": code, "name": LANGUAGE_NAMES[code]} for code in LANGUAGES],
+            "words": spoken_words(),
+            "templates": template_list(),
+            "file": self.work.first_file(),
+            "folder": True,
+            "topics": topic_list(),
+            "exports": export_list(),
+            "decimal": decimal_mark(),
+        }
+
+    def read(self, message: Message) -> Answer:
+        """A description as a scene, with its problems and what it lacks to move."""
+        return self._described(self.document(message))
+
+    def _described(self, document: Document) -> dict[str, Any]:
+        digest = self._keep(document.text)
+        if document.is_cam:
+            scene, readiness = cam_scene(document), {"ready": document.cam is not None, **CAM_READINESS}
+        else:
+            sketch = Sketch(document)
+            scene, readiness = scene_of(sketch), readiness_of(sketch)
+        return {
+            "text": document.text,
+            "digest": digest,
+            "scene": {**scene, "topics": topics_of(document)},
+            "problems": [problem.as_dict() for problem in document.problems],
+            "readiness": readiness,
+        }
+
+    def edit(self, message: Message) -> Answer:
+        """A description after operations; nothing changes where one of them is refused."""
+        operations = message.get("operations")
+        if not isinstance(operations, list) or not all(isinstance(one, dict) for one in operations):
+            raise InputError("", _("the operations are a list of tables"))
+        if len(operations) > OPERATIONS:
+            what = _("{count} operations are given, at most {most} are allowed")
+            raise InputError("", what.format(count=len(operations), most=OPERATIONS))
+        patch = apply_operations(self._text(message), self.work.folder, operations)
+        return self._patched(patch)
+
+    def _patched(self, patch: Patch) -> Answer:
+        described = self._described(read_document(patch.text, self.work.folder))
+        return {**described, "changed": list(dict.fromkeys(patch.changed)), "named": patch.named}
+
+    def drag(self, message: Message) -> Answer:
+        """Where everything stands while a point is dragged; the description after it, where it is dropped."""
+        document, point, to = self.document(message), message.get("point"), _place_of(message.get("to"))
+        if not isinstance(point, str):
+            raise InputError("", _("the message names no point"))
+        if message.get("mode") == "move":
+            return self._moved(message, document, point, to)
+        sketch = Sketch(document)
+        if message.get("drop"):
+            patch = Patch(document.text, self.work.folder)
+            patch.apply({"do": "move_point", "point": point, "to": list(to)})
+            return self._patched(patch)
+        reshaped = reshape(sketch, point, to, self.work.folder)
+        places = [list(reshaped.places.get(name, (math.nan, math.nan))) for name in sketch.points]
+        angles = [math.nan] * len(sketch.links)
+        if reshaped.prepared is not None:
+            angles = [reshaped.prepared.assembled.angles.get(name, math.nan) for name in sketch.links]
+        header = {"id": message.get("id", 0), "values": dict(reshaped.values), "held": reshaped.held or None}
+        return frame_bytes({**header, "status": [0]}, {"points": places, "angles": angles})
+
+    def _moved(self, message: Message, document: Document, point: str, to: tuple[float, ...]) -> Answer:
+        way = way_of(document)
+        drive = message.get("drive")
+        present = float(drive) if isinstance(drive, int | float) and math.isfinite(drive) else None
+        at = place_on_way(way, point, np.asarray(to), present)
+        points, angles, status = way.at(at)
+        header = {"id": message.get("id", 0), "at": at, "status": [status], "values": {}, "held": None}
+        return frame_bytes(header, {"points": points, "angles": angles})
+
+    def motion(self, message: Message) -> Answer:
+        """The motion of the description over its range."""
+        document = self.document(message)
+        samples = message.get("samples")
+        count = samples if isinstance(samples, int) and not isinstance(samples, bool) else None
+        try:
+            document.require_prepared()
+            header, arrays = motion_answer(document.require_mechanism(), count)
+        except CentrodeError as failure:
+            return {"missing": failure.what, "repair": failure.repair}
+        return frame_bytes({"id": message.get("id", 0), **header}, arrays)
+
+    def example(self, message: Message) -> Answer:
+        """The text of a built-in description."""
+        name = message.get("name")
+        if not isinstance(name, str):
+            raise InputError("", _("the message names no built-in mechanism"))
+        text = example_text(name)
+        return {"name": name, "text": text, "digest": self._keep(text)}
+
+    def imported(self, message: Message) -> Answer:
+        """The text of a description from a link of PMKS+."""
+        url = message.get("url")
+        if not isinstance(url, str):
+            raise InputError("", _("a link is a text"))
+        text = mechanism_text(from_pmks(url))
+        return {"text": text, "digest": self._keep(text)}
+
+    def panel(self, message: Message) -> Answer:
+        """What a topic has to say about the description."""
+        return panel_of(
+            self.document(message), message.get("topic"), message.get("options"), message.get("samples")
+        )
+
+    def complete(self, message: Message) -> Answer:
+        """What may stand at a place of the text."""
+        line, column = message.get("line"), message.get("column")
+        if not all(isinstance(one, int) and not isinstance(one, bool) for one in (line, column)):
+            raise InputError("", _("a place in a text is a line and a column"))
+        assert isinstance(line, int) and isinstance(column, int)
+        return completions(self.document(message), line, column)
+
+    def export(self, message: Message) -> Answer:
+        """A file of a topic or of the whole description."""
+        document = self.document(message)
+        return exported_file(document, message.get("topic"), message.get("format"), message.get("options"))
+
+    def page(self, message: Message) -> Answer:
+        """The description as one page that computes itself."""
+        return exported_file(self.document(message), "page", "html", {})
+
+    # files
+
+    def files(self, message: Message) -> Answer:
+        """Names of the descriptions in the folder."""
+        return {"files": self.work.names()}
+
+    def open(self, message: Message) -> Answer:
+        """The text of a file of the folder."""
+        name = self.work.checked_name(message.get("name"))
+        text = self.work.read(name)
+        return {"name": name, "text": text, "digest": self._keep(text)}
+
+    def save(self, message: Message) -> Answer:
+        """Write a file of the folder, unless somebody else has changed it meanwhile."""
+        name, expected = self.work.checked_name(message.get("name")), message.get("expected")
+        text = self._text(message)
+        self.work.write(name, text, expected if isinstance(expected, str) else None)
+        return {"name": name, "digest": self._keep(text)}
+
+
+def _place_of(value: object) -> tuple[float, ...]:
+    """A place that a message holds; InputError for anything else."""
+    if isinstance(value, list) and 2 <= len(value) <= 3:
+        numbers = [float(one) for one in value if isinstance(one, int | float) and not isinstance(one, bool)]
+        if len(numbers) == len(value) and all(math.isfinite(one) and abs(one) < 1e9 for one in numbers):
+            return tuple(numbers)
+    raise InputError("", _("a place is two numbers"))
+
+
+def path_of_folder(file: Path | None) -> Path:
+    """The folder of a file, or the working folder."""
+    return (file.parent if file is not None else Path()).resolve()

@@ -1,0 +1,161 @@
+"""The picture of a cam as data: its outline, the path of its roller, the lift of its follower, its segments."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from centrode.app.documents import Document
+from centrode.app.sketch import list_of_tables
+from centrode.cams.cam import cam as course_of
+from centrode.cams.followers.base_circle import has_profile
+from centrode.cams.results import cam_profile
+from centrode.errors import CentrodeError
+from centrode.locale import _, decimal_mark
+from centrode.model.follower_cam import PlateCam
+from centrode.quantities import ANGLES, LENGTHS
+
+SAMPLES = 361
+CURVES = (
+    "dwell", "uniform", "parabolic", "harmonic", "cycloidal", "3-4-5", "4-5-6-7", "trapezoid", "modified sine",
+    "modified trapezoid",
+)  # fmt: skip
+"""Curves of a segment that need nothing but its ends."""
+DIGITS = 6
+_QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
+
+
+def cam_scene(document: Document) -> dict[str, Any]:
+    """The scene of a cam, right or not."""
+    display = document.tables.get("display")
+    display = display if isinstance(display, dict) else {}
+    length, angle = display.get("length", "m"), display.get("angle", "rad")
+    title = document.tables.get("title")
+    return {
+        "title": _(title) if isinstance(title, str) else "",
+        "kind": "cam",
+        "unit": length if length in LENGTHS else "m",
+        "display": {
+            "length": {"unit": length, "factor": LENGTHS.get(length, 1.0)},
+            "angle": {"unit": angle, "factor": ANGLES.get(angle, 1.0)},
+        },
+        "size": [[-1.0, -1.0], [1.0, 1.0]],
+        **{
+            key: []
+            for key in ("points", "links", "guides", "drives", "wheels", "gears", "cylinders", "loads")
+        },
+        "rows": {},
+        "dimensions": list(_dimensions(document)),
+        "cam": _cam(document),
+    }
+
+
+def _cam(document: Document) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "profile": [],
+        "pitch": None,
+        "base": None,
+        "roller": None,
+        "displacement": None,
+        "segments": [],
+    }
+    cam = document.cam
+    if isinstance(cam, PlateCam):
+        found["segments"] = list(_segments(document))
+        found["displacement"] = _displacement(cam)
+    if cam is None:
+        return found
+    try:
+        if isinstance(cam, PlateCam) and not has_profile(cam):
+            return found
+        profile = cam_profile(cam, SAMPLES)
+    except CentrodeError as failure:
+        return {**found, "missing": failure.what, "repair": failure.repair}
+    found["profile"] = _places(profile["profile"].to_numpy())
+    if "path" in profile:
+        found["pitch"] = _places(profile["path"].to_numpy())
+    for key, name in (("base", "base_radius"), ("roller", "roller")):
+        value = profile.attrs.get(name)
+        found[key] = float(value) if value is not None and np.isfinite(value) else None
+    return found
+
+
+def _places(places: Any) -> list[list[float]]:
+    places = np.asarray(places, dtype=float)
+    return [[float(f"{x:.6g}"), float(f"{y:.6g}")] for x, y in places[np.isfinite(places).all(axis=1)]]
+
+
+def _displacement(cam: PlateCam) -> dict[str, Any]:
+    """Lift of the follower with two derivatives by the angle of the cam, over a turn."""
+    try:
+        course = course_of(cam, SAMPLES)
+    except CentrodeError as failure:
+        return {"missing": failure.what, "repair": failure.repair}
+    stem = "lift" if "lift" in course else "swing"
+    names = {
+        "angle": "cam_angle",
+        "lift": stem,
+        "velocity": f"{stem}_slope",
+        "acceleration": f"{stem}_second",
+    }
+    unit = "m" if stem == "lift" else "rad"
+    numbers = {key: [_finite(x) for x in course[name].to_numpy()] for key, name in names.items()}
+    return {**numbers, "unit": unit}
+
+
+def _finite(value: float) -> float | None:
+    return float(f"{value:.7g}") if np.isfinite(value) else None
+
+
+def _segments(document: Document) -> Iterator[dict[str, Any]]:
+    """Segments with the angles at which they begin and end [rad], in the order of the text."""
+    cam = document.cam
+    assert isinstance(cam, PlateCam)
+    start, level = 0.0, 0.0
+    for k, segment in enumerate(cam.segments):
+        stop = start + segment.angle
+        end = level if segment.to is None else segment.to
+        kind = "dwell" if end == level else "rise" if end > level else "fall"
+        yield {
+            "path": f"segments.{k}",
+            "from": start,
+            "to": stop,
+            "kind": kind,
+            "law": segment.curve,
+            "start": level,
+            "lift": end,
+            "laws": list(CURVES),
+        }
+        start, level = stop, end
+
+
+def _dimensions(document: Document) -> Iterator[dict[str, Any]]:
+    """Numbers of the body, the follower and the segments, as the text has them."""
+    for room in ("cam", "follower"):
+        table = document.tables.get(room)
+        if isinstance(table, Mapping):
+            yield from _numbers(room, table, room)
+    for k, segment in enumerate(list_of_tables(document.tables, "segments")):
+        yield from _numbers(f"segments.{k}", segment, f"segments.{k}")
+
+
+def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, bool) or not isinstance(value, int | float | str):
+            continue
+        found = _QUANTITY.fullmatch(str(value))
+        if found is None:
+            continue
+        number = float(found.group(1))
+        yield {
+            "of": owner,
+            "path": f"{path}.{key}",
+            "name": key.replace("_", " "),
+            "value": number,
+            "unit": found.group(2),
+            "shown": f"{number:.{DIGITS}g}".replace(".", decimal_mark()),
+            "locked": False,
+        }

@@ -1,0 +1,58 @@
+"""Numbers of a description that a field of the workbench shows and changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from centrode.app.sketch import Sketch
+from centrode.locale import decimal_mark
+from centrode.quantities import ANGLES, LENGTHS
+
+DIGITS = 6
+
+
+def dimension_rows(sketch: Sketch) -> list[dict[str, Any]]:
+    """Each number with its path, its name, its value in the unit of the display, and whether it is locked."""
+    return [] if sketch.on_sphere else list(_rows(sketch))
+
+
+def _rows(sketch: Sketch) -> Iterator[dict[str, Any]]:
+    display = sketch.tables.get("display")
+    display = display if isinstance(display, dict) else {}
+    length, angle = display.get("length", "m"), display.get("angle", "rad")
+    units = {
+        "length": (length, LENGTHS.get(length, 1.0)),
+        "angle": (angle, ANGLES.get(angle, 1.0)),
+    }
+    for owner, path, name, value, kind in _numbers(sketch):
+        unit, factor = units[kind]
+        shown = value * factor
+        text = f"{shown:.{DIGITS}g}".replace(".", decimal_mark())
+        yield {
+            "of": owner,
+            "path": path,
+            "name": name,
+            "value": shown,
+            "unit": unit,
+            "shown": text,
+            "locked": path in sketch.marks["locked"],
+        }
+
+
+def _numbers(sketch: Sketch) -> Iterator[tuple[str, str, str, float, str]]:
+    for name in sketch.links:
+        length = sketch.length(name)
+        if length is not None:
+            yield name, f"links.{name}.length", "l", length, "length"
+        if name in sketch.poses and sketch.drives_of(name):
+            angle = math.remainder(sketch.poses[name][1], math.tau)
+            start = sketch.drives[sketch.drives_of(name)[0]].get("start")
+            if start is not None or sketch.is_short_form:
+                yield name, f"drives.{name}.start", "φ", angle, "angle"
+    for point in sketch.points:
+        if point in sketch.places and (sketch.is_short_form or point in sketch.fixed):
+            room = "points" if point not in sketch.fixed or sketch.is_short_form else "frame.points"
+            for axis, x in zip("xy", sketch.places[point], strict=False):
+                yield point, f"{room}.{point}.{axis}", axis, x, "length"

@@ -1,0 +1,120 @@
+// A cam: its profile under the follower, and its segments as fields, with the profile following every change.
+import { signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { ChartView, Missing, signed } from "./motion_panel";
+import { U, digits } from "./outlines";
+import { make } from "./picture";
+import type { CamScene, Place, Segment } from "./protocol";
+import { edit, place, problems, scene } from "./state";
+import { say } from "./words";
+
+const QUANTITIES = ["lift", "velocity", "acceleration"] as const;
+
+// The cam turns under its follower; the line above it is the follower's place at that angle.
+export function CamStage() {
+  const holder = useRef<HTMLDivElement>(null), cam = scene.value?.cam, at = place.value;
+  const box = signalSize(holder);
+  useEffect(() => {
+    const element = holder.current;
+    if (!element || !cam) return;
+    element.replaceChildren(picture(cam, at, box.wide, box.high, scene.value?.title ?? ""));
+  }, [cam, at, box.wide, box.high]);
+  return <div class="cam-stage" ref={holder} />;
+}
+
+const sizes = signal({ wide: 600, high: 500 });
+function signalSize(holder: { current: HTMLElement | null }): { wide: number; high: number } {
+  useEffect(() => {
+    const watch = new ResizeObserver(([entry]) => {
+      const { width, height } = entry!.contentRect;
+      if (Math.abs(width - sizes.value.wide) > 2 || Math.abs(height - sizes.value.high) > 2) sizes.value = { wide: width, high: height };
+    });
+    watch.observe(holder.current!);
+    return () => watch.disconnect();
+  }, []);
+  return sizes.value;
+}
+
+export const camSamples = (cam: CamScene | undefined): number => (cam?.displacement?.angle?.length ?? cam?.profile.length ?? 1) - 1;
+
+function picture(cam: CamScene, at: number, wide: number, high: number, title: string): SVGSVGElement {
+  const svg = make("svg", { viewBox: `0 0 ${wide * U} ${high * U}`, class: "drawing cam", role: "img", "aria-label": `${say("cam_picture")}: ${title}` });
+  const curves = [cam.profile, cam.pitch ?? []], reach = Math.max(1e-9, ...curves.flat().map(([x, y]) => Math.hypot(x ?? 0, y ?? 0)));
+  const scale = (0.43 * Math.min(wide, high) * U) / reach, angles = cam.displacement?.angle ?? [0];
+  const low = Math.max(0, Math.min(angles.length - 1, Math.floor(at))), share = at - low, first = angles[low] ?? 0;
+  const turn = first + share * ((angles[low + 1] ?? first) - first), middle = [(wide * U) / 2, (high * U) / 2];
+  const path = (curve: Place[]): string => curve.map(([x, y], k) => `${k ? "L" : "M"}${digits(x! * scale)} ${digits(-y! * scale)}`).join("");
+  const turned = make("g", { transform: `translate(${digits(middle[0]!)} ${digits(middle[1]!)}) rotate(${((-turn * 180) / Math.PI).toFixed(2)})` }, svg);
+  make("path", { class: "cam-body hue-0", d: `${path(cam.profile)}Z` }, turned);
+  if (cam.pitch?.length) make("path", { class: "pitch", d: `${path(cam.pitch)}Z` }, turned);
+  if (cam.base) {
+    make("circle", { class: "base", r: digits(cam.base * scale) }, turned);
+    make("path", { class: "spoke", d: `M0 0L${digits(0.5 * cam.base * scale)} 0` }, turned);
+  }
+  make("circle", { class: "hinge", r: 55, cx: digits(middle[0]!), cy: digits(middle[1]!) }, svg);
+  // the follower's roller touches where the sample is
+  const spots = cam.pitch?.length ? cam.pitch : null, spot = spots?.[Math.min(spots.length - 1, Math.round((at * (spots.length - 1)) / Math.max(1, angles.length - 1)))];
+  if (spot && cam.roller) make("circle", { class: "roller hue-1", cx: digits(spot[0]! * scale), cy: digits(-spot[1]! * scale), r: digits(cam.roller * scale) }, turned);
+  return svg;
+}
+
+function Field({ label, value, unit, path, wide }: { label: string; value: string; unit?: string; path: string; wide?: boolean }) {
+  const wrong = problems.value.find((problem) => problem.path === path);
+  return (
+    <label class={wide ? "field wide" : "field"}>
+      <span>{label}</span>
+      <input type="text" inputMode="decimal" value={value} aria-invalid={Boolean(wrong)} onChange={(event) => void edit({ do: "set", path, value: event.currentTarget.value })} />
+      {unit && <span class="unit">{signed(unit)}</span>}
+    </label>
+  );
+}
+
+function SegmentRow({ segment, number }: { segment: Segment; number: number }) {
+  const fields = (scene.value?.dimensions ?? []).filter((one) => one.path === `${segment.path}.angle` || one.path === `${segment.path}.to`);
+  return (
+    <li class="segment">
+      <span class="number">{number}</span>
+      {fields.map((one) => <Field label={say(one.path.endsWith(".to") ? "segment_to" : "segment_angle")} value={one.shown} unit={one.unit} path={one.path} key={one.path} />)}
+      <label class="field wide"><span>{say("segment_law")}</span>
+        <select value={segment.law ?? ""} onChange={(event) => void edit({ do: "set", path: `${segment.path}.curve`, value: event.currentTarget.value })}>
+          {[...new Set([segment.law ?? "", ...(segment.laws ?? [])])].filter(Boolean).map((law) => <option value={law}>{segment.names?.[law] ?? law}</option>)}
+        </select>
+      </label>
+    </li>
+  );
+}
+
+export function CamPanel() {
+  const now = scene.value, cam = now?.cam, course = cam?.displacement;
+  if (!cam || cam.missing || (!cam.profile.length && !course)) return <Missing message={cam?.missing ?? problems.value[0]?.message ?? say("no_cam")} repair={cam?.repair ?? problems.value[0]?.repair} />;
+  const angle = now?.display?.angle ?? { unit: "rad", factor: 1 }, lift = course?.unit === "rad" ? angle : now?.display?.length ?? { unit: "m", factor: 1 };
+  const x = { values: (course?.angle ?? []).map((one) => one * angle.factor), label: "φ", unit: signed(angle.unit) };
+  const own = (now?.dimensions ?? []).filter((one) => !one.path.startsWith("segments."));
+  return (
+    <>
+      {own.length > 0 && <div class="fields">{own.map((one) => <Field label={one.name} value={one.shown} unit={one.unit} path={one.path} key={one.path} />)}</div>}
+      {cam.segments.length > 0 && (
+        <>
+          <h3>{say("segments")}</h3>
+          <ol class="segments">{cam.segments.map((segment, k) => <SegmentRow segment={segment} number={k + 1} key={segment.path} />)}</ol>
+        </>
+      )}
+      {course?.missing && <Missing message={course.missing} repair={course.repair} />}
+      {course?.angle && QUANTITIES.map((name) => {
+        const values = course[name];
+        return values?.length ? <CamChart key={name} title={say(`cam_${name}`)} unit={name === "lift" ? signed(lift.unit) : `${signed(lift.unit)}/rad${name === "acceleration" ? "²" : ""}`} values={values} factor={lift.factor} x={x} /> : null;
+      })}
+    </>
+  );
+}
+
+function CamChart({ title, unit, values, factor, x }: { title: string; unit: string; values: (number | null)[]; factor: number; x: { values: number[]; label: string; unit: string } }) {
+  const kept = useRef<{ values: (number | null)[]; data: Parameters<typeof ChartView>[0]["data"] } | null>(null);
+  if (kept.current?.values !== values) kept.current = { values, data: { title, unit: signed(unit), x, lines: [{ label: title, values: values.map((value) => (value === null ? NaN : value * factor)) }] } };
+  return (
+    <figure class="chart">
+      <figcaption class="head">{title}</figcaption>
+      <ChartView data={kept.current.data} />
+    </figure>
+  );
+}

@@ -1,0 +1,135 @@
+// A motion as the server sends it, and its numbers between the samples.
+import { type Frame, isFrame, type Place } from "./protocol";
+
+export interface MotionEvent {
+  drive: number;
+  kind: string;
+  text: string;
+}
+
+export class Motion {
+  readonly points: string[];
+  readonly links: string[];
+  readonly samples: number;
+  readonly axes: number;
+  readonly drive: Float32Array;
+  readonly status: Float32Array;
+  readonly events: MotionEvent[];
+  readonly limits: string[];
+  private readonly pointIndex: Map<string, number>;
+  private readonly linkIndex: Map<string, number>;
+
+  constructor(private readonly frame: Frame, readonly digest: string) {
+    const { header, arrays } = frame;
+    this.points = header.points;
+    this.links = header.links;
+    const places = arrays.points!;
+    this.samples = places.shape[0]!;
+    this.axes = places.shape[2] ?? 2;
+    this.drive = arrays.drive!.numbers;
+    this.status = arrays.status?.numbers ?? new Float32Array(this.samples);
+    this.events = header.events ?? [];
+    this.limits = header.limits ?? [];
+    this.pointIndex = new Map(this.points.map((name, k) => [name, k]));
+    this.linkIndex = new Map(this.links.map((name, k) => [name, k]));
+  }
+
+  get last(): number {
+    return this.samples - 1;
+  }
+  get factor(): number {
+    return this.frame.header.factor ?? 1;
+  }
+  get unit(): string {
+    return this.frame.header.unit ?? "";
+  }
+  get symbol(): string {
+    return this.frame.header.symbol || ({ angle: "φ", length: "s", time: "t" } as Record<string, string>)[this.frame.header.kind] || "";
+  }
+  get start(): number {
+    return this.frame.header.start ?? 0;
+  }
+  has(array: string): boolean {
+    return array in this.frame.arrays;
+  }
+  reached(sample: number): boolean {
+    const code = String(this.status[sample]);
+    return this.frame.header.reached ? this.frame.header.reached[code] !== false : true;
+  }
+  word(sample: number): string {
+    return this.status[sample] ? this.frame.header.status_words?.[String(this.status[sample])] ?? "" : "";
+  }
+  point(name: string): number {
+    return this.pointIndex.get(name) ?? -1;
+  }
+  link(name: string): number {
+    return this.linkIndex.get(name) ?? -1;
+  }
+
+  // One number of an array of points or links at a sample.
+  value(array: string, sample: number, thing: number, axis = 0): number {
+    const found = this.frame.arrays[array];
+    if (!found || thing < 0) return NaN;
+    const [, things = 1, axes = 1] = found.shape;
+    return found.numbers[(sample * things + thing) * axes + axis] ?? NaN;
+  }
+
+  place(name: string, at: number): Place | null {
+    const thing = this.point(name), low = Math.floor(at), share = at - low, found: number[] = [];
+    for (let axis = 0; axis < this.axes; axis += 1) {
+      const first = this.value("points", low, thing, axis);
+      const next = share && low < this.last ? this.value("points", low + 1, thing, axis) : first;
+      found.push(Number.isFinite(next) ? first + share * (next - first) : first);
+    }
+    return found.every(Number.isFinite) ? found : null;
+  }
+
+  angle(name: string, at: number): number {
+    const thing = this.link(name), low = Math.floor(at), share = at - low;
+    const first = this.value("angles", low, thing), next = low < this.last ? this.value("angles", low + 1, thing) : first;
+    return Number.isFinite(next) ? first + share * (next - first) : first;
+  }
+
+  driveAt(at: number): number {
+    const low = Math.floor(at), share = at - low, first = this.drive[low] ?? NaN, next = this.drive[low + 1] ?? first;
+    return first + share * (next - first);
+  }
+
+  // Where between the samples a value of the drive lies; of an angle also turns apart from it.
+  sampleOf(value: number): number | null {
+    const turn = 2 * Math.PI;
+    const low = Math.min(this.drive[0]!, this.drive[this.last]!), high = Math.max(this.drive[0]!, this.drive[this.last]!);
+    let sought = value;
+    if (this.frame.header.kind === "angle" && (value < low || value > high)) sought = value - turn * Math.floor((value - low) / turn);
+    for (let k = 0; k < this.last; k += 1) {
+      const a = this.drive[k]!, b = this.drive[k + 1]!;
+      if ((a <= sought && sought <= b) || (b <= sought && sought <= a)) return k + (b === a ? 0 : (sought - a) / (b - a));
+    }
+    return null;
+  }
+
+  // Whether the last picture is the first.
+  get closed(): boolean {
+    if (this.last < 2) return false;
+    let apart = 0, size = 0;
+    for (let k = 0; k < this.points.length; k += 1) for (let axis = 0; axis < this.axes; axis += 1) {
+      const first = this.value("points", 0, k, axis);
+      const last = this.value("points", this.last, k, axis);
+      if (!Number.isFinite(first) || !Number.isFinite(last)) return false;
+      apart = Math.max(apart, Math.abs(first - last));
+      size = Math.max(size, Math.abs(first));
+    }
+    return apart <= 1e-4 * size;
+  }
+
+  // The reached samples around one.
+  piece(sample: number): [number, number] {
+    if (!this.reached(sample)) return [0, this.last];
+    let low = sample, high = sample;
+    while (low > 0 && this.reached(low - 1)) low -= 1;
+    while (high < this.last && this.reached(high + 1)) high += 1;
+    return [low, high];
+  }
+}
+
+export const motionOf = (answer: unknown, digest: string): Motion | null => (isFrame(answer) && answer.arrays.points ? new Motion(answer, digest) : null);

@@ -1,0 +1,249 @@
+// What page and server say to each other: JSON both ways, and binary frames of float32 numbers back.
+export type Place = number[];
+
+export interface Refusal {
+  message: string;
+  repair?: string;
+}
+
+export interface Row {
+  on: boolean;
+  allowed: boolean;
+  why?: string | null;
+  value?: number | number[] | string | null;
+  unit?: string | null;
+}
+export type RowName = "ground" | "guide" | "drive" | "fixed" | "trace" | "mass" | "load";
+export const ROWS: RowName[] = ["ground", "guide", "drive", "fixed", "trace", "mass", "load"];
+
+export interface Handles {
+  edit: boolean;
+  move: boolean;
+  why?: string | null;
+}
+export interface ScenePoint {
+  name: string;
+  at: Place | null;
+  kind: "fixed" | "moving" | "coupler";
+  links: string[];
+  traced?: boolean;
+  centre?: boolean;
+  held?: boolean;
+  handles: Handles;
+}
+export interface SceneLink {
+  name: string;
+  points: string[];
+  length?: number | null;
+  angle?: number | null;
+  locked?: boolean;
+  drive?: boolean;
+}
+export interface SceneGuide {
+  name: string;
+  point: string;
+  on: string;
+  through: Place | null; // both in axes of the frame, at the initial position
+  direction: number | null;
+  link?: string | null;
+  slider?: boolean;
+}
+export interface SceneWheel {
+  link: string;
+  centre: string;
+  radius: number;
+  on?: string | null;
+}
+export interface SceneDrive {
+  name: string;
+  kind: string;
+  link?: string | null;
+  at?: string | null;
+  speed?: number | null;
+}
+export interface SceneLoad {
+  name: string;
+  point?: string | null;
+  vector?: number[] | null;
+}
+export interface Dimension {
+  path: string;
+  name: string;
+  of?: string | null;
+  shown: string;
+  unit: string;
+  locked?: boolean;
+  lockable?: boolean;
+}
+export interface Segment {
+  path: string;
+  from: number;
+  to: number;
+  kind: string;
+  law?: string | null;
+  laws?: string[];
+  names?: Record<string, string>;
+}
+export interface CamScene {
+  profile: Place[];
+  pitch?: Place[] | null;
+  base: number | null;
+  roller?: number | null;
+  displacement: { missing?: string; repair?: string; unit?: string; angle?: number[]; lift?: (number | null)[]; velocity?: (number | null)[]; acceleration?: (number | null)[] } | null;
+  segments: Segment[];
+  missing?: string;
+  repair?: string;
+}
+export interface Display {
+  length: { unit: string; factor: number };
+  angle: { unit: string; factor: number };
+}
+export interface Scene {
+  kind: "plane" | "sphere" | "cam";
+  title?: string;
+  size?: [Place, Place] | null;
+  display?: Display;
+  points: ScenePoint[];
+  links: SceneLink[];
+  guides: SceneGuide[];
+  wheels?: SceneWheel[];
+  cylinders?: [string, string][];
+  drives: SceneDrive[];
+  loads: SceneLoad[];
+  dimensions?: Dimension[];
+  rows: Record<string, Partial<Record<RowName, Row>>>;
+  topics?: Record<string, true | string>;
+  cam?: CamScene;
+}
+export interface Problem {
+  message: string;
+  line?: number | null;
+  column?: number | null;
+  path?: string | null;
+  repair?: string | null;
+}
+export interface Fact {
+  label: string;
+  text: string;
+}
+export interface Readiness {
+  mobility?: number | null;
+  facts: Fact[];
+  ready?: boolean;
+  loose: string[];
+  missing: string[];
+  limit?: string | null;
+}
+export interface Reading {
+  text: string;
+  digest: string;
+  scene: Scene | null;
+  problems: Problem[];
+  readiness: Readiness | null;
+  changed?: string[];
+  named?: string[]; // what an edit made
+  error?: Refusal;
+}
+export interface TopicOption {
+  name: string;
+  label: string;
+  kind: "choice" | "number" | "text" | "flag";
+  choices?: { value: string; label: string }[];
+  least?: number;
+  most?: number;
+  value?: string | number | boolean | null;
+  hint?: string;
+  of?: string | null; // kind of the objects that it names
+}
+export interface Topic {
+  name: string;
+  title: string;
+  formats?: string[];
+  options?: TopicOption[];
+  for?: string;
+}
+export interface Template {
+  name: string;
+  title: string;
+  kind: string;
+}
+export interface Export {
+  name: string;
+  title: string;
+  formats: string[];
+  for?: string;
+}
+export interface Hello {
+  version: string;
+  language?: string;
+  languages: { code: string; name: string }[];
+  words: Record<string, string>;
+  units?: Record<string, string>;
+  templates: Template[];
+  file: { name: string; text: string } | null;
+  folder?: boolean;
+  topics: Topic[];
+  exports?: Export[];
+  decimal: string;
+  blank?: string;
+}
+export interface Column {
+  head: string;
+  unit?: string;
+  numeric?: boolean;
+}
+export interface Curve {
+  label: string;
+  unit: string;
+  values: (number | null)[];
+  x?: (number | null)[];
+  dashed?: boolean;
+}
+export type Block =
+  | { kind: "facts"; facts: Fact[] }
+  | { kind: "table"; title?: string; columns: Column[]; rows: (string | number | null)[][] }
+  | { kind: "plot"; title?: string; x: Curve; y?: { label: string; unit: string }; curves: Curve[]; cursor?: string | null; marks?: { label: string; at: number | null }[] }
+  | { kind: "picture"; title?: string; svg: string; dark?: string; alt?: string }
+  | { kind: "formula"; text?: string; mathml?: string }
+  | { kind: "paragraph"; text: string; item?: boolean }
+  | { kind: "heading"; text: string }
+  | { kind: "arrows"; title?: string; unit: string; at: string[]; labels?: string[]; vectors: (number | null)[][][] };
+export interface Panel {
+  topic: string;
+  title: string;
+  blocks: Block[];
+  options?: TopicOption[];
+  missing?: string;
+  repair?: string;
+}
+export interface Completion {
+  label: string;
+  detail?: string;
+  type?: string;
+}
+export interface Completions {
+  from: number; // column, from 1
+  options: Completion[];
+}
+
+// A binary frame: length of the header, the header as JSON, float32 numbers.
+export interface Frame {
+  id: number;
+  header: Record<string, any>;
+  arrays: Record<string, { shape: number[]; numbers: Float32Array }>;
+}
+export const isFrame = (answer: unknown): answer is Frame =>
+  typeof answer === "object" && answer !== null && "arrays" in answer && "header" in answer;
+
+export function readFrame(bytes: ArrayBuffer): Frame {
+  const length = new DataView(bytes).getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
+  const begin = 4 + Math.ceil(length / 4) * 4;
+  const numbers = new Float32Array(bytes, begin, (bytes.byteLength - begin) >> 2);
+  const arrays: Frame["arrays"] = {};
+  for (const [name, { shape, offset }] of Object.entries(header.arrays as Record<string, { shape: number[]; offset: number }>)) {
+    const size = shape.reduce((product, side) => product * side, 1);
+    arrays[name] = { shape, numbers: numbers.subarray(offset, offset + size) };
+  }
+  return { id: header.id, header, arrays };
+}

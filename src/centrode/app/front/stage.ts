@@ -1,0 +1,806 @@
+// The stage: the drawing, and what hand, keyboard and wheel do on it.
+import { batch, effect } from "@preact/signals";
+import { SUPERSEDED } from "./connection";
+import { U, digits, minus, plus, roundStep, size } from "./outlines";
+import { Globe, Plane } from "./paper";
+import { Picture, make } from "./picture";
+import { photo, scalePhoto } from "./photo";
+import { type Frame, type Place, type Reading, isFrame } from "./protocol";
+import * as state from "./state";
+import { ask, digest, edit, mode, motion, place, playing, scene, selection, tell } from "./state";
+import { say, spelled, withUnit } from "./words";
+
+const NEAR = 14, NEAR_TOUCH = 24, NEAR_LINE = 9; // pixels
+const MOVED = 5; // pixels that make a drag of a click
+
+export interface Target {
+  kind: "point" | "link" | "guide";
+  name: string;
+}
+interface Line {
+  from: Place;
+  target: Target | null;
+  to: Place;
+  end: Target | null;
+  guide: boolean;
+}
+
+export class Stage {
+  readonly svg: SVGSVGElement;
+  readonly picture: Picture;
+  readonly plane = new Plane();
+  readonly globe = new Globe();
+  private readonly grid: SVGPathElement;
+  private readonly heavy: SVGPathElement;
+  private readonly axes: SVGPathElement;
+  private readonly image: SVGImageElement;
+  private readonly hint: SVGGElement;
+  private readonly rubber: SVGRectElement;
+  private readonly crosshair: SVGPathElement;
+  private pointers = new Map<number, Place>();
+  private gesture: { move?: (at: Place, event: PointerEvent) => void; end: (moved: boolean, event: PointerEvent | null) => void; cancel?: () => void } | null = null;
+  private begun: Place = [0, 0];
+  private moved = false;
+  private cursor: Place | null = null; // of the keyboard
+  private line: Line | null = null;
+  private live: { points: Map<string, Place>; angles: Map<string, number> } | null = null;
+  private built: unknown = null;
+  private fitted = -1;
+  private space = false;
+  private fits = true; // until somebody zooms or draws
+
+  constructor(private readonly holder: HTMLElement) {
+    this.svg = make("svg", { class: "drawing", tabindex: 0, role: "application", "data-updates": 0 });
+    holder.append(this.svg);
+    this.image = make("image", { class: "photo", preserveAspectRatio: "none" }, this.svg);
+    this.grid = make("path", { class: "grid-lines" }, this.svg);
+    this.heavy = make("path", { class: "grid-lines heavy" }, this.svg);
+    this.axes = make("path", { class: "grid-lines axes" }, this.svg);
+    this.picture = new Picture(this.svg, this.plane);
+    this.hint = make("g", { class: "sketch" }, this.svg);
+    this.rubber = make("rect", { class: "rubber", display: "none" }, this.svg);
+    this.crosshair = make("path", { class: "crosshair", display: "none", d: "M-140 0H-40M40 0H140M0 -140V-40M0 40V140" }, this.svg);
+    this.listen();
+    new ResizeObserver(() => this.resize()).observe(holder);
+    this.resize();
+    effect(() => this.rebuild());
+    effect(() => {
+      const shows = state.shows.value;
+      this.picture.layers.tracks.setAttribute("display", shows.paths ? "inline" : "none");
+      this.picture.layers.names.setAttribute("display", shows.names ? "inline" : "none");
+      this.picture.shows = shows;
+      const block = state.arrows.value;
+      this.picture.forces = block && block.kind === "arrows" ? block : null;
+      place.value;
+      this.draw();
+    });
+    effect(() => {
+      photo.value;
+      state.shows.value;
+      this.ground();
+    });
+    effect(() => this.picture.mark(selection.value, state.readiness.value?.loose ?? []));
+    effect(() => this.svg.setAttribute("aria-label", `${say("stage")}: ${scene.value?.title ?? ""}. ${say(`mode_${mode.value}_hint`)}`));
+    effect(() => this.svg.setAttribute("data-mode", mode.value));
+  }
+
+  get spherical(): boolean {
+    return scene.value?.kind === "sphere";
+  }
+
+  // --- what is drawn ---------------------------------------------------------------------------------------------
+  private rebuild(): void {
+    const now = scene.value, moving = motion.value, fits = state.fits.value;
+    this.picture.paper = this.spherical ? this.globe : this.plane;
+    this.picture.motion = moving && moving.digest === digest.peek() ? moving : null;
+    if (!now) {
+      this.built = null;
+      return;
+    }
+    if (this.built !== now) {
+      this.built = now;
+      const focused = document.activeElement instanceof Element ? document.activeElement.getAttribute("data-name") : null;
+      const kind = document.activeElement instanceof Element ? document.activeElement.getAttribute("data-kind") : null;
+      this.picture.build(now, (element, name, what) => this.focusable(element, name, what));
+      this.picture.mark(selection.peek(), state.readiness.peek()?.loose ?? []);
+      if (focused && kind) this.svg.querySelector<SVGGElement>(`[data-kind="${kind}"][data-name="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+    }
+    if (this.fitted !== fits) {
+      // once more when it is known how far it moves
+      if (!now.points.length || this.picture.motion || state.still.value) this.fitted = fits;
+      this.fit();
+    }
+    this.picture.showTracks();
+    this.draw();
+  }
+
+  private where(): { place: (name: string) => Place | null; angle: (link: string) => number } {
+    const { live } = this, moving = this.picture.motion, at = place.peek();
+    const here = new Map(scene.peek()?.points.map((point) => [point.name, point.at]));
+    return {
+      place: (name) => live?.points.get(name) ?? (moving && moving.point(name) >= 0 ? moving.place(name, at) : null) ?? here.get(name) ?? null,
+      angle: (link) => live?.angles.get(link) ?? (moving ? moving.angle(link, at) : NaN),
+    };
+  }
+
+  draw(): void {
+    this.picture.show(this.where(), this.picture.motion ? place.peek() : null);
+  }
+
+  private resize(): void {
+    const wide = Math.max(100, this.holder.clientWidth), high = Math.max(100, this.holder.clientHeight);
+    if (wide === this.plane.wide && high === this.plane.high) return;
+    Object.assign(this.plane, { wide, high });
+    this.globe.centre = [(wide * U) / 2, (high * U) / 2];
+    this.globe.radius = 0.42 * Math.min(wide, high) * U;
+    this.svg.setAttribute("viewBox", `0 0 ${wide * U} ${high * U}`);
+    if (this.fits) this.fit();
+    else this.view();
+  }
+
+  private view(): void {
+    this.ground();
+    this.picture.showTracks();
+    this.draw();
+  }
+
+  fit(): void {
+    this.fits = true;
+    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    const take = (at: Place | null): void => at?.slice(0, 2).forEach((value, axis) => {
+      if (!Number.isFinite(value)) return;
+      low[axis] = Math.min(low[axis]!, value);
+      high[axis] = Math.max(high[axis]!, value);
+    });
+    const moving = this.picture.motion;
+    for (const point of scene.peek()?.points ?? []) {
+      take(point.at);
+      if (moving) for (let k = 0; k < moving.samples; k += 4) take(moving.place(point.name, k));
+    }
+    for (const wheel of scene.peek()?.wheels ?? []) {
+      const at = scene.peek()!.points.find((one) => one.name === wheel.centre)?.at;
+      if (at) for (const side of [-wheel.radius, wheel.radius]) take([at[0]! + side, at[1]! + side]);
+    }
+    if (low[0]! <= high[0]!) this.plane.fit(low, high);
+    else {
+      const factor = scene.peek()?.display?.length.factor ?? 1;
+      this.plane.scale = (0.9 * Math.min(this.plane.wide, this.plane.high)) / ((factor >= 100 ? 500 : 5) / factor);
+      this.plane.middle = [0, 0];
+    }
+    this.ground();
+    this.picture.showTracks();
+    this.draw();
+  }
+
+  zoom(by: number, about: Place = [(this.plane.wide * U) / 2, (this.plane.high * U) / 2]): void {
+    this.fits = false;
+    if (this.spherical) this.globe.radius = Math.min(60000, Math.max(500, this.globe.radius * by));
+    else this.plane.zoom(by, about);
+    this.view();
+  }
+
+  // Step of the grid [m]: a round number of the units that the description is shown in.
+  get step(): number {
+    const factor = scene.peek()?.display?.length.factor ?? 1;
+    return roundStep((18 / this.plane.scale) * factor) / factor;
+  }
+
+  private ground(): void {
+    const { plane } = this, flat = !this.spherical, on = flat && state.shows.peek().grid !== false;
+    for (const one of [this.grid, this.heavy, this.axes]) one.setAttribute("display", on ? "inline" : "none");
+    if (on) {
+      const step = this.step, low = plane.back([0, plane.high * U]), high = plane.back([plane.wide * U, 0]);
+      const lines = (by: number, skip: number): string => {
+        let d = "";
+        for (let k = Math.ceil(low[0]! / by); k * by <= high[0]!; k += 1) if (!skip || k % skip) d += `M${digits(plane.flat([k * by, 0])[0]!)} 0V${plane.high * U}`;
+        for (let k = Math.ceil(low[1]! / by); k * by <= high[1]!; k += 1) if (!skip || k % skip) d += `M0 ${digits(plane.flat([0, k * by])[1]!)}H${plane.wide * U}`;
+        return d;
+      };
+      this.grid.setAttribute("d", lines(step, 5));
+      this.heavy.setAttribute("d", lines(5 * step, 0));
+      const origin = plane.flat([0, 0]);
+      this.axes.setAttribute("d", `M${digits(origin[0]!)} 0V${plane.high * U}M0 ${digits(origin[1]!)}H${plane.wide * U}`);
+    }
+    const shown = photo.peek();
+    this.image.setAttribute("display", shown && flat ? "inline" : "none");
+    if (shown && flat) {
+      const corner = plane.flat([shown.x, shown.y + shown.high]), scale = plane.scale * U;
+      this.image.setAttribute("href", shown.url);
+      this.image.setAttribute("x", digits(corner[0]!));
+      this.image.setAttribute("y", digits(corner[1]!));
+      this.image.setAttribute("width", digits(shown.wide * scale));
+      this.image.setAttribute("height", digits(shown.high * scale));
+      this.image.setAttribute("opacity", String(shown.opacity));
+    }
+  }
+
+  // --- what lies where -------------------------------------------------------------------------------------------
+  private at(event: { clientX: number; clientY: number }): Place {
+    const box = this.svg.getBoundingClientRect();
+    return [(event.clientX - box.left) * U, (event.clientY - box.top) * U];
+  }
+
+  private flatOf(name: string): Place | null {
+    const at = this.where().place(name);
+    return at && this.picture.paper.flat(at);
+  }
+
+  target(at: Place, touch = false, only?: "point"): Target | null {
+    const now = scene.peek();
+    if (!now) return null;
+    let best: Target | null = null, least = U * (touch ? NEAR_TOUCH : NEAR);
+    for (const point of now.points) {
+      const flat = this.flatOf(point.name), far = flat ? Math.hypot(flat[0]! - at[0]!, flat[1]! - at[1]!) : Infinity;
+      if (far < least) [best, least] = [{ kind: "point", name: point.name }, far];
+    }
+    if (best || only) return best;
+    least = U * NEAR_LINE * (touch ? 1.8 : 1);
+    const toSegment = (a: Place, b: Place): number => {
+      const way = minus(b, a), share = Math.min(1, Math.max(0, (minus(at, a)[0]! * way[0]! + minus(at, a)[1]! * way[1]!) / (way[0]! ** 2 + way[1]! ** 2 || 1)));
+      return size(minus(at, plus(a, way, share)));
+    };
+    for (const link of now.links) {
+      const known = link.points.map((name) => this.flatOf(name)).filter((one): one is Place => Boolean(one));
+      const around = known.length > 2 ? [...known, known[0]!] : known;
+      for (let k = 1; k < around.length; k += 1) {
+        const far = toSegment(around[k - 1]!, around[k]!);
+        if (far < least) [best, least] = [{ kind: "link", name: link.name }, far];
+      }
+    }
+    for (const guide of now.guides) {
+      const path = this.svg.querySelector<SVGPathElement>(`[data-kind="guide"][data-name="${CSS.escape(guide.name)}"]`)?.getAttribute("d");
+      const numbers = path?.match(/-?[\d.]+/g)?.map(Number);
+      if (!numbers || numbers.length < 4) continue;
+      const far = toSegment(numbers.slice(0, 2), numbers.slice(2, 4));
+      if (far < least) [best, least] = [{ kind: "guide", name: guide.name }, far];
+    }
+    return best;
+  }
+
+  // Where a hand means: a joint nearby, else the grid.
+  private meant(at: Place, event: { altKey: boolean } | null, touch: boolean, not?: Target | null): { place: Place; target: Target | null } {
+    const target = this.target(at, touch);
+    if (target && target.name !== not?.name) {
+      if (target.kind === "point") return { place: this.where().place(target.name)!, target };
+      if (target.kind === "link") return { place: this.plane.back(at), target };
+    }
+    const raw = this.plane.back(at);
+    if (!state.snapping.peek() || event?.altKey) return { place: raw, target: null };
+    const step = this.step;
+    return { place: raw.map((value) => Number((Math.round(value / step) * step).toPrecision(12))), target: null };
+  }
+
+  // --- pointers --------------------------------------------------------------------------------------------------
+  private listen(): void {
+    const { svg } = this;
+    svg.addEventListener("pointerdown", (event) => this.down(event));
+    svg.addEventListener("pointermove", (event) => this.move(event));
+    for (const name of ["pointerup", "pointercancel"] as const) svg.addEventListener(name, (event) => this.up(event));
+    svg.addEventListener("dblclick", (event) => this.double(event));
+    svg.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), this.at(event));
+    }, { passive: false });
+    svg.addEventListener("keydown", (event) => this.key(event));
+    svg.addEventListener("keyup", (event) => {
+      if (event.key === " ") this.space = false;
+    });
+    svg.addEventListener("blur", () => {
+      this.crosshair.setAttribute("display", "none");
+    });
+    svg.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
+  private down(event: PointerEvent): void {
+    const at = this.at(event);
+    this.pointers.set(event.pointerId, at);
+    svgCapture(this.svg, event.pointerId);
+    this.cursor = null;
+    this.crosshair.setAttribute("display", "none");
+    if (this.pointers.size === 2) {
+      this.gesture?.cancel?.();
+      this.pinch();
+      return;
+    }
+    if (this.pointers.size > 2) return;
+    this.begun = at;
+    this.moved = false;
+    const touch = event.pointerType === "touch", target = this.target(at, touch);
+    if (event.target instanceof Element && !event.target.closest("[data-kind]")) this.svg.focus({ preventScroll: true });
+    if (event.button === 1 || this.space || event.button === 2) this.gesture = this.panning(at);
+    else if (event.button !== 0) this.gesture = null;
+    else if (scalePhoto.value) this.gesture = this.measuring(at);
+    else if (this.spherical) this.gesture = this.onSphere(target, at, event);
+    else if (mode.value === "draw" || mode.value === "guide") this.gesture = this.drawing(at, event, touch);
+    else if (mode.value === "edit") this.gesture = this.editing(target, event);
+    else this.gesture = this.moving(target, at, event);
+  }
+
+  private move(event: PointerEvent): void {
+    const at = this.at(event);
+    if (!this.pointers.has(event.pointerId)) {
+      this.hover(at, event);
+      return;
+    }
+    this.pointers.set(event.pointerId, at);
+    if (!this.moved && size(minus(at, this.begun)) < MOVED * U) return;
+    this.moved = true;
+    this.gesture?.move?.(at, event);
+  }
+
+  private up(event: PointerEvent): void {
+    if (!this.pointers.delete(event.pointerId)) return;
+    const { gesture } = this;
+    if (this.pointers.size) return;
+    this.gesture = null;
+    if (event.type === "pointercancel") gesture?.cancel?.();
+    else gesture?.end(this.moved, event);
+  }
+
+  private hover(at: Place, event: PointerEvent): void {
+    if (event.pointerType === "touch") return;
+    const target = this.target(at);
+    this.svg.setAttribute("data-over", target?.kind ?? "");
+    for (const { point, group } of this.picture.points) group.classList.toggle("over", target?.kind === "point" && target.name === point.name);
+  }
+
+  private panning(from: Place): NonNullable<Stage["gesture"]> {
+    let last = from;
+    return {
+      move: (at) => {
+        this.fits = false;
+        if (this.spherical) this.globe.turn(at[0]! - last[0]!, last[1]! - at[1]!);
+        else this.plane.pan(minus(at, last));
+        last = at;
+        this.view();
+      },
+      end: () => undefined,
+    };
+  }
+
+  private pinch(): void {
+    const both = (): [Place, Place] => [...this.pointers.values()].slice(0, 2) as [Place, Place];
+    let [a, b] = both();
+    this.moved = true;
+    this.gesture = {
+      move: () => {
+        if (this.pointers.size < 2) return;
+        const [c, d] = both(), middle = plus(c, d).map((value) => value / 2), before = plus(a, b).map((value) => value / 2);
+        if (!this.spherical) this.plane.pan(minus(middle, before));
+        this.zoom(size(minus(c, d)) / (size(minus(a, b)) || 1), middle);
+        [a, b] = [c, d];
+      },
+      end: () => undefined,
+    };
+  }
+
+  choose(target: Target | null, more: boolean): void {
+    if (!target) selection.value = more ? selection.value : [];
+    else if (!more) selection.value = [target.name];
+    else selection.value = selection.value.includes(target.name) ? selection.value.filter((one) => one !== target.name) : [...selection.value, target.name];
+  }
+
+  // Drawing and editing happen where the description has everything: at the initial position.
+  private initial(): boolean {
+    playing.value = false;
+    const start = motion.value?.start ?? 0;
+    if (!this.picture.motion || Math.abs(place.value - start) < 1e-6) return true;
+    place.value = start;
+    return false;
+  }
+
+  // --- drawing ---------------------------------------------------------------------------------------------------
+  private drawing(at: Place, event: PointerEvent, touch: boolean): NonNullable<Stage["gesture"]> {
+    const here = this.initial(), guide = mode.value === "guide", from = this.meant(at, event, touch);
+    this.line = { from: from.place, target: from.target, to: from.place, end: null, guide };
+    return {
+      move: (now, next) => {
+        if (!this.line) return;
+        const to = this.meant(now, next, touch, this.line.target?.kind === "point" ? this.line.target : null);
+        this.line.to = to.place;
+        this.line.end = guide ? null : to.target;
+        this.sketch();
+      },
+      end: (moved, last) => {
+        const { line } = this;
+        this.line = null;
+        this.sketch();
+        if (moved && line && here) void this.finish(line);
+        else this.choose(this.target(at, touch), last?.shiftKey ?? false);
+      },
+      cancel: () => {
+        this.line = null;
+        this.sketch();
+      },
+    };
+  }
+
+  private sketch(): void {
+    this.hint.replaceChildren();
+    const { line } = this;
+    if (!line) return;
+    const [a, b] = [this.plane.flat(line.from), this.plane.flat(line.to)], display = scene.peek()?.display;
+    make("path", { class: line.guide ? "guide-line" : "new-link", d: `M${digits(a[0]!)} ${digits(a[1]!)}L${digits(b[0]!)} ${digits(b[1]!)}` }, this.hint);
+    for (const [spot, target] of [[a, line.target], [b, line.end]] as const) {
+      make("circle", { class: target ? "catch" : "end", cx: spot[0]!, cy: spot[1]!, r: target ? 105 : 45 }, this.hint);
+    }
+    const way = minus(line.to, line.from), factor = display?.length.factor ?? 1, unit = display?.length.unit ?? "m";
+    const right = way[0]! >= 0; // beside the end that the hand leads, away from the line
+    const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (way[1]! >= 0 ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
+    const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI;
+    label.textContent = line.guide ? withUnit(spelled(angle, 4), "°") : `${withUnit(spelled(size(way) * factor, 4), unit)} · ${withUnit(spelled(angle, 4), "°")}`;
+  }
+
+  // A line that was drawn becomes a link or a guide; a place on a link becomes a point of it first.
+  private async finish(line: Line): Promise<void> {
+    this.fits = false;
+    const way = minus(line.to, line.from);
+    if (!(size(way) > 0)) return;
+    if (line.guide) {
+      const point = line.target?.kind === "point" ? line.target.name : undefined;
+      const answer = await edit({ do: "add_guide", at: line.from, direction: way, ...(point ? { point } : {}) });
+      this.select(answer, "guides");
+      return;
+    }
+    const ends: (string | undefined)[] = [];
+    for (const [target, at] of [[line.target, line.from], [line.end, line.to]] as const) {
+      if (target?.kind === "point") ends.push(target.name);
+      else if (target?.kind === "link") {
+        const answer = await edit({ do: "add_point", link: target.name, at });
+        if (!answer) return;
+        ends.push(answer.named?.[0]);
+      } else ends.push(undefined);
+    }
+    if (ends[0] !== undefined && ends[0] === ends[1]) return;
+    const answer = await edit({ do: "add_link", at: line.from, to: line.to, ...(ends[0] ? { from_point: ends[0] } : {}), ...(ends[1] ? { to_point: ends[1] } : {}) });
+    this.select(answer, "links");
+  }
+
+  // Selects what an edit has made, so that its state rows are at hand.
+  private select(answer: Reading | null, kind: "points" | "links" | "guides"): void {
+    const made = answer?.scene?.[kind].map((one) => one.name).filter((name) => answer.named?.includes(name)) ?? [];
+    if (made.length) selection.value = made.slice(-1);
+  }
+
+  private double(event: MouseEvent): void {
+    if (this.spherical || !(mode.value === "draw" || mode.value === "edit")) return;
+    const at = this.at(event), target = this.target(at);
+    if (target?.kind === "link") void this.addPoint(target.name, this.plane.back(at));
+  }
+
+  async addPoint(link: string, at: Place): Promise<void> {
+    this.select(await edit({ do: "add_point", link, at }), "points");
+  }
+
+  // --- dragging what is there ------------------------------------------------------------------------------------
+  private editing(target: Target | null, event: PointerEvent): NonNullable<Stage["gesture"]> {
+    if (!target || target.kind !== "point") {
+      const more = event.shiftKey;
+      return {
+        move: (at) => this.band(at),
+        end: (moved, last) => {
+          this.rubber.setAttribute("display", "none");
+          if (moved && last) this.inBand(this.at(last), more);
+          else this.choose(target, more);
+        },
+        cancel: () => this.rubber.setAttribute("display", "none"),
+      };
+    }
+    return this.held(target.name, "edit", event);
+  }
+
+  private moving(target: Target | null, at: Place, event: PointerEvent): NonNullable<Stage["gesture"]> {
+    let name: string | null = target?.kind === "point" ? target.name : null;
+    if (target?.kind === "link") {
+      const points = scene.value!.links.find((one) => one.name === target.name)!.points;
+      const far = (one: string): number => {
+        const flat = this.flatOf(one);
+        return flat && scene.value!.points.find((point) => point.name === one)?.handles.move ? size(minus(flat, at)) : Infinity;
+      };
+      name = points.reduce<string | null>((best, one) => (far(one) < (best ? far(best) : Infinity) ? one : best), null);
+    }
+    if (!name) {
+      const pan = this.panning(at);
+      return { ...pan, end: (moved, last) => void (moved || this.choose(target, last?.shiftKey ?? false)) };
+    }
+    return this.held(name, "move", event, target);
+  }
+
+  private onSphere(target: Target | null, at: Place, event: PointerEvent): NonNullable<Stage["gesture"]> {
+    if (target?.kind === "point" && (mode.value === "move" || mode.value === "edit")) return this.held(target.name, mode.value, event);
+    const pan = this.panning(at);
+    return { ...pan, end: (moved, last) => void (moved || this.choose(target, last?.shiftKey ?? false)) };
+  }
+
+  // One request is on its way; of places that come meanwhile the latest is sent when it is back.
+  private held(name: string, how: "edit" | "move", event: PointerEvent, chosen: Target | null = { kind: "point", name }): NonNullable<Stage["gesture"]> {
+    const begun = how === "edit" ? this.initial() : true;
+    playing.value = false;
+    const point = scene.value?.points.find((one) => one.name === name), allowed = point?.handles[how] ?? false;
+    const touch = event.pointerType === "touch", grip = this.flatOf(name), off = grip ? minus(this.begun, grip) : [0, 0];
+    const drag = new Drag(name, how, (frame) => this.follow(frame));
+    const goal = (at: Place, last: { altKey: boolean } | null): Place => {
+      const free = minus(at, off);
+      if (this.spherical) return this.globe.back(free, this.where().place(name));
+      if (how === "move") return this.plane.back(free);
+      const onto = this.target(free, touch, "point");
+      return onto && onto.name !== name ? this.where().place(onto.name)! : this.meantFree(free, last);
+    };
+    return {
+      move: (at, last) => {
+        if (!allowed || !begun) {
+          if (!allowed) tell(point?.handles.why ?? say("held_point", { name }), true);
+          return;
+        }
+        this.svg.classList.add("held");
+        drag.to(goal(at, last));
+      },
+      end: (moved, last) => {
+        this.svg.classList.remove("held");
+        if (!moved) {
+          this.choose(chosen, last?.shiftKey ?? false);
+          return;
+        }
+        if (allowed && begun && last) void this.drop(drag, goal(this.at(last), last));
+      },
+      cancel: () => {
+        this.svg.classList.remove("held");
+        drag.stop();
+        this.live = null;
+        this.draw();
+      },
+    };
+  }
+
+  private meantFree(at: Place, event: { altKey: boolean } | null): Place {
+    const raw = this.plane.back(at);
+    if (!state.snapping.peek() || event?.altKey) return raw;
+    const step = this.step / 2;
+    return raw.map((value) => Number((Math.round(value / step) * step).toPrecision(12)));
+  }
+
+  follow(frame: Frame): void {
+    const names = scene.peek()?.points ?? [], links = scene.peek()?.links ?? [], { points, angles } = frame.arrays;
+    if (!points) return;
+    const axes = points.shape[1] ?? 2;
+    this.live = {
+      points: new Map(names.map((one, k) => [one.name, Array.from(points.numbers.subarray(k * axes, (k + 1) * axes))] as [string, Place]).filter(([, at]) => at.every(Number.isFinite) && at.length === axes)),
+      angles: new Map(angles ? links.map((one, k) => [one.name, angles.numbers[k]!]) : []),
+    };
+    const { at, held, values } = frame.header, before = place.peek();
+    if (typeof at === "number") this.seek(at);
+    if (held) tell(String(held), true);
+    else if (values && Object.keys(values).length) this.showValues(values);
+    if (place.peek() === before) this.draw(); // the player's place draws by itself
+    this.svg.setAttribute("data-updates", String(Number(this.svg.getAttribute("data-updates")) + 1));
+  }
+
+  private seek(value: number): void {
+    const found = motion.value?.sampleOf(value);
+    if (found !== null && found !== undefined) place.value = found;
+  }
+
+  private showValues(values: Record<string, number>): void {
+    const display = scene.peek()?.display, known = scene.peek()?.dimensions ?? [];
+    const told = Object.entries(values).slice(0, 4).map(([path, value]) => {
+      const one = known.find((dimension) => dimension.path === path), angle = /angle|direction/.test(path);
+      const unit = angle ? display?.angle : display?.length;
+      return `${one?.name ?? path} = ${withUnit(spelled(value * (unit?.factor ?? 1), 5), unit?.unit)}`;
+    });
+    tell(told.join("   "));
+  }
+
+  private async drop(drag: Drag, to: Place): Promise<void> {
+    const answer = await drag.drop(to);
+    if (answer === SUPERSEDED || !answer) {
+      this.live = null;
+    } else if (isFrame(answer)) {
+      this.follow(answer);
+      this.live = null;
+    } else if (answer.error) {
+      this.live = null;
+      state.refused(answer.error);
+    } else {
+      batch(() => {
+        this.live = null;
+        if (answer.text !== undefined) state.accept(answer);
+      });
+    }
+    this.draw();
+  }
+
+  // --- the band that selects -------------------------------------------------------------------------------------
+  private band(at: Place): void {
+    const low = [Math.min(at[0]!, this.begun[0]!), Math.min(at[1]!, this.begun[1]!)];
+    this.rubber.setAttribute("display", "inline");
+    this.rubber.setAttribute("x", digits(low[0]!));
+    this.rubber.setAttribute("y", digits(low[1]!));
+    this.rubber.setAttribute("width", digits(Math.abs(at[0]! - this.begun[0]!)));
+    this.rubber.setAttribute("height", digits(Math.abs(at[1]! - this.begun[1]!)));
+  }
+  private inBand(at: Place, more: boolean): void {
+    const inside = (flat: Place | null): boolean => Boolean(flat) && [0, 1].every((k) => (flat![k]! - at[k]!) * (flat![k]! - this.begun[k]!) <= 0);
+    const now = scene.value;
+    if (!now) return;
+    const points = now.points.filter((point) => inside(this.flatOf(point.name))).map((one) => one.name);
+    const links = now.links.filter((link) => link.points.every((name) => points.includes(name))).map((one) => one.name);
+    const guides = now.guides.filter((guide) => points.includes(guide.point)).map((one) => one.name);
+    selection.value = [...new Set([...(more ? selection.value : []), ...links, ...guides, ...points])];
+  }
+
+  // A line over the photo whose length is known sets its scale.
+  private measuring(from: Place): NonNullable<Stage["gesture"]> {
+    const start = this.plane.back(from);
+    return {
+      move: (at) => {
+        this.line = { from: start, to: this.plane.back(at), target: null, end: null, guide: true };
+        this.sketch();
+      },
+      end: (moved) => {
+        const { line } = this;
+        this.line = null;
+        this.sketch();
+        if (moved && line) scalePhoto.value?.(line.from, line.to);
+      },
+    };
+  }
+
+  // --- keyboard --------------------------------------------------------------------------------------------------
+  private focusable(element: SVGGElement | SVGPathElement, name: string, kind: Target["kind"]): void {
+    element.setAttribute("tabindex", "0");
+    element.setAttribute("role", "button");
+    element.setAttribute("data-kind", kind);
+    element.setAttribute("data-name", name);
+    element.setAttribute("aria-label", say(kind === "point" ? `joint_${scene.peek()?.points.find((one) => one.name === name)?.kind ?? "moving"}` : kind, { name }));
+    element.addEventListener("keydown", (event) => this.keyOn({ kind, name }, event as KeyboardEvent));
+  }
+
+  private static ways: Record<string, Place> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+  private keyOn(target: Target, event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const way = Stage.ways[event.key];
+    if (event.key === " ") this.choose(target, event.shiftKey);
+    else if (event.key === "Enter") {
+      if (!this.spherical && (mode.value === "draw" || mode.value === "guide") && target.kind === "point") this.anchor(target, this.where().place(target.name)!);
+      else if (!this.spherical && target.kind === "link" && mode.value !== "move") {
+        const points = scene.value!.links.find((one) => one.name === target.name)!.points.map((name) => this.where().place(name)).filter((one): one is Place => Boolean(one));
+        if (points.length > 1) void this.addPoint(target.name, plus(points[0]!, points[1]!).map((value) => value / 2));
+      } else this.choose(target, event.shiftKey);
+    } else if (way && target.kind === "point" && (mode.value === "edit" || mode.value === "move")) void this.nudge(target.name, way, event.shiftKey);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private nudging: Promise<unknown> = Promise.resolve();
+  private async nudge(name: string, way: Place, far: boolean): Promise<void> {
+    const how = mode.value as "edit" | "move", point = scene.value?.points.find((one) => one.name === name);
+    if (!point?.handles[how]) {
+      tell(point?.handles.why ?? say("held_point", { name }), true);
+      return;
+    }
+    if (how === "edit") this.initial();
+    this.nudging = this.nudging.then(async () => {
+      const now = this.where().place(name);
+      if (!now) return;
+      const step = this.spherical ? 0.02 * (far ? 5 : 1) : this.step * (far ? 5 : 1) * (how === "move" ? 0.5 : 1);
+      const flat = this.picture.paper.flat(now), pixels = this.spherical ? step * this.globe.radius : step * this.plane.scale * U;
+      const to = this.picture.paper.back(plus(flat, [way[0]! * pixels, -way[1]! * pixels]), now);
+      await this.drop(new Drag(name, how, (frame) => this.follow(frame)), to);
+    });
+    await this.nudging;
+  }
+
+  private anchor(target: Target | null, at: Place): void {
+    if (!this.line) {
+      if (!this.initial()) at = target ? this.where().place(target.name) ?? at : at;
+      this.line = { from: at, target, to: at, end: null, guide: mode.value === "guide" };
+      this.cursor = at;
+      this.svg.focus({ preventScroll: true });
+      this.showCursor();
+      tell(say("line_begun"));
+    } else {
+      const { line } = this;
+      line.to = at;
+      line.end = line.guide ? null : target;
+      this.line = null;
+      void this.finish(line);
+    }
+    this.sketch();
+  }
+
+  private showCursor(): void {
+    if (!this.cursor) return;
+    const flat = this.plane.flat(this.cursor), display = scene.peek()?.display, factor = display?.length.factor ?? 1;
+    this.crosshair.setAttribute("display", "inline");
+    this.crosshair.setAttribute("transform", `translate(${digits(flat[0]!)} ${digits(flat[1]!)})`);
+    const target = this.target(flat), name = target ? `, ${target.name}` : "";
+    tell(`x = ${withUnit(spelled(this.cursor[0]! * factor, 5), display?.length.unit)}, y = ${withUnit(spelled(this.cursor[1]! * factor, 5), display?.length.unit)}${name}`);
+    if (this.line) {
+      this.line.to = target?.kind === "point" ? this.where().place(target.name)! : this.cursor;
+      this.line.end = this.line.guide ? null : target;
+      this.sketch();
+    }
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.target !== this.svg || event.ctrlKey || event.metaKey) return;
+    const way = Stage.ways[event.key];
+    if (way) {
+      if (this.spherical) this.globe.turn(-way[0]! * 0.08 * this.globe.radius, -way[1]! * 0.08 * this.globe.radius);
+      if (this.spherical) this.view();
+      else {
+        const step = this.step * (event.shiftKey ? 5 : event.altKey ? 0.1 : 1);
+        const from = this.cursor ?? this.plane.middle.map((value) => Math.round(value / this.step) * this.step);
+        this.cursor = this.cursor ? from.map((value, k) => Number((value + step * way[k]!).toPrecision(12))) : from;
+        this.showCursor();
+      }
+    } else if ((event.key === "Enter" || event.key === " ") && this.cursor && !this.spherical) {
+      const target = this.target(this.plane.flat(this.cursor));
+      if (mode.value === "draw" || mode.value === "guide") this.anchor(target, target?.kind === "point" ? this.where().place(target.name)! : this.cursor);
+      else this.choose(target, event.shiftKey);
+    } else if (event.key === " ") {
+      this.space = true;
+      return; // the page plays where nobody drags
+    } else if (event.key === "Escape") {
+      this.line = null;
+      this.gesture?.cancel?.();
+      this.gesture = null;
+      this.sketch();
+      if (!this.cursor) selection.value = [];
+      this.cursor = null;
+      this.crosshair.setAttribute("display", "none");
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
+
+const svgCapture = (svg: SVGSVGElement, pointer: number): void => {
+  try {
+    svg.setPointerCapture(pointer);
+  } catch {
+    // a pointer that a test makes has nothing to be captured
+  }
+};
+
+class Drag {
+  private flying = false;
+  private waiting: Place | null = null;
+  private over = false;
+
+  constructor(private readonly point: string, private readonly how: "edit" | "move", private readonly shown: (frame: Frame) => void) {}
+
+  to(goal: Place): void {
+    this.waiting = goal;
+    if (!this.flying) void this.pump();
+  }
+  stop(): void {
+    this.over = true;
+    this.waiting = null;
+  }
+
+  private request(to: Place): Record<string, unknown> & { do: string } {
+    const now = motion.value;
+    return { do: "drag", digest: digest.value, mode: this.how, point: this.point, to, ...(this.how === "move" && now ? { drive: now.driveAt(place.value) } : {}) };
+  }
+
+  private async pump(): Promise<void> {
+    this.flying = true;
+    while (this.waiting && !this.over) {
+      const to = this.waiting;
+      this.waiting = null;
+      const answer = await ask(this.request(to), "drag");
+      if (this.over) break;
+      if (isFrame(answer)) this.shown(answer);
+      else if (answer !== SUPERSEDED && answer.error) state.refused(answer.error);
+    }
+    this.flying = false;
+  }
+
+  async drop(to: Place): Promise<any> {
+    this.stop();
+    return ask({ ...this.request(to), drop: true });
+  }
+}

@@ -1,0 +1,303 @@
+// The state of the page: the text of a description, and what the server says of it.
+import { computed, effect, signal } from "@preact/signals";
+import { Connection, type Request, SUPERSEDED } from "./connection";
+import { History } from "./history";
+import { type Motion, motionOf } from "./motion";
+import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
+import { packed, unpacked } from "./share";
+import { decimal, language, say, sentences, units, words } from "./words";
+
+export type Mode = "draw" | "guide" | "edit" | "move";
+
+const query = new URLSearchParams(location.search);
+export const token = query.get("token") ?? "";
+const scheme = location.protocol === "https:" ? "wss" : "ws";
+export const connection = new Connection(`${scheme}://${location.host}/socket?token=${encodeURIComponent(token)}`);
+
+export const hello = signal<Hello | null>(null);
+export const text = signal("");
+export const digest = signal("");
+export const scene = signal<Scene | null>(null);
+export const problems = signal<Problem[]>([]);
+export const readiness = signal<Readiness | null>(null);
+export const motion = signal<Motion | null>(null);
+export const still = signal<{ message: string; repair?: string } | null>(null); // why there is no motion
+export const fileName = signal<string | null>(null);
+export const saved = signal<string | null>(null); // the text as the file has it
+export const selection = signal<string[]>([]);
+export const mode = signal<Mode>("draw");
+export const snapping = signal(true);
+export const place = signal(0); // of the player, between samples
+export const playing = signal(false);
+export const speed = signal(0); // of the player, as a power of two
+export const shows = signal<Record<string, boolean>>({ paths: true, names: true, velocities: false, accelerations: false, grid: true });
+export const topic = signal("motion");
+export const panels = signal<Map<string, Panel>>(new Map());
+export const waits = signal<string | null>(null); // the panel that is computed
+export const options = signal<Record<string, Record<string, unknown>>>({});
+export const editing = signal(false); // whether the text pane is open
+export const said = signal<{ text: string; bad: boolean }>({ text: "", bad: false });
+export const steps = signal({ undo: false, redo: false });
+export const arrows = signal<import("./protocol").Block | null>(null);
+export const unsaved = computed(() => saved.value !== null && saved.value !== text.value);
+
+let history = new History("");
+
+export const tell = (message: string, bad = false): void => {
+  said.value = { text: message, bad };
+};
+export const refused = (error: { message: string; repair?: string | null }): void =>
+  tell(sentences(error.message, error.repair), true);
+
+export const ask = (request: Request, channel: string | null = null): Promise<any> =>
+  connection.ask({ language: language.value, ...request }, channel);
+
+// --- texts and what they mean ------------------------------------------------------------------------------------------
+let known = ""; // the text that the digest is of
+const named = (): { digest: string } | { text: string } => (known === text.value ? { digest: digest.value } : { text: text.value });
+function take(answer: Reading): void {
+  known = answer.text;
+  digest.value = answer.digest;
+  connection.know(answer.digest, answer.text);
+  scene.value = answer.scene ?? scene.value;
+  if (awaited) {
+    awaited = false;
+    still.value = null;
+    fits.value += 1;
+  }
+  problems.value = answer.problems ?? [];
+  readiness.value = answer.readiness ?? null;
+  const now = answer.scene;
+  if (now) {
+    const names = new Set([...now.points, ...now.links, ...now.guides].map((one) => one.name));
+    const kept = selection.value.filter((name) => names.has(name));
+    if (kept.length !== selection.value.length) selection.value = kept;
+  }
+}
+
+const settle = (): void => {
+  steps.value = { undo: history.undoes, redo: history.redoes };
+  keep();
+};
+
+let reads = 0;
+// Reads a text that has not come from the server: typed, opened, undone.
+export async function read(): Promise<void> {
+  const own = ++reads, sent = text.value;
+  const answer = await ask({ do: "read", text: sent }, "read");
+  if (answer === SUPERSEDED || own !== reads) return;
+  if (answer.error) {
+    refused(answer.error);
+    return;
+  }
+  take({ ...answer, text: sent });
+  renew();
+}
+
+export function write(next: string, merge = false): void {
+  if (next === text.value) return;
+  history.put(next, merge);
+  text.value = next;
+  settle();
+  void read();
+}
+
+export function load(next: string, name: string | null, onDisk: boolean): void {
+  history.put(next);
+  text.value = next;
+  fileName.value = name;
+  saved.value = onDisk ? next : null;
+  selection.value = [];
+  place.value = 0;
+  playing.value = false;
+  awaited = true;
+  settle();
+  void read();
+}
+let awaited = false; // whether the next scene is another mechanism
+export const fits = signal(0); // counts up when the view has to hold everything again
+
+export async function edit(...operations: Record<string, unknown>[]): Promise<Reading | null> {
+  reads += 1;
+  const before = text.value;
+  const answer = await ask({ do: "edit", ...named(), operations });
+  if (answer.error) {
+    refused(answer.error);
+    return null;
+  }
+  if (text.value !== before) return null; // typed meanwhile: what is typed stands
+  accept(answer);
+  return answer;
+}
+
+export function accept(answer: Reading): void {
+  history.put(answer.text);
+  text.value = answer.text;
+  take(answer);
+  settle();
+  tell(answer.changed?.length ? say("changed", { paths: answer.changed.slice(0, 4).join(", ") }) : "");
+  renew();
+}
+
+function travel(next: string | null): void {
+  if (next === null) return;
+  text.value = next;
+  settle();
+  void read();
+}
+export const undo = (): void => travel(history.undo());
+export const redo = (): void => travel(history.redo());
+
+// --- motion and panels -------------------------------------------------------------------------------------------------
+export const SAMPLES = 361;
+
+async function renew(): Promise<void> {
+  const now = digest.value;
+  if (scene.value?.kind === "cam") {
+    motion.value = null;
+  } else {
+    const answer = await ask({ do: "motion", digest: now, samples: SAMPLES }, "motion");
+    if (answer === SUPERSEDED || digest.value !== now) return;
+    const next = motionOf(answer, now);
+    if (next && place.value > next.last) place.value = 0;
+    if (next && !motion.value) place.value = next.start;
+    motion.value = next;
+    still.value = next ? null : isFrame(answer) ? null : { message: answer.missing ?? answer.error?.message ?? "", repair: answer.repair ?? answer.error?.repair };
+  }
+  void show();
+}
+
+export const panelKey = (name: string): string => `${language.value} ${digest.value} ${name} ${JSON.stringify(options.value[name] ?? {})}`;
+export const available = (name: string): true | string => scene.value?.topics?.[name] ?? true;
+
+// Asks for the open panel where it is not there yet.
+export async function show(): Promise<void> {
+  const name = topic.value;
+  if (!hello.value || name === "motion" || name === "readiness" || name === "cam" || !digest.value) return;
+  const key = panelKey(name);
+  if (panels.value.has(key) || waits.value === key || available(name) !== true) return;
+  waits.value = key;
+  const answer = await ask({ do: "panel", digest: digest.value, topic: name, options: options.value[name] ?? {}, samples: SAMPLES }, "panel");
+  if (waits.value === key) waits.value = null;
+  if (answer === SUPERSEDED) return;
+  const panel: Panel = answer.error ? { topic: name, title: name, blocks: [], missing: answer.error.message, repair: answer.error.repair } : answer;
+  const next = new Map(panels.value);
+  next.set(key, panel);
+  while (next.size > 60) next.delete(next.keys().next().value!);
+  panels.value = next;
+}
+effect(() => {
+  topic.value;
+  options.value;
+  language.value;
+  queueMicrotask(() => void show());
+});
+
+// --- what outlives the window ------------------------------------------------------------------------------------------
+const STORE = "centrode.workbench";
+let soon = 0;
+function keep(): void {
+  clearTimeout(soon);
+  soon = window.setTimeout(keepNow, 200);
+}
+export function keepNow(): void {
+  clearTimeout(soon);
+  const state = { text: text.value, name: fileName.value, saved: saved.value, before: history.kept(1_000_000), topic: topic.value };
+  try {
+    localStorage.setItem(STORE, JSON.stringify(state));
+  } catch {
+    try {
+      localStorage.setItem(STORE, JSON.stringify({ ...state, before: [] }));
+    } catch {
+      // a full or a forbidden store: the text is still in the window
+    }
+  }
+}
+addEventListener("pagehide", keepNow);
+const restored = (): { text: string; name: string | null; saved: string | null; before: string[]; topic?: string } | null => {
+  try {
+    const state = JSON.parse(localStorage.getItem(STORE) ?? "null");
+    return state && typeof state.text === "string" ? { ...state, before: Array.isArray(state.before) ? state.before : [] } : null;
+  } catch {
+    return null;
+  }
+};
+
+export async function link(): Promise<string> {
+  return `${location.origin}${location.pathname}${location.search}#m=${await packed(text.value)}`;
+}
+export async function follow(): Promise<boolean> {
+  if (!location.hash.startsWith("#m=")) return false;
+  try {
+    const shared = await unpacked(location.hash.slice(3));
+    window.history.replaceState(null, "", location.pathname + location.search);
+    load(shared, null, false);
+    tell(say("link_read"));
+  } catch {
+    tell(say("link_damaged"), true);
+    return false;
+  }
+  return true;
+}
+
+// --- beginning ---------------------------------------------------------------------------------------------------------
+const LANGUAGE = "centrode.language";
+export const BLANK = "[frame.points]\n\n[links]\n";
+let begun = false;
+
+async function greet(): Promise<void> {
+  let chosen: string | null = null;
+  try {
+    chosen = localStorage.getItem(LANGUAGE);
+  } catch {
+    // no store: the server's language
+  }
+  const answer = await connection.ask({ do: "hello", language: chosen ?? undefined }, "hello");
+  if (answer === SUPERSEDED || answer.error) return;
+  hello.value = answer as Hello;
+  words.value = answer.words;
+  units.value = answer.units ?? {};
+  decimal.value = answer.decimal ?? ".";
+  language.value = answer.language ?? chosen ?? "en";
+  document.documentElement.lang = language.value;
+  if (begun) {
+    void read(); // a new server, or another language: what was computed is as good, its words are not
+    return;
+  }
+  begun = true;
+  const kept = restored();
+  const file = answer.file as { name: string; text: string } | null;
+  if (kept?.topic) topic.value = kept.topic;
+  if (await follow()) return;
+  if (file && (!kept || kept.name !== file.name || kept.saved !== file.text)) {
+    load(file.text, file.name, true);
+    history = new History(file.text);
+    settle();
+  } else if (kept) {
+    history = new History(kept.text);
+    history.restore(kept.before);
+    text.value = kept.text;
+    fileName.value = kept.name;
+    saved.value = kept.saved;
+    awaited = true;
+    settle();
+    void read();
+  } else {
+    const blank = answer.blank ?? BLANK;
+    history = new History(blank);
+    text.value = blank;
+    settle();
+    void read();
+  }
+}
+connection.onopen = () => void greet();
+
+export function speak(code: string): void {
+  try {
+    localStorage.setItem(LANGUAGE, code);
+  } catch {
+    // the choice holds for this window
+  }
+  language.value = code;
+  void greet();
+}

@@ -1,0 +1,62 @@
+// Sentences come from the server in the reader's language; numbers are spelled as reports spell them.
+import { signal } from "@preact/signals";
+
+export const words = signal<Record<string, string>>({});
+export const language = signal("en");
+export const decimal = signal(".");
+
+export type Holes = Record<string, string | number>;
+export const fill = (sentence: string, holes: Holes): string =>
+  sentence.replace(/\{(\w+)\}/g, (_whole, name: string) => String(holes[name] ?? ""));
+export const say = (key: string, holes: Holes = {}): string => fill(words.value[key] ?? key, holes);
+
+const RAISED: Record<string, string> = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+
+const marked = (text: string): string => {
+  const [digits = "", power] = text.split("e");
+  const minus = digits.startsWith("-") && /[1-9]/.test(digits) ? "−" : "";
+  const shown = minus + digits.replace("-", "").replace(".", decimal.value);
+  return power ? `${shown}·10${[...String(Number(power))].map((sign) => RAISED[sign]).join("")}` : shown;
+};
+
+export const spelled = (value: number | null | undefined, digits = 5): string => {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "—";
+  const size = Math.abs(value);
+  if (size && (size < 1e-4 || size >= 1e7)) return marked(value.toExponential(digits - 1).replace(/\.?0+e/, "e"));
+  const text = value.toPrecision(digits);
+  return marked((text.includes("e") ? String(Math.round(value)) : text).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""));
+};
+
+// With as many decimals as the greatest number of its column needs.
+export const fixed = (value: number | null | undefined, greatest: number, digits = 5): string => {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "—";
+  if (greatest && (greatest < 1e-4 || greatest >= 1e7)) return spelled(value, digits);
+  const decimals = greatest ? Math.max(0, digits - 1 - Math.floor(Math.log10(greatest))) : 0;
+  return marked(value.toFixed(Math.min(9, decimals)));
+};
+
+export const tickText = (value: number, step: number): string => {
+  const most = Math.max(Math.abs(value), step);
+  if (most >= 1e6 || step < 1e-4) return spelled(Math.abs(value) < 1e-9 * step ? 0 : value, 3);
+  return marked(value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
+};
+
+export const units = signal<Record<string, string>>({}); // as the reader's language spells them
+export const unitText = (unit?: string | null): string =>
+  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part));
+export const withUnit = (text: string, unit?: string | null): string => {
+  const told = unitText(unit);
+  return told ? `${text}${told === "°" ? "" : "\u00a0"}${told}` : text;
+};
+
+// A clause of the server's as a sentence.
+export const sentence = (text: string | null | undefined): string => {
+  const plain = (text ?? "").trim();
+  return plain && plain[0]!.toLocaleUpperCase() + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
+};
+export const sentences = (...texts: (string | null | undefined)[]): string => texts.map(sentence).filter(Boolean).join(" ");
+
+// What a terminal spells with the signs of a keyboard, with those of print.
+export const typeset = (text: string): string =>
+  text.replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
+    .replace(/(?<![\p{L}\d_)\]])-(?=\d)/gu, "−").replace(/(?<=\d) - (?=\d)/g, " − ");

@@ -1,0 +1,321 @@
+"""The server of the workbench: on this machine alone, for the page that it has given its token to."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import secrets
+from collections import deque
+from collections.abc import AsyncIterator, Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from centrode.app.folders import WorkFolder
+from centrode.app.workers import ProcessRunner, Reply, Runner
+
+STATIC = Path(__file__).parent / "static"
+MESSAGE_SIZE = 1_000_000
+"""Bytes of a message."""
+WAITING = 32
+"""Messages of a page that wait; of one that sends more, the connection is closed."""
+QUICK, SLOW = 20.0, 180.0
+"""Seconds that an answer may take, and that of a panel or a file."""
+SLOW_NAMES = ("panel", "export", "page")
+HOSTS = ("127.0.0.1", "localhost")
+TIME = "this takes too long: give fewer samples, or a shorter range"
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+        "connect-src 'self' ws://127.0.0.1:* ws://localhost:*; frame-ancestors 'none'; base-uri 'none'; "
+        "form-action 'self'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+
+
+@dataclass(frozen=True)
+class ServerSettings:
+    """What a server serves.
+
+    Attributes
+    ----------
+    work : the folder and the file
+    port : at which it listens
+    token : that a page has to bring
+    """
+
+    work: WorkFolder
+    port: int
+    token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
+
+    @property
+    def address(self) -> str:
+        """What a browser opens."""
+        return f"http://127.0.0.1:{self.port}/?token={self.token}"
+
+    def is_own_host(self, host: str | None) -> bool:
+        """Whether a request came by a name of this machine: another one may point here (DNS rebinding)."""
+        return host in {f"{name}:{self.port}" for name in HOSTS}
+
+    def is_own_origin(self, origin: str | None) -> bool:
+        """Whether a page of this server sends a request."""
+        return origin in {f"http://{name}:{self.port}" for name in HOSTS}
+
+    def has_token(self, token: object) -> bool:
+        """Whether a token is that of this server."""
+        return isinstance(token, str) and secrets.compare_digest(token.encode(), self.token.encode())
+
+
+@dataclass
+class Lanes:
+    """What computes: one for what a page waits for at once, one for what takes longer."""
+
+    quick: Runner
+    slow: Runner
+
+    def stop(self) -> None:
+        """Stop both."""
+        self.quick.stop()
+        self.slow.stop()
+
+
+def server_application(
+    settings: ServerSettings, make: Callable[[WorkFolder], Runner] = ProcessRunner
+) -> Starlette:
+    """The application that uvicorn runs.
+
+    Parameters
+    ----------
+    make : makes what computes; tests compute in their own process
+    """
+    lanes = Lanes(make(settings.work), make(settings.work))
+
+    @contextlib.asynccontextmanager
+    async def living(_application: Starlette) -> AsyncIterator[None]:
+        try:
+            yield
+        finally:
+            lanes.stop()
+
+    async def index(request: Request) -> Response:
+        refused = _refusal(settings, request, request.query_params.get("token"))
+        if refused is not None:
+            return refused
+        if not (STATIC / "index.html").is_file():
+            return PlainTextResponse("the page is not built", 500, HEADERS)
+        return FileResponse(STATIC / "index.html", headers=HEADERS)
+
+    async def export(request: Request) -> Response:
+        if not settings.is_own_origin(request.headers.get("origin")):
+            return _refuse(403)
+        given = await _bounded_json(request)
+        if given is None:
+            return _refuse(413)
+        refused = _refusal(settings, request, given.get("token"))
+        if refused is not None:
+            return refused
+        message = {**given, "do": "export", "token": ""}
+        return await _file(lanes.slow, message)
+
+    async def page(request: Request) -> Response:
+        refused = _refusal(settings, request, request.query_params.get("token"))
+        if refused is not None:
+            return refused
+        names = ("digest", "language")
+        message = {key: request.query_params[key] for key in names if key in request.query_params}
+        return await _file(lanes.quick, {**message, "do": "page"})
+
+    async def socket(socket: WebSocket) -> None:
+        own = settings.is_own_host(socket.headers.get("host")) and settings.is_own_origin(
+            socket.headers.get("origin")
+        )
+        if not own or not settings.has_token(socket.query_params.get("token")):
+            await socket.close(1008)
+            return
+        await socket.accept()
+        await Conversation(socket, lanes).hold()
+
+    routes = [
+        Route("/", index),
+        Route("/export", export, methods=["POST"]),
+        Route("/page", page),
+        WebSocketRoute("/socket", socket),
+    ]
+    if STATIC.is_dir():
+        routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
+    return Starlette(routes=routes, lifespan=living)
+
+
+class _OwnFiles(StaticFiles):
+    """Files of the page, for this machine's names only."""
+
+    def __init__(self, settings: ServerSettings, *, directory: Path) -> None:
+        super().__init__(directory=directory)
+        self._settings = settings
+
+    async def get_response(self, path: str, scope: Any) -> Response:
+        if not self._settings.is_own_host(Request(scope).headers.get("host")):
+            return _refuse(403)
+        response = await super().get_response(path, scope)
+        response.headers.update(HEADERS)
+        return response
+
+
+def _refusal(settings: ServerSettings, request: Request, token: object) -> Response | None:
+    """The answer to a request that is not allowed; None to one that is."""
+    origin = request.headers.get("origin")
+    if not settings.is_own_host(request.headers.get("host")):
+        return _refuse(403)
+    if origin is not None and not settings.is_own_origin(origin):
+        return _refuse(403)
+    return None if settings.has_token(token) else _refuse(403)
+
+
+def _refuse(status: int) -> Response:
+    return PlainTextResponse("refused", status, HEADERS)
+
+
+async def _bounded_json(request: Request) -> dict[str, Any] | None:
+    """The body as a table; None where it is too great, or none."""
+    content = bytearray()
+    async for part in request.stream():
+        content += part
+        if len(content) > MESSAGE_SIZE:
+            return None
+    return message_of(content)
+
+
+def message_of(content: str | bytes | bytearray) -> dict[str, Any] | None:
+    """A message; None of what is none."""
+    try:
+        message = json.loads(content)
+    except (ValueError, RecursionError):
+        return None
+    return message if isinstance(message, dict) else None
+
+
+async def _file(runner: Runner, message: Mapping[str, Any]) -> Response:
+    """A file that a message asks for, or why there is none."""
+    try:
+        reply = await runner.answer(message, SLOW)
+    except TimeoutError:
+        return JSONResponse({"error": {"message": TIME, "repair": ""}}, 503, HEADERS)
+    if isinstance(reply, str):
+        return Response(reply, 422, {**HEADERS, "Content-Type": "application/json"})
+    length = int.from_bytes(reply[:4], "little")
+    header = json.loads(reply[4 : 4 + length])
+    name = "".join(letter for letter in header["name"] if letter.isalnum() or letter in "-_. ") or "file"
+    ascii_name = name.encode("ascii", "replace").decode().replace("?", "_")
+    headers = {
+        **HEADERS,
+        "Content-Type": header["type"],
+        "Content-Disposition": f'attachment; filename="{ascii_name}"',
+    }
+    return Response(reply[4 + length :], 200, headers)
+
+
+class Conversation:
+    """The messages of one page: answered in turn, of drags that wait only the last one."""
+
+    def __init__(self, socket: WebSocket, lanes: Lanes) -> None:
+        self.socket, self.lanes = socket, lanes
+        self.waiting: dict[bool, deque[dict[str, Any]]] = {False: deque(), True: deque()}
+        self.arrived = {False: asyncio.Event(), True: asyncio.Event()}
+        self.running: asyncio.Task[Reply] | None = None
+
+    async def hold(self) -> None:
+        """Answer until the page goes."""
+        work = [asyncio.create_task(self._work(slow)) for slow in (False, True)]
+        try:
+            while True:
+                message = await self._received()
+                if message is not None and not await self._take(message):
+                    break
+        except (WebSocketDisconnect, RuntimeError):
+            pass
+        finally:
+            for task in work:
+                task.cancel()
+            await asyncio.gather(*work, return_exceptions=True)
+
+    async def _received(self) -> dict[str, Any] | None:
+        got = await self.socket.receive()
+        if got["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect
+        content = got.get("text") or got.get("bytes") or ""
+        message = message_of(content) if len(content) <= MESSAGE_SIZE else None
+        if message is None:
+            await self._send(json.dumps({"id": 0, "error": {"message": "no message", "repair": ""}}))
+        return message
+
+    async def _take(self, message: dict[str, Any]) -> bool:
+        """Put a message into its queue; False where too many wait."""
+        slow = message.get("do") in SLOW_NAMES
+        queue = self.waiting[slow]
+        if slow or message.get("do") == "drag":
+            # the page has gone on: what waits of this kind is answered by the newer one
+            for old in [one for one in queue if one.get("do") == message.get("do") and not one.get("drop")]:
+                queue.remove(old)
+                await self._send(json.dumps({"id": _number(old), "superseded": True}))
+        if slow and self.running is not None:
+            self.running.cancel()
+        queue.append(message)
+        self.arrived[slow].set()
+        if len(queue) > WAITING:
+            await self.socket.close(1008)
+            return False
+        return True
+
+    async def _work(self, slow: bool) -> None:
+        queue, arrived = self.waiting[slow], self.arrived[slow]
+        runner, limit = (self.lanes.slow, SLOW) if slow else (self.lanes.quick, QUICK)
+        while True:
+            await arrived.wait()
+            arrived.clear()
+            while queue:
+                message = queue.popleft()
+                await self._send(await self._answered(runner, message, limit, slow))
+
+    async def _answered(self, runner: Runner, message: dict[str, Any], limit: float, slow: bool) -> Reply:
+        task = asyncio.create_task(runner.answer(message, limit))
+        self.running = task if slow else self.running
+        try:
+            return await task
+        except TimeoutError:
+            return json.dumps({"id": _number(message), "error": {"message": TIME, "repair": ""}})
+        except asyncio.CancelledError:
+            current = asyncio.current_task()
+            if current is not None and current.cancelling():
+                task.cancel()
+                raise
+            return json.dumps({"id": _number(message), "superseded": True})
+        except (EOFError, OSError):
+            return json.dumps({"id": _number(message), "error": {"message": "interrupted", "repair": ""}})
+        finally:
+            if slow:
+                self.running = None
+
+    async def _send(self, reply: Reply) -> None:
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            if isinstance(reply, str):
+                await self.socket.send_text(reply)
+            else:
+                await self.socket.send_bytes(reply)
+
+
+def _number(message: Mapping[str, Any]) -> int:
+    number = message.get("id")
+    return number if isinstance(number, int) and not isinstance(number, bool) else 0

@@ -1,0 +1,281 @@
+"""Sheets as blocks of JSON for a page that draws itself: numbers stay numbers, words and units are spelled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
+
+import numpy as np
+
+from centrode import render
+from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
+from centrode.render.spelling import PrintSpelling
+from centrode.render.terminal import symbol_texts
+from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
+from centrode.sheets.plots import CurveDiagram, Plot, TraceKind
+from centrode.sheets.sheet import (
+    Block,
+    Check,
+    FactTable,
+    Formula,
+    Illustration,
+    Items,
+    LinearEquations,
+    Listing,
+    Paragraph,
+    Reference,
+    Section,
+    SymbolList,
+    Table,
+)
+from centrode.sheets.texts import NOTHING, Number
+
+if TYPE_CHECKING:
+    from centrode.model.settings import Display
+    from centrode.sheets.pictures import Picture
+    from centrode.sheets.plots import AxisLabel
+    from centrode.sheets.sheet import Column, Fact, PointArrows, Sheet
+
+JSON: TypeAlias = dict[str, Any]
+Mathematics: TypeAlias = Callable[[Sequence[Formula]], "list[str]"]
+"""Formulas as MathML, all of a panel at once."""
+
+ROWS = 400
+"""Rows of a table that a page shows; its files have all of them."""
+PICTURES = 40
+"""Pictures of one panel."""
+DIGITS = 7
+"""Significant digits of numbers on their way to a page, which shows fewer."""
+
+
+def panel_blocks(
+    sheet: Sheet, display: Display, mathematics: Mathematics | None = None, *, pictures: bool = True
+) -> list[JSON]:
+    """What a page shows of a sheet: its facts, what a terminal prints below them, its pictures and its notes.
+
+    Parameters
+    ----------
+    mathematics : formulas as MathML; without it they are spelled as on a terminal
+    """
+    writer = _Writer(display, mathematics)
+    blocks: list[JSON] = []
+    if sheet.heading != NOTHING:
+        blocks.append({"kind": "heading", "text": writer.spelling.text(sheet.heading)})
+    if sheet.facts:
+        blocks.append(writer.facts(sheet.facts))
+    for block in sheet.printed:
+        blocks += writer.section(block) if isinstance(block, Section) else writer.block(block)
+    if sheet.failure is not None:
+        parts = (sheet.failure.what, sheet.failure.repair)
+        said = "; ".join(filter(None, map(writer.spelling.text, parts)))
+        blocks.append({"kind": "paragraph", "text": said})
+    for arrows in sheet.arrows.values():
+        blocks.append(writer.arrows(arrows))
+    if pictures:
+        for name in [*sheet.pictures][:PICTURES]:
+            blocks += writer.picture(name, sheet.pictures[name])
+    blocks += [{"kind": "paragraph", "text": writer.spelling.text(note)} for note in sheet.notes]
+    writer.set_formulas()
+    return blocks
+
+
+class _Writer:
+    """Writes parts of a sheet as blocks."""
+
+    def __init__(self, display: Display, mathematics: Mathematics | None) -> None:
+        self.display, self.mathematics = display, mathematics
+        self.spelling = PrintSpelling(display)
+        self.formulas: list[tuple[JSON, Formula]] = []
+
+    def set_formulas(self) -> None:
+        """Add the MathML of all formulas that were written."""
+        if self.mathematics is None or not self.formulas:
+            return
+        made = self.mathematics([formula for _block, formula in self.formulas])
+        for (block, _formula), mathml in zip(self.formulas, made, strict=True):
+            block["mathml"] = mathml
+
+    def facts(self, facts: Iterable[Fact]) -> JSON:
+        spelled = [
+            {"label": self.spelling.text(fact.label), "text": self.spelling.text(fact.value)}
+            for fact in facts
+        ]
+        return {"kind": "facts", "facts": spelled}
+
+    def section(self, section: Section) -> Iterator[JSON]:
+        title = self.spelling.text(section.title)
+        if title:
+            yield {"kind": "heading", "text": title}
+        for block in section.blocks:
+            yield from self.block(block)
+
+    def block(self, block: Block) -> Iterator[JSON]:
+        text = self.spelling.text
+        match block:
+            case FactTable(facts):
+                yield self.facts(facts)
+            case Table():
+                yield self.table(block)
+            case Paragraph(said):
+                yield {"kind": "paragraph", "text": text(said)}
+            case Items(texts):
+                for item in texts:
+                    yield {"kind": "paragraph", "text": text(item), "item": True}
+            case Listing(heading, items):
+                yield {"kind": "paragraph", "text": f"{text(heading)}: {', '.join(map(text, items))}"}
+            case Formula():
+                yield from self.formula(block)
+            case LinearEquations(matrix, unknowns, right):
+                entries = [list(map(self.spelling.leaf, row)) for row in matrix]
+                sides = (list(map(self.spelling.leaf, side)) for side in (unknowns, right))
+                yield {"kind": "formula", "text": "\n".join(system_lines(entries, *sides))}
+            case SymbolList(symbols):
+                lines = symbol_lines([symbol_texts(one, self.spelling) for one in symbols])
+                yield {"kind": "formula", "text": "\n".join(lines)}
+            case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
+                return
+            case _:
+                assert_never(block)
+
+    def formula(self, block: Formula) -> Iterator[JSON]:
+        lines = [line for one in block.lines for line in relation_lines(map(self.spelling.leaf, one))]
+        written: JSON = {"kind": "formula", "text": "\n".join(lines)}
+        self.formulas.append((written, block))
+        yield written
+
+    # tables
+
+    def table(self, table: Table) -> JSON:
+        columns = [column for column in table.columns if not column.is_empty]
+        count = len(columns[0].values) if columns else 0
+        # of a long table rows at even distances
+        rows = (
+            range(count) if count <= ROWS else np.unique(np.linspace(0, count - 1, ROWS).round().astype(int))
+        )
+        cells = [self._cells(column, rows) for column in columns]
+        return {
+            "kind": "table",
+            "title": self.spelling.text(table.caption),
+            "columns": [self._head(column) for column in columns],
+            "rows": [list(row) for row in zip(*cells, strict=True)],
+            "shortened": count > ROWS,
+        }
+
+    def _head(self, column: Column) -> JSON:
+        factor, unit = self._shown(column.unit, column.unit_fixed)
+        del factor
+        return {
+            "head": self.spelling.text(column.head) or column.name,
+            "unit": "" if column.units else unit,
+            "numeric": column.is_numeric,
+        }
+
+    def _cells(self, column: Column, rows: Iterable[int]) -> list[Any]:
+        if not isinstance(column.values, np.ndarray):
+            return [self.spelling.text(column.values[row]) for row in rows]
+        if column.units:
+            return [self.spelling.text(Number(float(column.values[row]), column.units[row])) for row in rows]
+        factor = self._shown(column.unit, column.unit_fixed)[0]
+        return [_number(float(column.values[row]) * factor) for row in rows]
+
+    def _shown(self, unit: str, fixed: bool = False) -> tuple[float, str]:
+        """Factor from an SI unit to the one that is shown, and how that is spelled."""
+        factor, shown = self.spelling.shown_unit(Number(0.0, unit, unit_fixed=fixed))
+        return factor, "" if shown in ("", "1") else self.spelling.unit(shown)
+
+    # pictures
+
+    def picture(self, name: str, picture: Picture) -> Iterator[JSON]:
+        match picture:
+            case Plot() if picture.sizes_above is None:
+                yield from self._plot(name, picture)
+            case CurveDiagram():
+                yield self._diagram(name, picture)
+            case _:
+                yield self._drawn(name, picture)
+
+    def _axis(self, label: AxisLabel) -> tuple[float, JSON]:
+        factor, unit = self._shown(label.unit, label.unit_fixed)
+        symbol = "" if label.symbol is None else self.spelling.symbol(label.symbol)
+        words = " ".join(filter(None, (self.spelling.text(label.text), symbol)))
+        return factor, {"label": words, "unit": unit}
+
+    def _plot(self, name: str, plot: Plot) -> Iterator[JSON]:
+        across, x = self._axis(plot.abscissa.label)
+        values = _numbers(plot.abscissa.values * across)
+        title = self.spelling.text(plot.title)
+        by_drive = plot.abscissa.label.unit in ("rad", "m", "s")
+        for panel in (panel for row in plot.rows for panel in row if panel.curves):
+            up, y = self._axis(panel.label)
+            curves = [
+                {
+                    "label": self.spelling.text(curve.name),
+                    "unit": y["unit"],
+                    "values": _numbers(np.asarray(curve.values, dtype=float)[plot.abscissa.order] * up),
+                    "dashed": curve.approximate,
+                }
+                for curve in panel.curves
+            ]
+            yield {
+                "kind": "plot",
+                "name": name,
+                "title": title,
+                "x": {**x, "values": values},
+                "y": y,
+                "curves": curves,
+                "cursor": "drive" if by_drive else None,
+                "marks": [
+                    {"label": self.spelling.text(place_name), "at": _number(place * across)}
+                    for place_name, place in plot.places
+                ],
+            }
+
+    def _diagram(self, name: str, diagram: CurveDiagram) -> JSON:
+        across, x = self._axis(diagram.x)
+        up, y = self._axis(diagram.y)
+        return {
+            "kind": "plot",
+            "name": name,
+            "title": self.spelling.text(diagram.title),
+            "x": {**x, "values": []},
+            "y": y,
+            "curves": [
+                {
+                    "label": self.spelling.text(trace.name),
+                    "unit": y["unit"],
+                    "x": _numbers(trace.x * across),
+                    "values": _numbers(trace.y * up),
+                    "dashed": trace.kind is not TraceKind.CURVE,
+                }
+                for trace in diagram.traces
+            ],
+            "cursor": None,
+        }
+
+    def _drawn(self, name: str, picture: Picture) -> JSON:
+        title = getattr(picture, "title", None)
+        words = name if title is None else self.spelling.text(title)
+        figure = render.figure_of(picture, self.display)
+        light = render.svg_of(figure).decode()
+        dark = render.svg_of(render.darkened(figure)).decode()
+        return {"kind": "picture", "name": name, "title": words, "svg": light, "dark": dark, "alt": words}
+
+    def arrows(self, arrows: PointArrows) -> JSON:
+        factor, unit = self._shown(arrows.unit)
+        return {
+            "kind": "arrows",
+            "title": self.spelling.text(arrows.title),
+            "unit": unit,
+            "samples": len(arrows.vectors),
+            "at": list(arrows.points),
+            "vectors": [[_numbers(vector) for vector in sample] for sample in arrows.vectors * factor],
+        }
+
+
+def _number(value: float) -> float | None:
+    """A number of a few digits; None where there is none."""
+    return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
+
+
+def _numbers(values: Any) -> list[float | None]:
+    return [_number(float(value)) for value in np.asarray(values).ravel()]

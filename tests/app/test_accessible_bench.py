@@ -1,0 +1,109 @@
+"""The workbench for everybody: audited on every panel and window, at every width, in every language and at night."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from report.browser import browser, frames
+from report.test_mechanism_page import AXE, AXE_SUM
+
+from .bench import Bench, bench
+from .served import Served, served
+
+MECHANISM, CAM, SPHERE = "six-bar-press", "indexing-cam", "spherical-four-bar"
+WIDTHS = (400, 1000, 2000)
+AUDIT = """async ([include, rules]) => {
+  const where = {include: [include], exclude: [[".paper svg > *"]]}; // pictures are one thing each
+  const how = {resultTypes: ["violations"], ...(rules.length ? {runOnly: rules} : {})};
+  const found = await axe.run(where, how);
+  return found.violations.filter((one) => ["serious", "critical"].includes(one.impact))
+    .map((one) => `${one.id}: ${one.nodes.slice(0, 3).map((node) => node.html.slice(0, 160)).join(" | ")}`);
+}"""
+SMALL = """() => [...document.querySelectorAll("body *")].filter((one) => {
+  const own = [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+  if (!own || !one.getClientRects().length || one.closest("math, svg, noscript")) return false;
+  return parseFloat(getComputedStyle(one).fontSize) < 11;
+}).map((one) => one.outerHTML.slice(0, 120))"""
+WIDE = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
+
+
+@pytest.fixture(scope="module")
+def running() -> Iterator[Any]:
+    with browser() as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
+    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
+    with served(tmp_path_factory.mktemp("bench")) as one:
+        yield one
+
+
+def audited(one: Bench, where: str = "html", *rules: str) -> list[str]:
+    """What axe-core finds that is serious, of all rules or of some."""
+    frames(one.page)
+    return list(one.page.evaluate(AUDIT, [where, list(rules)]))
+
+
+@pytest.mark.parametrize("name", [MECHANISM, CAM, SPHERE])
+def test_nothing_serious_is_found_on_any_panel(running: Any, server: Served, name: str) -> None:
+    """By day all rules, at night the contrast of colours."""
+    axe = AXE.read_bytes()
+    assert hashlib.sha256(axe).hexdigest() == AXE_SUM
+    with bench(running, server.address) as one:
+        one.page.evaluate(axe.decode())
+        assert audited(one) == []  # the empty canvas
+        one.template(name)
+        one.motion()
+        assert audited(one) == []
+        tabs = one.page.locator('[role="tab"]')
+        for k in range(tabs.count()):
+            tabs.nth(k).click()
+            one.until(lambda: one.page.get_attribute("#panel", "data-ready") == "true")
+            assert audited(one, "#panel") == [], tabs.nth(k).inner_text()
+        one.page.emulate_media(color_scheme="dark")
+        assert audited(one, "html", "color-contrast") == []
+        assert one.messages == []
+
+
+def test_nothing_serious_is_found_in_any_window(running: Any, server: Served) -> None:
+    with bench(running, server.address) as one:
+        one.page.evaluate(AXE.read_text("utf-8"))
+        one.template("crank-rocker")
+        one.motion()
+        for name in ("open", "export", "photo", "keys"):
+            one.page.click(f'[data-do="{name}"]')
+            assert audited(one, "dialog") == [], name
+            one.page.keyboard.press("Escape")
+        one.page.click('[data-do="text"]')
+        one.page.wait_for_selector(".cm-content")
+        one.page.focus('[data-kind="link"][data-name="AB"]')
+        one.page.keyboard.press(" ")
+        assert audited(one) == []
+        one.page.emulate_media(color_scheme="dark")
+        assert audited(one, "html", "color-contrast") == []
+        assert one.messages == []
+
+
+@pytest.mark.parametrize("language", ["en", "ru", "uk"])
+def test_it_fits_every_window_in_letters_that_can_be_read(
+    running: Any, server: Served, language: str
+) -> None:
+    with bench(running, server.address, language=language) as one:
+        one.template(MECHANISM)
+        one.motion()
+        one.page.focus('[data-kind="link"][data-name="AB"]')
+        one.page.keyboard.press(" ")
+        assert one.page.get_attribute("html", "lang") == language
+        for wide in WIDTHS:
+            one.page.set_viewport_size({"width": wide, "height": 900})
+            frames(one.page)
+            assert one.page.evaluate(WIDE) <= 0, wide
+            assert one.page.evaluate(SMALL) == [], wide
+        assert one.messages == []

@@ -1,0 +1,251 @@
+"""Operations of the workbench write what a person would write; a drawing moves as it is drawn."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from pathlib import Path
+
+import pytest
+
+import centrode as ct
+from centrode.app.documents import read_document
+from centrode.app.operations import Patch
+from centrode.app.sketch import Sketch
+from centrode.errors import InputError
+from centrode.model.examples import example_names, example_text
+
+HERE = Path()
+
+FOUR_BAR = """\
+[points]
+A = [0, 0]
+B = [1, 0.5]
+C = [4, 2]
+D = [4, 0]
+
+[frame]
+points = ["A", "D"]
+
+[links.AB]
+
+[links.BC]
+
+[links.CD]
+
+[[drives]]
+link = "AB"
+speed = 1
+"""
+
+
+def patched(text, *operations):
+    patch = Patch(text, HERE)
+    for operation in operations:
+        patch.apply(operation)
+    return patch
+
+
+def test_a_four_bar_from_an_empty_canvas_takes_five_gestures():
+    patch = patched(
+        "",
+        {"do": "add_link", "at": [0, 0], "to": [1, 0.5]},
+        {"do": "add_link", "at": [1, 0.5], "to": [4, 2], "from_point": "B"},
+        {"do": "add_link", "at": [4, 2], "to": [4, 0], "from_point": "C"},
+        {"do": "set_row", "object": "AB", "row": "drive", "on": True},
+        {"do": "set_row", "object": "D", "row": "ground", "on": True},
+    )
+    assert patch.text == FOUR_BAR
+    mechanism = ct.parse_mechanism(patch.text)
+    # the places that were drawn are those of the first sample; the crank turns about A at 1 rad/s
+    start = ct.motion(mechanism, 5).isel(sample=0)
+    assert start.position.sel(point="C").values == pytest.approx([4, 2], abs=1e-12)
+    assert start.velocity.sel(point="B").values == pytest.approx([-0.5, 1.0], abs=1e-12)
+
+
+def test_a_slider_crank_is_drawn():
+    patch = patched(
+        "",
+        {"do": "add_link", "at": [0, 0], "to": [0.3, 0.4]},
+        {"do": "add_link", "at": [0.3, 0.4], "to": [1.5, 0], "from_point": "B"},
+        {"do": "add_guide", "at": [1.5, 0], "direction": 0.0, "point": "C"},
+        {"do": "set_row", "object": "AB", "row": "drive", "on": True, "value": "60 rpm"},
+    )
+    motion = ct.motion(ct.parse_mechanism(patch.text), 721)
+    stroke = float(motion.slide.max() - motion.slide.min())
+    assert stroke == pytest.approx(1.0, abs=1e-4)  # twice the crank of 0.5, in line
+    assert 'speed = "60 rpm"' in patch.text
+
+
+def test_dropping_on_a_joint_makes_a_hinge_and_joining_too():
+    apart = patched(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3]})
+    assert Sketch(apart.document).owners("E") == ["EF"]
+    apart.apply({"do": "join", "points": ["E", "B"]})
+    assert sorted(Sketch(apart.document).owners("B")) == ["AB", "BC", "EF"]
+    hinged = patched(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3], "from_point": "B"})
+    assert sorted(Sketch(hinged.document).owners("B")) == ["AB", "BC", "BE"]
+
+
+def test_a_point_on_a_link_makes_a_plate():
+    text = patched(FOUR_BAR, {"do": "add_point", "link": "BC", "at": [2, 3]}).text
+    mechanism = ct.parse_mechanism(text)
+    assert list(mechanism.links["BC"].coordinates) == ["B", "C", "E"]
+    explicit = patched(example_text("crank-rocker"), {"do": "add_point", "link": "AB", "at": [1.0, 1.0]})
+    mechanism = ct.parse_mechanism(explicit.text)
+    start = ct.motion(mechanism, 2).position.isel(sample=0)
+    assert start.sel(point="C").values == pytest.approx([1.0, 1.0], abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    "operation",
+    [
+        {"do": "set_row", "object": "B", "row": "fixed", "on": True},
+        {"do": "set_row", "object": "C", "row": "trace", "on": True},
+        {"do": "set_row", "object": "CD", "row": "mass", "on": True},
+        {"do": "set_row", "object": "C", "row": "load", "on": True},
+        {"do": "lock", "path": "links.BC.length", "on": True},
+    ],
+)
+def test_rows_that_are_switched_off_again_leave_every_byte(operation):
+    on = patched(FOUR_BAR, operation)
+    assert on.text != FOUR_BAR
+    assert patched(on.text, {**operation, "on": False}).text == FOUR_BAR
+
+
+def test_renaming_keeps_what_the_mechanism_does():
+    text = example_text("six-bar-press")
+    before = ct.motion(ct.parse_mechanism(text), 13)
+    patch = patched(
+        text,
+        {"do": "rename", "object": "H", "name": "ram"},
+        {"do": "rename", "object": "OA", "name": "crank"},
+        {"do": "rename", "object": "slider", "name": "block"},
+    )
+    after = ct.motion(ct.parse_mechanism(patch.text), 13)
+    assert after.position.sel(point="ram").values == pytest.approx(before.position.sel(point="H").values)
+    removed = [
+        line for line in difflib.ndiff(text.splitlines(), patch.text.splitlines()) if line.startswith("- ")
+    ]
+    assert not any(line[2:].lstrip().startswith("#") for line in removed)
+
+
+def test_deleting_takes_what_names_the_object():
+    text = example_text("six-bar-press")
+    patch = patched(text, {"do": "delete", "objects": ["H"]})
+    tables = patch.document.tables
+    assert "guides" not in tables and "loads" not in tables and "slider" not in tables["links"]
+    assert text.splitlines()[:11] == patch.text.splitlines()[:11]  # the comments of its author
+    four_bar = patched(FOUR_BAR, {"do": "delete", "objects": ["AB", "BC", "CD"]})
+    assert four_bar.document.tables.get("links", {}) == {}
+
+
+def test_what_loses_its_position_stays_where_it_was():
+    text = example_text("crank-rocker")
+    before = Sketch(read_document(text, HERE))
+    patch = patched(text, {"do": "delete", "objects": ["AB"]})
+    after = Sketch(patch.document)
+    assert after.places["B"] == pytest.approx(before.places["B"], abs=1e-5)
+    assert after.places["A"] == pytest.approx(before.places["A"], abs=1e-5)
+
+
+def test_mirroring_twice_gives_the_same_bytes():
+    mirror = {"do": "mirror", "objects": ["AB", "BC", "CD"], "axis": "x"}
+    once = patched(FOUR_BAR, mirror)
+    assert Sketch(once.document).places["B"] == pytest.approx((1.0, 1.5))
+    assert ct.parse_mechanism(patched(once.text, mirror).text) == ct.parse_mechanism(FOUR_BAR)
+
+
+def test_duplicates_stand_beside():
+    patch = patched(FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "by": [0, -2]})
+    sketch = Sketch(patch.document)
+    copies = [name for name in patch.named if name in sketch.points]
+    assert [sketch.places[name] for name in copies] == [(0, -2), (1, -1.5)]
+    assert copies[0] in sketch.fixed
+
+
+@pytest.mark.parametrize("name", ["crank-rocker", "six-bar-press", "slider-crank-offset", "watt-six-bar"])
+def test_a_length_that_is_typed_holds_the_others(name):
+    text = example_text(name)
+    sketch = Sketch(read_document(text, HERE))
+    link = next(one for one in sketch.links if sketch.length(one) is not None)
+    factor = {"mm": 1000.0, "cm": 100.0}.get(sketch.tables.get("display", {}).get("length"), 1.0)
+    length = sketch.length(link) * 1.05
+    patch = patched(text, {"do": "set", "path": f"links.{link}.length", "value": f"{length * factor!r}"})
+    after = Sketch(patch.document)
+    assert after.length(link) == pytest.approx(length, rel=1e-12)
+    for other in sketch.links:
+        if other != link and sketch.length(other) is not None:
+            assert after.length(other) == sketch.length(other)
+    assert patch.document.prepared is not None
+
+
+def test_a_length_in_points_moves_what_follows():
+    patch = patched(FOUR_BAR, {"do": "set", "path": "links.AB.length", "value": "1.4"})
+    before, after = Sketch(read_document(FOUR_BAR, HERE)), Sketch(patch.document)
+    assert after.length("AB") == pytest.approx(1.4, abs=2e-5)
+    assert after.length("BC") == pytest.approx(before.length("BC"), abs=3e-5)
+    assert after.length("CD") == pytest.approx(before.length("CD"), abs=3e-5)
+
+
+def test_units_are_those_of_the_author():
+    text = FOUR_BAR.replace("A = [0, 0]", 'A = ["0 mm", "0 mm"]').replace(
+        "B = [1, 0.5]", 'B = ["1000 mm", "50 cm"]'
+    )
+    patch = patched(text, {"do": "move_point", "point": "B", "to": [0.9, 0.61]})
+    assert 'B = ["900 mm", "61 cm"]' in patch.text
+
+
+REFUSALS = [
+    ({"do": "add_link", "at": [0, 0], "to": [0, 0]}, "the link is too short"),
+    ({"do": "add_link", "at": [0, 0], "to": [1, 1], "from_point": "A", "to_point": "B"}, "both belong to AB"),
+    ({"do": "set_row", "object": "A", "row": "guide", "on": True}, "does not slide"),
+    ({"do": "set_row", "object": "BC", "row": "drive", "on": True}, "a driven link turns about a point"),
+    ({"do": "move_point", "point": "Q", "to": [0, 0]}, 'unknown point "Q"'),
+    ({"do": "move_point", "point": "B", "to": [0, float("nan")]}, "a place is two numbers"),
+    ({"do": "rename", "object": "B", "name": "A"}, "is taken already"),
+    ({"do": "rename", "object": "B", "name": "a/b"}, "a name"),
+    ({"do": "set", "path": "links.XY.length", "value": 1}, "there is no"),
+    ({"do": "set", "path": "links.AB.length", "value": "soon"}, "expected a length"),
+    ({"do": "something"}, "does not know this operation"),
+    ({}, "does not know this operation"),
+]
+
+
+@pytest.mark.parametrize(("operation", "said"), REFUSALS)
+def test_what_cannot_be_is_refused_and_nothing_changes(operation, said):
+    patch = Patch(FOUR_BAR, HERE)
+    with pytest.raises(InputError, match=said.replace("(", r"\(")):
+        patch.apply(operation)
+    assert patch.text == FOUR_BAR
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_deleting_and_renaming_any_object_keeps_the_comments(name):
+    text = example_text(name)
+    sketch = Sketch(read_document(text, HERE))
+    comments = [line for line in text.splitlines() if line.lstrip().startswith("#")]
+    for object_name in [*sketch.points, *sketch.links][:: max(1, len(sketch.points) // 4)]:
+        for operation in (
+            {"do": "rename", "object": object_name, "name": "Z9"},
+            {"do": "delete", "objects": [object_name]},
+        ):
+            patch = Patch(text, HERE)
+            try:
+                patch.apply(operation)
+            except InputError:
+                assert patch.text == text
+                continue
+            assert [line for line in patch.text.splitlines() if line.lstrip().startswith("#")] == comments
+            if operation["do"] == "rename":
+                assert patch.document.prepared is not None
+
+
+def test_undo_is_the_text_before():
+    texts = [FOUR_BAR]
+    for k in range(100):
+        angle = 0.06 * k
+        operation = {"do": "move_point", "point": "C", "to": [4 + math.cos(angle), 2 + 0.5 * math.sin(angle)]}
+        texts.append(patched(texts[-1], operation).text)
+    assert len(set(texts)) > 90
+    # every state is a text, and reading it does not change it
+    assert all(read_document(text, HERE).text == text for text in texts)
