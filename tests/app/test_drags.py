@@ -21,7 +21,7 @@ from centrode.kinematics.motion import initial_place
 from centrode.model.examples import example_names, example_text
 
 HERE = Path()
-EXAMPLES = [name for name in example_names() if ct.example(name).space == "plane"]
+EXAMPLES = [name for name in example_names() if getattr(ct.example(name), "space", "") == "plane"]
 
 
 def sketched(text):

@@ -31,6 +31,7 @@ QUICK, SLOW = 20.0, 180.0
 """Seconds that an answer may take, and that of a panel or a file."""
 SLOW_NAMES = ("panel", "export", "page")
 HOSTS = ("127.0.0.1", "localhost")
+WARMING = "[points]\nA = [0, 0]\nB = [1, 0]\n[frame]\npoints = ['A']\n[links.AB]\n[[drives]]\nlink = 'AB'\nspeed = 1\n"
 TIME = "this takes too long: give fewer samples, or a shorter range"
 HEADERS = {
     "Content-Security-Policy": (
@@ -105,9 +106,14 @@ def server_application(
 
     @contextlib.asynccontextmanager
     async def living(_application: Starlette) -> AsyncIterator[None]:
+        # what computes loads its libraries while the browser opens the page
+        warming = [asyncio.create_task(_warm(runner)) for runner in (lanes.quick, lanes.slow)]
         try:
             yield
         finally:
+            for task in warming:
+                task.cancel()
+            await asyncio.gather(*warming, return_exceptions=True)
             lanes.stop()
 
     async def index(request: Request) -> Response:
@@ -157,6 +163,12 @@ def server_application(
     if STATIC.is_dir():
         routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
     return Starlette(routes=routes, lifespan=living)
+
+
+async def _warm(runner: Runner) -> None:
+    """A message whose answer nobody waits for: what serves the first page has begun then."""
+    with contextlib.suppress(TimeoutError, EOFError, OSError):
+        await runner.answer({"id": 0, "do": "read", "text": WARMING}, SLOW)
 
 
 class _OwnFiles(StaticFiles):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import threading
 import webbrowser
+from contextlib import suppress
 from pathlib import Path
 
 import uvicorn
@@ -55,4 +56,6 @@ def run_server(settings: ServerSettings, listener: socket.socket, *, browser: bo
     )
     if browser:
         threading.Timer(0.5, webbrowser.open, (settings.address,)).start()
-    uvicorn.Server(config).run(sockets=[listener])
+    # interrupting it is how it ends
+    with suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets=[listener])

@@ -6,6 +6,7 @@ import asyncio
 import json
 import multiprocessing
 import sys
+import threading
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -90,6 +91,7 @@ class ProcessRunner:
     work: WorkFolder
     _process: Any = None
     _connection: Connection | None = None
+    _guard: threading.Lock = field(default_factory=threading.Lock)
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _threads: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(max_workers=1))
 
@@ -97,45 +99,52 @@ class ProcessRunner:
         """The answer of a message; TimedOut after so many seconds, and the process is stopped."""
         async with self._turn:
             content = json.dumps(message).encode()
-            connection = self._started()
-            waiting = asyncio.get_running_loop().run_in_executor(
-                self._threads, _exchange, connection, content
-            )
+            # a process begins in the thread too: the server answers others meanwhile
+            waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
             try:
                 reply = await asyncio.wait_for(asyncio.shield(waiting), limit)
             except (TimeoutError, asyncio.CancelledError):
-                self.stop()
+                # a process that is about to begin is waited for, but not by the server
+                await asyncio.shield(asyncio.to_thread(self.stop))
                 with suppress(Exception):
                     await waiting
                 raise
             except (EOFError, OSError):
                 # it made room, or the system stopped it: once more in a new one
                 self.stop()
-                connection = self._started()
-                waiting = asyncio.get_running_loop().run_in_executor(
-                    self._threads, _exchange, connection, content
-                )
+                waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
                 reply = await asyncio.wait_for(waiting, limit)
             return reply
 
+    def _asked(self, content: bytes) -> Reply:
+        return _exchange(self._started(), content)
+
     def _started(self) -> Connection:
+        with self._guard:
+            return self._started_alone()
+
+    def _started_alone(self) -> Connection:
         if self._connection is not None and self._process is not None and self._process.is_alive():
             return self._connection
-        self.stop()
+        self._stop_alone()
         methods = multiprocessing.get_all_start_methods()
         context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         if "forkserver" in methods:
             context.set_forkserver_preload(list(PRELOADED))
         here: Connection
         here, there = context.Pipe()
-        self._process = context.Process(target=serve_messages, args=(there, self.work), daemon=True)
-        self._process.start()
+        process = context.Process(target=serve_messages, args=(there, self.work), daemon=True)
+        process.start()
         there.close()
-        self._connection = here
+        self._process, self._connection = process, here
         return here
 
     def stop(self) -> None:
         """Stop the process; the next message starts another one."""
+        with self._guard:
+            self._stop_alone()
+
+    def _stop_alone(self) -> None:
         if self._connection is not None:
             with suppress(OSError):
                 self._connection.close()
