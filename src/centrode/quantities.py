@@ -462,6 +462,14 @@ FORCES = (
     Quantity("kinetic_energy", "T", "J", mark("kinetic energy")),
     Quantity("potential_energy", "V", "J", mark("potential energy of weights and springs")),
     Quantity("energy_residual", "ΔE", "J", mark("residual of the energy balance")),
+    Quantity("generalised_coordinate", "q", "rad", mark("generalised coordinate")),
+    Quantity("generalised_velocity", "q̇", "rad/s", mark("generalised velocity")),
+    Quantity("generalised_acceleration", "q̈", "rad/s^2", mark("generalised acceleration")),
+    Quantity("work_part", "A", "J", mark("work of a load or of a drive")),
+    Quantity(
+        "keeping_moment", "M_k", "N m", mark("moment or force that keeps the law of the drive"), by_drive=1
+    ),
+    Quantity("velocity_residual", "", "1/s", mark("residual of the constraints in velocities")),
     Quantity("occasion_time", "t", "s", mark("time of an occasion")),
     Quantity("occasion_value", "q", "rad", mark("value of the drive at an occasion"), by_drive=-1),
     Quantity("occasion_kind", "", "1", mark("kind of an occasion")),

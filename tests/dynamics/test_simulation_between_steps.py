@@ -10,10 +10,8 @@ import pytest
 import scipy.special
 
 import centrode as ct
-from centrode.numerics.machine_code import PRESENT
 from simulated import crank_rocker, pendulum, rotor, sledge, spherical
 
-EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]
 EPS = 2.0**-52
 FIRST_AND_LAST = [1e-6, 1.0 - 1e-6]
 """Shares of the duration within the first and the last step."""
@@ -26,24 +24,21 @@ def swinging(times: np.ndarray) -> np.ndarray:
     return 2 * np.arcsin(k * sn) - math.pi / 2
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
-def test_the_order_between_steps_against_elliptic_functions(executor: Any) -> None:
+def test_the_order_between_steps_against_elliptic_functions() -> None:
     """Half the step, a sixteenth of the error, wherever in a step; the nearest step would miss by half a step."""
     shares = np.sort([*FIRST_AND_LAST, *np.random.default_rng(3).uniform(size=30)])
     expected = swinging(2.0 * shares)
     errors = []
     for steps in (200, 400, 800):
         settings = ct.Simulation(duration=2, scheme="runge-kutta-4", steps=steps)
-        found = ct.simulate(pendulum(), settings, at=2.0 * shares, executor=executor)
-        assert found.attrs["executor"] == executor
+        found = ct.simulate(pendulum(), settings, at=2.0 * shares)
         errors.append(float(np.linalg.norm(found.drive_value.values[:, 0] - expected)))
     orders = [math.log2(errors[k] / errors[k + 1]) for k in range(2)]
     assert orders == pytest.approx([4, 4], abs=0.15)
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
 @pytest.mark.parametrize("name", ["plane", "sphere"])
-def test_the_order_of_all_states_between_steps(executor: Any, name: str) -> None:
+def test_the_order_of_all_states_between_steps(name: str) -> None:
     """Speed, value, works and acceleration of linkages, no worse between the steps than at them but by half."""
     mechanism = crank_rocker() if name == "plane" else spherical(math.pi / 12, math.pi / 4)
     settings = ct.Simulation(driving="2 - 0.2*v", speed=3, duration=1, tolerance=1e-13)
@@ -53,7 +48,7 @@ def test_the_order_of_all_states_between_steps(executor: Any, name: str) -> None
     def missed(at: np.ndarray, steps: int) -> dict[str, float]:
         exact = ct.simulate(mechanism, settings, at=at)
         fixed = settings.model_copy(update={"scheme": "runge-kutta-4", "steps": steps})
-        found = ct.simulate(mechanism, fixed, at=at, executor=executor)
+        found = ct.simulate(mechanism, fixed, at=at)
         return {name: float(np.sqrt(np.mean((found[name] - exact[name]).values ** 2))) for name in names}
 
     between = [missed(shares, steps) for steps in (200, 400)]

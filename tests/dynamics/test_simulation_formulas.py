@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.numerics.machine_code import PRESENT
 from simulated import rotor, spherical
 
-EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]
 SCHEMES = ["adaptive", "stiff", "runge-kutta-4"]
 ONES = [
     "sign(v + 1)", "sign(t + 1)", "abs(-1)", "abs(v)/(abs(v) + 1e-300)", "min(v + 5, 1)", "max(q - 99, 1)",
@@ -41,10 +39,9 @@ def test_every_function_drives_and_loads(formula: str, scheme: Any) -> None:
     assert found.drive_speed.values == pytest.approx([1.0, 1.25, 1.5], rel=1e-9)
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
 @pytest.mark.parametrize("formula", ["sign(v)", "min(sign(t + 1), 2)", "abs(sign(-v))"])
-def test_the_same_on_the_sphere(formula: str, executor: Any) -> None:
-    """A formula that is 1 moves it as the number 1 does; by the series and traced."""
+def test_the_same_on_the_sphere(formula: str) -> None:
+    """A formula that is 1 moves it as the number 1 does."""
     one, other = (
         ct.simulate(
             ct.parse_mechanism(
@@ -52,7 +49,6 @@ def test_the_same_on_the_sphere(formula: str, executor: Any) -> None:
                 + TORQUE.replace("LINK", "AB").replace("AMOUNT", amount)
             ),
             ct.Simulation(driving=amount, speed=2, duration=0.5, scheme="runge-kutta-4", steps=40, samples=5),
-            executor=executor,
         ).drive_speed.values
         for amount in (formula, "1 + 0*t")
     )
@@ -86,12 +82,11 @@ def test_no_value_is_no_rest_and_no_limit(formula: str, speed: float, scheme: An
         ct.simulate(rotor(), settings)
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
-def test_fixed_steps_tell_where_a_formula_ends(executor: Any) -> None:
+def test_fixed_steps_tell_where_a_formula_ends() -> None:
     """log(0.5 - t) ends at 0.5 s."""
     settings = ct.Simulation(driving="log(0.5 - t)", duration=1, speed=1, scheme="runge-kutta-4", steps=100)
     with pytest.raises(ct.MotionError, match="no finite value at t = 0\\.5 s"):
-        ct.simulate(rotor(), settings, executor=executor)
+        ct.simulate(rotor(), settings)
 
 
 def test_a_brake_of_the_sign_stops_it() -> None:

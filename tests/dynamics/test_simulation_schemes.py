@@ -1,4 +1,4 @@
-"""Fixed steps: their order, machine code beside arrays; what is refused."""
+"""Fixed steps: their order and their right sides; what is refused."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.dynamics.simulation.integrator import compile_scan
+from centrode.dynamics.simulation.fixed_steps import StepSlopes
 from centrode.dynamics.simulation.simulate import setting_of
 from centrode.dynamics.simulation.steady_state import steady_regime
-from centrode.numerics.machine_code import PRESENT
 from simulated import PENDULUM, crank_rocker, pendulum, rotor, sledge, spherical
 
-EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]
 SMOOTH = """
 [[loads]]
 kind = "friction"
@@ -33,9 +31,8 @@ value = "cos(2*t) - 0.1*v + 0.3*sin(x)"
 """
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
 @pytest.mark.parametrize("name", ["plane", "sphere"])
-def test_fixed_steps_are_of_order_four(executor: Any, name: str) -> None:
+def test_fixed_steps_are_of_order_four(name: str) -> None:
     """Half the step, a sixteenth of the error: log2 of the ratio is 4 within a tenth, over the whole motion."""
     mechanism = crank_rocker(SMOOTH) if name == "plane" else spherical(math.pi / 12, math.pi / 4)
     settings = ct.Simulation(driving="2 - 0.2*v", speed=3, duration=2, tolerance=1e-13, samples=41)
@@ -44,44 +41,35 @@ def test_fixed_steps_are_of_order_four(executor: Any, name: str) -> None:
     errors = []
     for steps in (400, 800, 1600):
         fixed = settings.model_copy(update={"scheme": "runge-kutta-4", "steps": steps})
-        found = ct.simulate(mechanism, fixed, at=at, executor=executor)
-        assert found.attrs["executor"] == executor
+        found = ct.simulate(mechanism, fixed, at=at)
         errors.append(float(np.linalg.norm(found.drive_speed.values - exact)))
     orders = [math.log2(errors[k] / errors[k + 1]) for k in range(2)]
     assert orders == pytest.approx([4, 4], abs=0.1)
 
 
-@pytest.mark.skipif(not PRESENT, reason="needs llvmlite")
 @pytest.mark.parametrize("mechanism", [crank_rocker(SMOOTH), spherical(0.3, 0.8), pendulum()])
-def test_machine_code_gives_what_arrays_give(mechanism: ct.Mechanism) -> None:
-    """Formulas traced, and series of the reduction: apart by what the series leave out, which is told."""
-    settings = ct.Simulation(driving="2 - 0.2*v", speed=3, duration=3, scheme="runge-kutta-4", steps=600)
-    one = ct.simulate(mechanism, settings, executor="machine code")
-    other = ct.simulate(mechanism, settings, executor="arrays")
-    for name in ("drive_speed", "turned", "work_of_drive", "work_of_friction"):
-        a, b = one[name].values, other[name].values
-        size = max(1.0, float(np.max(np.abs(a))))
-        assert np.max(np.abs(a - b)) <= 1e3 * (other.attrs["representation_error"] + 2.0**-52) * size
+def test_right_sides_of_steps_are_those_of_the_field(mechanism: ct.Mechanism) -> None:
+    """Series by Horner's rule in plain numbers, and by arrays: the same forces at the same states."""
+    setting = setting_of(mechanism, ct.Simulation(driving="2 - 0.2*v + q", speed=3, duration=1))
+    field, slopes = setting.field, StepSlopes(setting.field)
+    random = np.random.default_rng(5)
+    for value, rate, t in random.uniform((-3.0, -4.0, 0.0), (3.0, 4.0, 2.0), (200, 3)).tolist():
+        forces = field.forces(field.leg_at(value, math.copysign(1.0, rate)), t, value, rate)
+        expected = (
+            forces.acceleration(rate),
+            forces.driving * rate,
+            forces.friction * rate,
+            forces.other * rate,
+        )
+        size = max(1.0, *map(abs, expected))
+        assert slopes.at(t, value, rate) == pytest.approx(expected, rel=1e-11, abs=1e-11 * size)
 
 
-@pytest.mark.skipif(not PRESENT, reason="needs llvmlite")
-def test_the_scan_runs_on_numpy_too() -> None:
-    """The same scan, the same numbers but for the last bits of sine and cosine."""
-    setting = setting_of(crank_rocker(SMOOTH), ct.Simulation(driving="2", speed=3, duration=1))
-    states = [
-        compile_scan(setting.rows, setting.driving, kind).states(0.3, 3.0, 0.2, 40)
-        for kind in ("arrays", "machine code")
-    ]
-    assert np.max(np.abs(states[0] - states[1])) <= 1e4 * 2.0**-52 * np.max(np.abs(states[0]))
-
-
-def test_what_cannot_be_compiled_runs_on_arrays() -> None:
-    mechanism = crank_rocker(rocker=1.0)  # it has limits
+def test_the_reduced_equation_has_no_machine_code() -> None:
     settings = ct.Simulation(driving="2", speed=0.5, duration=0.2, scheme="runge-kutta-4", steps=50)
-    assert ct.simulate(mechanism, settings).attrs["executor"] == "arrays"
-    if PRESENT:
-        with pytest.raises(ct.InputError, match="limits or change points"):
-            ct.simulate(mechanism, settings, executor="machine code")
+    assert ct.simulate(crank_rocker(), settings).attrs["executor"] == "arrays"
+    with pytest.raises(ct.InputError, match="no machine code"):
+        ct.simulate(crank_rocker(), settings, executor="machine code")
 
 
 def test_fixed_steps_end_at_a_limit() -> None:
@@ -124,7 +112,7 @@ def test_without_settings() -> None:
 
 def test_several_drives_are_refused() -> None:
     with pytest.raises(ct.InputError, match="one drive"):
-        ct.simulate(ct.example("two-link-arm"), settings())
+        ct.simulate(ct.example("two-link-arm"), settings(equations="reduced"))
 
 
 def test_a_start_at_a_dead_point() -> None:

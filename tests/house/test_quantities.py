@@ -126,6 +126,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
     }
     known |= cams
     known |= {"moment_of_links", "inertia_moment_of_group"}
+    known |= {f"generalised_{order}" for order in ("coordinate", "velocity", "acceleration")}
+    known |= {"work_part", "keeping_moment", "velocity_residual"}
     known |= {
         "bearing_load",
         "load_on_journal",

@@ -108,7 +108,6 @@ Complaint = Callable[[str], str]
         ('link = "OA"', 'distance = ["A", "A"]', "two different points are needed"),
         ('link = "OA"', "", "press.toml, [[drives]] 1: one of link, guide, distance is missing"),
         ('link = "OA"', 'link = "OA"\nguide = "B"', "[[drives]] 1: link, guide are given together; keep one"),
-        ("speed = 1", "", "press.toml, [[drives]] 1: one of speed, law, table, segments, cam is missing"),
         ("speed = 1", "speed = 1\nlaw = 't'", "[[drives]] 1: speed, law are given together"),
         ("speed = 1", 'speed = "3 Hz"', "write rpm or rad/s"),
         (

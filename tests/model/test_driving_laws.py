@@ -198,7 +198,6 @@ def test_bad_segments_are_refused(complaint: Callable[[str], str], keys: str, me
         ("segments = 3", "segments: expected a list, got 3"),
         ("segments = [3]", "segment 1: expected a table, got 3"),
         ('segments = [{ time = 1, curve = "dwell" }]\nspeed = 1', "speed, segments are given together"),
-        ("", "one of speed, law, table, segments, cam is missing"),
         ("speed = 1\nrepeat = true", "repeat is used with segments only; remove it, or give segments"),
         ('segments = [{ time = 1, curve = "dwell" }]\nrepeat = 1', "repeat: expected true or false, got 1"),
         (

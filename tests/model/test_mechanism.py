@@ -31,7 +31,7 @@ def test_python_spells_the_same_as_a_file() -> None:
         (lambda: Mechanism(), '"links" is missing'),
         (lambda: Link(lenght=1), 'unknown key "lenght"; did you mean "length"?'),
         (lambda: Link(length=-1), "length must be positive, got -1"),
-        (lambda: Drive(link="OA"), "one of speed, law, table, segments, cam is missing"),
+        (lambda: Drive(speed=1), "one of link, guide, distance is missing"),
         (lambda: Guide(point="A"), '"through" is missing'),
     ],
 )

@@ -13,6 +13,9 @@ from centrode.structure.rank import count
 
 FORMULAS = {
     "andrews-squeezer": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",
+    "andrews-mechanism": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",
+    "double-pendulum": "I(OA) -> I(AB)",
+    "five-bar-pendulum": "I(AB) -> I(ED) -> II(BC, DC)",
     "antiparallelogram": "I(OA) -> II(AB, DB)",
     "chebyshev-straight-line": "I(AB, OA, DB)",
     "cardan-gear": "I(OA) -> II(planet)",
@@ -40,7 +43,14 @@ FORMULAS = {
     "two-link-arm": "I(OA) -> I(AB)",
     "watt-six-bar": "I(OA) -> II(coupler, rocker) -> II(PR, QR)",
 }
-MOBILITY = {"two-link-arm": 2, "five-bar-two-drives": 2, "bevel-differential": 2, "excavator-arm": 3}
+MOBILITY = {
+    "two-link-arm": 2,
+    "five-bar-two-drives": 2,
+    "bevel-differential": 2,
+    "excavator-arm": 3,
+    "double-pendulum": 2,
+    "five-bar-pendulum": 2,
+}
 BY_CHEBYSHEV = MOBILITY | {"three-crank-parallelogram": 0}
 
 

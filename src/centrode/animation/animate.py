@@ -5,12 +5,21 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.animation.centrodes import CentresLayer, CentrodesLayer
-from centrode.animation.frames import Course, Film, course_from, course_of, film_from, film_of
+from centrode.animation.frames import (
+    Course,
+    Film,
+    course_from,
+    course_of,
+    course_of_simulation,
+    film_from,
+    film_of,
+    film_of_simulation,
+)
 from centrode.animation.layers import Layer, instant_captions, scene_of_film, statuses_of
 from centrode.animation.linkages import LinksLayer, PathsLayer
 from centrode.animation.stage import Stage
@@ -157,6 +166,7 @@ def animate(
     *,
     start: float | str | None = None,
     stop: float | str | None = None,
+    simulation: bool = False,
     size: Sequence[int] | str = SIZE,
     dark: bool = False,
     said: Said = no_progress,
@@ -178,6 +188,9 @@ def animate(
         Frames, frames a second, duration or speed.
     start, stop : float [rad or m, or s], or texts with a unit
         Values of the drive, as for `motion`.
+    simulation : bool
+        The motion of the description's simulation, from its start to its end, in place of that of the drives. It shows
+        paths, velocities and accelerations; one of 1 to 20 s runs at its own pace, another takes 6 s.
     size : (width, height) or "800x600"
         In pixels; MP4 takes even ones, odd ones are made greater by one.
     dark : bool
@@ -203,23 +216,51 @@ def animate(
     if kind == ".mp4":
         need_video()
     if isinstance(described, Cam | PlateCam):
-        if shown is not None or start is not None or stop is not None:
+        if shown is not None or start is not None or stop is not None or simulation:
             raise InputError("show", _("a cam is shown as a whole"), _("remove it"))
         found: Animation = _of_cams().animate_cam(described, path, pace, size, dark, said)
         return found
     shown = shown or Shown()
     check_shown(described, shown)
     check_timing(kind, pace.frames, pace.fps, pace.duration, pace.speed)
-    course = course_of(described, None, start, stop)
+    if simulation:
+        _check_of_simulation(shown, start, stop)
+        course = course_of_simulation(described)
+        pace = _own_pace(pace, course.seconds)
+    else:
+        course = course_of(described, None, start, stop)
     timing = pace.timing(kind, course.seconds)
     pixels = size_of(size, kind, timing.frames)
-    film = film_of(course, timing.frames)
+    film = (film_of_simulation if simulation else film_of)(course, timing.frames)
     stage, notes = stage_of(film, shown, pixels, dark=dark)
     write_stage(stage, path, timing, said)
     notes = [*_about(course), *notes]
     return Animation(
         path, timing.frames, timing.per_second, pixels, course.loop, tuple(notes), course.left_out
     )
+
+
+OF_SIMULATION = ("paths", "velocities", "accelerations")
+OWN_PACE, STRETCHED = (1.0, 20.0), 6.0
+"""Simulations that take so long [s] run at their own pace; others are stretched to so long."""
+
+
+def _check_of_simulation(shown: Shown, start: object, stop: object) -> None:
+    """Refuse what belongs to a motion that drives prescribe."""
+    if start is not None or stop is not None:
+        what = _("a simulation goes from its start to its end")
+        raise InputError("from", what, _("remove it; the duration is that of [simulation]"))
+    for name in shown.what:
+        if name not in OF_SIMULATION:
+            what = _("{name} cannot be shown of a simulation").format(name=f'"{name}"')
+            raise InputError("show", what, _("show any of {known}").format(known=", ".join(OF_SIMULATION)))
+
+
+def _own_pace(pace: Pace, seconds: float) -> Pace:
+    """A pace, where none is given that of the motion itself."""
+    if pace.duration is not None or pace.speed is not None or (pace.frames and pace.fps):
+        return pace
+    return replace(pace, duration=seconds if OWN_PACE[0] <= seconds <= OWN_PACE[1] else STRETCHED)
 
 
 def stage_of(

@@ -14,6 +14,7 @@ import xarray as xr
 from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.simulation.simulate import simulate
 from centrode.dynamics.state import State, length_unit
 from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, Status
@@ -23,12 +24,13 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.motion_parameter import MotionParameter
 
 # What an animation runs over: the part of a motion that is reached, and whether it runs round or there and
 # back.
 
 Array: TypeAlias = npt.NDArray[np.float64]
-Loop: TypeAlias = Literal["round", "back"]
+Loop: TypeAlias = Literal["round", "back", "once"]
 
 MOST_TURNS = 12
 """Turns of a drive after which gears are still looked for in their first position."""
@@ -50,8 +52,8 @@ class Course:
         Every sample of it is reached; from the first to the last it runs one way.
     places : (sample)
         What `ct.motion` takes as `at` for its samples.
-    loop : "round" or "back"
-        The last position is the first again, or the motion runs there and back.
+    loop : "round", "back" or "once"
+        The last position is the first again, or the motion runs there and back, or it ends and begins anew.
     turns : int
         Turns of the drive in a round; 1 where that says nothing.
     left_out : int
@@ -72,7 +74,13 @@ class Course:
     def seconds(self) -> float:
         """How long the motion takes until it begins again [s]."""
         time = self.motion["time"].values
-        return float(abs(time[-1] - time[0])) * (1.0 if self.loop == "round" else 2.0)
+        return float(abs(time[-1] - time[0])) * (2.0 if self.loop == "back" else 1.0)
+
+    @property
+    def parameter(self) -> MotionParameter:
+        """What the places are values of: that of the mechanism, or time for a motion that goes by once."""
+        parameter = self.mechanism.motion_parameter
+        return parameter.in_time() if self.loop == "once" else parameter
 
 
 def course_of(
@@ -218,7 +226,9 @@ class Film:
     @property
     def together(self) -> xr.Dataset:
         """Positions of the frames, and behind them those of the course: everything that a picture has room for."""
-        both = [one.drop_dims("event", errors="ignore") for one in (self.motion, self.course.motion)]
+        both = [
+            one.drop_dims(("event", "occasion"), errors="ignore") for one in (self.motion, self.course.motion)
+        ]
         return xr.concat(both, dim="sample", data_vars="minimal", join="override")
 
     @property
@@ -240,6 +250,41 @@ def film_of(course: Course, frames: int) -> Film:
     first, last = course.places[0], course.places[-1]
     places = first + (last - first) * each
     return Film(course, motion(course.mechanism, at=places), order, places)
+
+
+COURSE = 721
+"""Samples of a simulation, from which paths are drawn."""
+
+
+def course_of_simulation(mechanism: Mechanism) -> Course:
+    """The motion that the simulation of a description computes: it goes by once, and then begins anew.
+
+    Raises
+    ------
+    InputError, MotionError
+        As `simulate` does; only one position is reached.
+    """
+    settings = mechanism.simulation
+    if settings is None:
+        repair = _('give driving = "20 - 2*v" and duration')
+        raise InputError("[simulation]", _("it is missing"), repair)
+    even = settings.model_copy(update={"samples": COURSE, "at": ()})
+    found = simulate(mechanism, even, motion=True)
+    whole = usable(found)
+    if whole.sum() < 2:
+        raise InputError("", _("only one position is reached: nothing moves"), _("give a longer time"))
+    found = found.isel(sample=np.flatnonzero(whole))
+    return Course(mechanism, found, found["time"].values, "once", asked=found.sizes["sample"])
+
+
+def film_of_simulation(course: Course, frames: int) -> Film:
+    """Frames evenly spaced in time over a simulation, each computed where it stands."""
+    places = np.linspace(course.places[0], course.places[-1], frames)
+    assert course.mechanism.simulation is not None
+    settings = course.mechanism.simulation.model_copy(update={"at": ()})
+    found = simulate(course.mechanism, settings, at=places, motion=True)
+    numbers = np.arange(found.sizes["sample"])
+    return Film(course, found, numbers, found["time"].values)
 
 
 def film_from(course: Course, frames: int) -> Film:

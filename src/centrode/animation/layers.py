@@ -146,7 +146,7 @@ def instant_captions(film: Film) -> list[str]:
     The status stands there where it is not in order. All have as many decimals, so that no digit jumps.
     """
     mechanism = film.mechanism
-    parameter = mechanism.motion_parameter
+    parameter = film.course.parameter
     factor, unit = shown_as(parameter.instant.unit, mechanism.display)
     symbol, values = parameter.instant.symbol, factor * parameter.instants(film.motion)
     decimals = _decimals(values, unit)

@@ -71,7 +71,7 @@ class LinksLayer(MotionLayer):
         else:
             draw_frame(axes, self.scene, 0)
             draw_axes_of_cams(axes, self.scene)
-        if self.film.course.loop == "back":  # the sense of the drive changes
+        if self.film.course.loop != "round":  # the sense of the drive changes
             return
         if isinstance(self.scene, Globe):
             draw_turns(axes, self.scene, 0)

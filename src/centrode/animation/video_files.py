@@ -326,8 +326,8 @@ class Animation:
     per_second : float
     size : (width, height)
         In pixels.
-    loop : "round" or "back"
-        The last picture leads to the first in the same sense, or the motion runs there and back.
+    loop : "round", "back" or "once"
+        The last picture leads to the first in the same sense, or the motion runs there and back, or begins anew.
     notes : tuple of str
         What a reader should know: the loop, samples left out, vectors that are not drawn.
     left_out : int

@@ -73,6 +73,9 @@ SIZE = "800x600"
     metavar=mark("X"),
     help=mark("Speed of the animation as a multiple of the mechanism's own speed (instead of --duration)."),
 )
+@click.option(
+    "--simulation", is_flag=True, help=mark("The motion that the simulation of the description computes.")
+)
 @start_option
 @stop_option
 @range_option
@@ -92,6 +95,7 @@ def animate(
     fps: float | None,
     duration: float | None,
     speed: float | None,
+    simulation: bool,
     start: str | None,
     stop: str | None,
     ranged: str | None,
@@ -122,6 +126,7 @@ def animate(
                 pace,
                 start=first,
                 stop=last,
+                simulation=simulation,
                 size=size or SIZE,
                 dark=dark,
                 said=said,
@@ -194,7 +199,8 @@ def _end(description: ct.Mechanism | ct.Cam | ct.PlateCam, text: str | None, whe
 
 def _rows(made: Animation) -> list[tuple[str, str]]:
     """Frames, size, time and loop."""
-    loop = _("round, without a jump") if made.loop == "round" else _("there and back")
+    words = {"round": _("round, without a jump"), "back": _("there and back"), "once": _("once, then anew")}
+    loop = words[made.loop]
     rate = _("{rate:.4g} per second: {seconds:.4g} s").format(rate=made.per_second, seconds=made.seconds)
     return [
         (_("frames"), f"{made.frames}, {rate}"),

@@ -35,6 +35,13 @@ def pairs(texts: Iterable[str], where: str, sample: str = "EC=30 deg") -> dict[s
     return found
 
 
+def read_speeds(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, Any]:
+    """Path -> speed of texts PATH=SPEED; that of a point has its components between commas."""
+    found: dict[str, Any] = dict(pairs(texts, where, "links.OA=10 rad/s"))
+    points = {path: text.split(",") for path, text in found.items() if path.startswith("points.")}
+    return found | {path: [part.strip() for part in parts] for path, parts in points.items()}
+
+
 def ranges(texts: Iterable[str], where: str, sample: str = "EC=-30 deg:90 deg") -> dict[str, tuple[str, str]]:
     """Name -> first and last value of texts NAME=FIRST:LAST; `sample` is what a refusal shows as right."""
     found = {}

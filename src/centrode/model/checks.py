@@ -21,6 +21,7 @@ from centrode.model.values import Placed, Vector, makes_arc, unit_vector
 
 if TYPE_CHECKING:
     from centrode.model.follower_cam import PlateCam
+    from centrode.model.simulation import Simulation
 
 # Checks that a name in a description is one of something: a point, a link, a guide.
 
@@ -540,8 +541,39 @@ def _rest(mechanism: Description) -> Iterator[Problem]:
         yield from unknown_name_problems(name, names, "point, link or guide", ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
         yield from _names_of_load(mechanism, load, ("loads", index))
+    if mechanism.simulation is not None:
+        yield from simulation_problems(mechanism, mechanism.simulation)
     for point in mechanism.report.points:
         yield from unknown_name_problems(point, mechanism.points, "point", ("report", "points"))
+
+
+def simulation_problems(mechanism: Description, settings: Simulation) -> Iterator[Problem]:
+    """Problems of what a simulation names: drives that keep their law, and parts that have an initial speed."""
+    drives = {drive.id: drive for drive in mechanism.drives}
+    for name in settings.keeps:
+        at: Place = ("simulation", "keeps")
+        if name not in drives:
+            what = _("there is no drive {name}").format(name=value_text(name))
+            yield Problem(what, nearest(name, drives), at)
+        elif not drives[name].has_law:
+            what = _("drive {name} has no law that it could keep").format(name=value_text(name))
+            yield Problem(what, _("give it speed, law, table, segments or cam"), at)
+    known = {
+        "links": ("link", list(mechanism.links)),
+        "guides": ("guide", [guide.id for guide in mechanism.guides]),
+        "points": ("point", list(mechanism.moving_points)),
+    }
+    for path in settings.speeds:
+        room, _dot, name = path.partition(".")
+        at = ("simulation", "speeds", path)
+        if room != "drives":
+            yield from unknown_name_problems(name, known[room][1], known[room][0], at)
+        elif name not in drives:
+            what = _("there is no drive {name}").format(name=value_text(name))
+            yield Problem(what, nearest(name, drives), at)
+        elif name in settings.keeps:
+            what = _("drive {name} keeps its law, which gives its speed").format(name=value_text(name))
+            yield Problem(what, _("remove the speed, or remove the drive from keeps"), at)
 
 
 def _names_of_load(mechanism: Description, load: AnyLoad, at: Place) -> Iterator[Problem]:

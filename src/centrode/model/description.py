@@ -133,6 +133,15 @@ class Description(DescriptionPart):
         )
         return self.model_copy(update={"study": study})
 
+    def with_drives_held(self) -> Self:
+        """The mechanism in which drives without a law hold their places, so that kinematics can place it."""
+        if all(drive.has_law for drive in self.drives):
+            return self
+        drives = tuple(
+            drive if drive.has_law else drive.model_copy(update={"speed": 0.0}) for drive in self.drives
+        )
+        return self.model_copy(update={"drives": drives})
+
     @property
     def link_names(self) -> tuple[str, ...]:
         """Names of the moving links in description order."""
@@ -215,8 +224,8 @@ class Description(DescriptionPart):
 
 def value_at_start(drive: Drive) -> float | None:
     """The drive's value at t = 0; None where its start is not given or its law is not defined there."""
-    if drive.start is None:
-        return None
+    if drive.start is None or not drive.has_law:
+        return drive.start
     try:
         value = drive.start + float(drive.motion_law.jet(SCALARS, 0.0))
     except (ArithmeticError, ValueError):
@@ -242,6 +251,8 @@ def coordinate_of_drive(drive: object, space: str) -> DriveCoordinate:
         return drive_coordinate(drive.id, drive.kind, space, drive.speed)
     keys = drive if isinstance(drive, Mapping) else {}
     driven = "displacement" if keys.get("guide") else "distance" if keys.get("distance") else "angle"
-    by_law = keys.get("speed") is None and bool({"law", "table", "segments", "cam"} & keys.keys())
+    ends = keys.get("distance")
+    points = "-".join(map(str, ends)) if isinstance(ends, list | tuple) else ""
+    name = str(keys.get("link") or keys.get("guide") or points)
     # its numbers are not read yet: any number stands for a constant speed
-    return drive_coordinate("", driven, space, None if by_law else 0.0)
+    return drive_coordinate(name, driven, space, None if keys.get("speed") is None else 0.0)

@@ -1,4 +1,4 @@
-"""Drives: an angle, a displacement or a distance that is given as a law of time."""
+"""Drives: an angle, a displacement or a distance that is given as a law of time, or left free."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from centrode.model.motion_parameter import (
     drive_coordinate,
     kind_of_value,
 )
-from centrode.model.reading import FRAME, DescriptionPart, Problem, bounded_list, one_of
+from centrode.model.reading import FRAME, DescriptionPart, Problem, at_most_one_of, bounded_list, one_of
 from centrode.model.segments import Segment, law_of_segments, read_segments
 from centrode.model.values import (
     READING,
@@ -53,6 +53,9 @@ def _read_law(value: object) -> str:
 class Drive(DescriptionPart):
     """A given motion of one degree of freedom: value(t) = start + law(t).
 
+    A drive without a law is a free coordinate: it names an angle, a displacement or a distance in the results of a
+    simulation, and holds nothing.
+
     Attributes
     ----------
     link, guide, distance : str, str, two points
@@ -62,8 +65,8 @@ class Drive(DescriptionPart):
     start : float [rad or m]
         Value at t = 0, without the law's own value there; from the initial position by default.
     speed, law, table, segments, cam : float [rad/s or m/s], formula in t, rows of (time, value), Segments, PlateCam
-        One of them. In a file, `table` may be the path of a CSV file beside it, `cam` that of a cam's description or
-        the name of a built-in one.
+        At most one of them. In a file, `table` may be the path of a CSV file beside it, `cam` that of a cam's
+        description or the name of a built-in one.
     repeat : bool
         Whether the segments follow each other again and again.
     cam_speed : float [rad/s]
@@ -102,7 +105,7 @@ class Drive(DescriptionPart):
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given, by the rules of this part."""
-        wrong = one_of(given, ("link", "guide", "distance")) + one_of(given, _LAWS)
+        wrong = one_of(given, ("link", "guide", "distance")) + at_most_one_of(given, _LAWS)
         if given.get("link") is None and given.get("relative_to", FRAME) != FRAME:
             repair = _("remove it; a guide's displacement is along the link it is on")
             wrong.append(Problem(_("relative_to is used with the drive of a link's angle only"), repair))
@@ -164,8 +167,23 @@ class Drive(DescriptionPart):
         return self.cam.body.speed if self.cam_speed is None else self.cam_speed
 
     @property
+    def has_law(self) -> bool:
+        """Whether a law of time gives its motion; without one it is a free coordinate."""
+        return any(getattr(self, key) is not None for key in _LAWS)
+
+    def check_law(self) -> None:
+        """Raise InputError for a drive without a law, which nothing but a simulation moves."""
+        if not self.has_law:
+            raise InputError(
+                f"[[drives]] {self.id}",
+                _("it has no law of motion: it is a free coordinate, which only a simulation moves"),
+                _("give speed, law, table, segments or cam, or use centrode simulate"),
+            )
+
+    @property
     def motion_law(self) -> Law:
-        """s(t) [rad or m]; the drive's value is start + s(t)."""
+        """s(t) [rad or m]; the drive's value is start + s(t). Raises InputError for a drive without a law."""
+        self.check_law()
         if self.speed is not None:
             return Uniform(self.speed)
         if self.law is not None:

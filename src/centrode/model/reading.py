@@ -332,6 +332,11 @@ def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
     return [Problem(_("{names} are given together").format(names=", ".join(names)), _("keep one of them"))]
 
 
+def at_most_one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
+    """The problem, if any, of giving more than one of `keys`."""
+    return one_of(given, keys) if any(given.get(key) is not None for key in keys) else []
+
+
 # Words, lists and tables in a description, of bounded sizes.
 
 

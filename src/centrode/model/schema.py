@@ -97,7 +97,7 @@ from centrode.model.settings import (
     Shaft,
     Study,
 )
-from centrode.model.simulation import MOST_STEPS, SCHEMES, Motor, Simulation
+from centrode.model.simulation import EQUATIONS, MOST_STEPS, SCHEMES, Motor, Simulation
 from centrode.model.units import KINDS as QUANTITIES
 from centrode.numerics.text_formula import TEXT_LENGTH
 from centrode.quantities import ANGULAR_ACCELERATIONS, ANGULAR_VELOCITIES
@@ -356,6 +356,12 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Simulation: {
         "start": AMOUNT,
         "speed": AMOUNT,
+        "speeds": {
+            "type": "object",
+            "description": "paths of links, guides, drives and points -> their speed at the start",
+        },
+        "keeps": list_of(NAME, 0, reading.DRIVES),
+        "equations": {"enum": list(EQUATIONS)},
         "driving": {**TEXT, "description": "a formula in t [s], q and v"},
         "motor": reference_to(Motor),
         "duration": above_zero("time"),
@@ -364,6 +370,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "steps": {"type": "integer", "minimum": 1, "maximum": MOST_STEPS},
         "tolerance": above_zero("ratio"),
         "samples": {"type": "integer", "minimum": 2, "maximum": reading.SAMPLES},
+        "at": list_of(quantity_schema("time"), 0, reading.SAMPLES),
     },
     Study: {
         "samples": {"type": "integer", "minimum": 1, "maximum": reading.SAMPLES},

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import PlainValidator, ValidationInfo, field_validator
 
@@ -12,8 +13,21 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
-from centrode.model.reading import KEY, DescriptionPart, Problem, choice, value_text
-from centrode.model.values import READING, PlaceOfMotion, positive, quantity, read_text, si
+from centrode.model.reading import (
+    AS_DICT,
+    KEY,
+    DescriptionPart,
+    FrozenMap,
+    Problem,
+    Problems,
+    bounded_list,
+    choice,
+    entries,
+    nearest,
+    read_name,
+    value_text,
+)
+from centrode.model.values import READING, Name, not_negative, positive, quantity, read_axes, read_text, si
 from centrode.numerics.text_formula import compile_formula
 
 DRIVING_LAW_VARIABLES = ("t", "q", "v")
@@ -21,6 +35,9 @@ DRIVING_LAW_VARIABLES = ("t", "q", "v")
 
 Scheme = Literal["adaptive", "stiff", "runge-kutta-4"]
 SCHEMES = ("adaptive", "stiff", "runge-kutta-4")
+Equations = Literal["reduced", "multibody"]
+EQUATIONS = ("reduced", "multibody")
+"""The reduced equation of motion of one drive, or the equations of all links with their constraints."""
 MOST_STEPS = 1_000_000
 """Fixed steps: with some 400 bytes each about 0.5 GB."""
 DEFAULT_STEPS, DEFAULT_SAMPLES, DEFAULT_TOLERANCE = 1000, 1001, 1e-9
@@ -62,6 +79,80 @@ def _tolerance(value: object) -> float:
             what.format(key=KEY, least=LEAST_TOLERANCE, most=GREATEST_TOLERANCE, value=value_text(value))
         )
     return number
+
+
+# Initial speeds of parts by their paths: links.OA, guides.B, drives.K-A, points.P.
+
+Speed: TypeAlias = float | tuple[float, ...]
+SPEED_ROOMS = ("links", "guides", "drives", "points")
+"""First words of the paths of initial speeds."""
+
+
+def _read_speeds(value: object) -> Mapping[str, Speed]:
+    """Speeds [rad/s or m/s] by path; a file may write the paths as keys with dots or as tables within each other."""
+    if not isinstance(value, Mapping):
+        raise Problem(_("expected a table, got {value}").format(value=value_text(value)))
+    given: dict[str, Speed] = {}
+    wrong: list[Problem] = []
+    for path, entry in _by_path(value, ""):
+        try:
+            name = _speed_path(path)
+            if name in given:
+                raise Problem(_("{name} is named twice").format(name=value_text(name)), _("keep one of them"))
+            given[name] = _read_speed(name, entry)
+        except Problem as problem:
+            wrong.append(Problem(problem.what, problem.repair, (path,)))
+    entries(list(given), reading.POINTS)
+    if wrong:
+        raise Problems(wrong)
+    return FrozenMap(given)
+
+
+def _by_path(value: Mapping[Any, Any], above: str, depth: int = 1) -> Iterator[tuple[str, object]]:
+    for key, entry in value.items():
+        path = f"{above}.{key}" if above else str(key)
+        if isinstance(entry, Mapping) and depth < reading.NESTING:
+            yield from _by_path(entry, path, depth + 1)
+        else:
+            yield path, entry
+
+
+def _speed_path(path: str) -> str:
+    room, _dot, name = path.partition(".")
+    if room not in SPEED_ROOMS:
+        what = _("a speed is that of a link, a guide, a drive or a point, got {path}")
+        raise Problem(
+            what.format(path=value_text(path)), nearest(room, [f"{one}.NAME" for one in SPEED_ROOMS])
+        )
+    return f"{room}.{read_name(name)}"
+
+
+def _read_speed(path: str, value: object) -> Speed:
+    room, _dot, name = path.partition(".")
+    if room == "points":
+        return read_axes(value, "speed")
+    if room == "links":
+        return si(value, "angular speed")
+    if room == "guides":
+        return si(value, "angular speed" if READING.get().space == "sphere" else "speed")
+    kinds = {one.name: one.speed_kind for one in READING.get().parameter.drives if one.name}
+    if name in kinds:
+        return si(value, kinds[name])
+    # settings made in Python do not know the drives: either kind of speed may be meant
+    try:
+        return si(value, "angular speed")
+    except Problem:
+        return si(value, "speed")
+
+
+def _read_instants(value: object) -> tuple[float, ...]:
+    """Instants [s] that grow, from zero on."""
+    instants = tuple(not_negative(one, "time") for one in entries(value, reading.SAMPLES))
+    if any(late <= early for early, late in pairwise(instants)):
+        raise Problem(
+            _("{key} must hold instants that grow").format(key=KEY), _("sort them, and name each once")
+        )
+    return instants
 
 
 class Motor(DescriptionPart):
@@ -123,14 +214,22 @@ def _spelt(value: float | None) -> str:
 
 
 class Simulation(DescriptionPart):
-    """A mechanism with one drive that is not led but driven: where it starts, what drives it, how long.
+    """A mechanism that is not led but left to its loads: where it starts, what drives it, how long.
 
     Attributes
     ----------
     start : float [rad or m]
-        Value of the drive at t = 0; the initial one by default.
+        Value of the first drive at t = 0; the initial one by default.
     speed : float [rad/s or m/s]
-        Speed at t = 0, positive in the sense of the drive.
+        Its speed at t = 0, positive in the sense of the drive.
+    speeds : mapping of a path to a speed [rad/s or m/s], of a point to a velocity [m/s]
+        Further speeds at t = 0 of links ("links.OA"), along guides ("guides.B"), of drives ("drives.K-A") and of points
+        ("points.P"); coordinates that none of them determines start at rest.
+    keeps : tuple of ids of drives
+        Drives that hold their law; all others are free.
+    equations : "reduced" or "multibody"
+        The reduced equation of the one drive, or the equations of all links with their constraints; by default the
+        reduced one where it is enough.
     driving : formula of `t`, `q` and `v` [N m or N]
         Moment of the drive, positive in its sense, as v is; none by default.
     motor : Motor
@@ -139,12 +238,15 @@ class Simulation(DescriptionPart):
     turns : float
         Ends after so many turns of the drive, if it does not end before.
     scheme : "adaptive", "stiff" or "runge-kutta-4"
+        The last one belongs to the reduced equation.
     steps : int
         Of the fixed-step scheme.
     tolerance : float
         Relative one of the adaptive schemes.
     samples : int
         Of the result, evenly spaced in time.
+    at : tuple of float [s]
+        Instants of the result in place of evenly spaced ones, growing.
 
     Examples
     --------
@@ -154,8 +256,11 @@ class Simulation(DescriptionPart):
     1.0
     """
 
-    start: PlaceOfMotion | None = None
+    start: float | None = None
     speed: float = 0.0
+    speeds: Annotated[Mapping[str, Speed], PlainValidator(_read_speeds), AS_DICT] = FrozenMap({})
+    keeps: Annotated[tuple[Name, ...], bounded_list(reading.DRIVES)] = ()
+    equations: Annotated[Equations, choice(*EQUATIONS)] | None = None
     driving: Annotated[str, PlainValidator(_law)] | None = None
     motor: Motor | None = None
     duration: Annotated[float, quantity("time", positive)] | None = None
@@ -164,11 +269,15 @@ class Simulation(DescriptionPart):
     steps: Annotated[int, PlainValidator(lambda value: _count(value, 1, MOST_STEPS))] = DEFAULT_STEPS
     tolerance: Annotated[float, PlainValidator(_tolerance)] = DEFAULT_TOLERANCE
     samples: Annotated[int, PlainValidator(lambda value: _count(value, 2, reading.SAMPLES))] = DEFAULT_SAMPLES
+    at: Annotated[tuple[float, ...], PlainValidator(_read_instants)] = ()
 
-    @field_validator("speed", mode="plain")
+    @field_validator("start", "speed", mode="plain")
     @classmethod
-    def _speed(cls, value: object, info: ValidationInfo) -> float:
-        return si(value, READING.get().parameter.drives[0].speed_kind)
+    def _of_first_drive(cls, value: object, info: ValidationInfo) -> float | None:
+        if value is None:
+            return None
+        first = READING.get().parameter.drives[0]
+        return si(value, first.speed_kind if info.field_name == "speed" else first.kind)
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -176,6 +285,9 @@ class Simulation(DescriptionPart):
         found = super().key_problems(given)
         if given.get("driving") is not None and given.get("motor") is not None:
             found.append(Problem(_("driving and motor are given together"), _("keep one of them")))
+        if given.get("scheme") == "runge-kutta-4" and given.get("equations") == "multibody":
+            what = _("fixed steps are those of the reduced equation")
+            found.append(Problem(what, _('write scheme = "adaptive", or equations = "reduced"')))
         return found
 
     @classmethod

@@ -128,8 +128,15 @@ def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None)
         if said is not None:
             said(_(kind.title), done, len(wanted))
         chapter = _chapter(key, kind, study)
-        if chapter is not None:
+        if chapter is not None and not (
+            _fails(chapter) and study.moves_freely and study.wishes.chapters is None
+        ):
             yield _with_text(chapter, study.description.report.text.get(key))
+
+
+def _fails(chapter: ChapterBlocks) -> bool:
+    """Whether a chapter only says why it is not there, as those of kinematics do of what no drive moves."""
+    return bool(chapter.missing) or not chapter.computed
 
 
 def _with_text(chapter: ChapterBlocks, text: ChapterText | None) -> ChapterBlocks:

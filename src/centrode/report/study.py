@@ -13,6 +13,7 @@ from centrode.analysis.redesign.candidates import check_greatest_change, read_le
 from centrode.dynamics.kinetostatics.applied_forces import MotionOfDrive, check_motion
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.motion_results import MotionResults, instants_of, study
+from centrode.dynamics.simulation.routes import moves_freely
 from centrode.equations.derivation import Equations, equations
 from centrode.errors import CentrodeError, InputError, Status
 from centrode.kinematics.check import MechanismCheck, check
@@ -258,9 +259,17 @@ class ReportStudy:
         return self.wishes.chapters is None or chapter in self.wishes.chapters
 
     def assemble(self) -> None:
-        """Raise as `check` does for a linkage that does not assemble: there is nothing to report on it."""
-        if not self.is_cam:
+        """Raise as `check` does for a linkage that does not assemble: there is nothing to report on it.
+
+        One that only a simulation moves has a report on that.
+        """
+        if not self.is_cam and not self.moves_freely:
             _structure = self.check
+
+    @property
+    def moves_freely(self) -> bool:
+        """Whether only a simulation moves it: it has fewer drives with a law than degrees of freedom."""
+        return isinstance(self.description, Mechanism) and moves_freely(self.description)
 
     @property
     def is_cam(self) -> bool:

@@ -16,10 +16,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MotionPlayer:
-    """A motion that a page plays, and of which paper shows the initial position."""
+    """A motion that a page plays, and of which paper shows the initial position.
+
+    Attributes
+    ----------
+    mechanism, motion : whose motion
+    by_time : a slider goes through time, whatever the motion is a function of
+    """
 
     mechanism: Mechanism
     motion: xarray.Dataset
+    by_time: bool = False
 
 
 @dataclass(frozen=True)

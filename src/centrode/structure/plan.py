@@ -514,10 +514,12 @@ def structure_of(mechanism: Mechanism) -> Structure:
     Raises
     ------
     InputError
-        No drive, or fewer or more drives than the mobility (rank) has.
+        No drive, a drive without a law, or fewer or more drives than the mobility (rank) has.
     NotComputedYet
         The description names what this version does not compute.
     """
+    for drive in mechanism.drives:
+        drive.check_law()
     dimensions = dimensions_of(mechanism)
     _refuse_what_the_space_lacks(mechanism, dimensions.space)
     constraints = constraints_of(mechanism)
@@ -582,6 +584,14 @@ def _new_plan(form: Form) -> Plan:
     return Plan(groups, _left_out(owners, kept), mobility)
 
 
+def generic_mobility(mechanism: Mechanism) -> int:
+    """Mobility by rank at a random realisation, drives left out; it needs no drives."""
+    dimensions, unknowns = dimensions_of(mechanism), unknowns_of(mechanism)
+    free = [constraint for constraint in constraints_of(mechanism) if not is_drive(constraint)]
+    matrix = generic_jacobian(mechanism, free, unknowns, dimensions)
+    return int(matrix.shape[1] - independent_rows(matrix).sum())
+
+
 def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
     """Which rows are kept: drives first, links with few points last, and contacts of wheels behind them.
 
@@ -631,7 +641,9 @@ def _check_drives(
     drives = len(mechanism.drives)
     if drives == 0:
         raise InputError(
-            "[[drives]]", _("the mechanism has no drive"), _("give one drive per degree of freedom")
+            "[[drives]]",
+            _("the mechanism has no drive"),
+            _("give one drive per degree of freedom; centrode simulate alone needs none"),
         )
     repeated = [c.label for c, keep in zip(owners, kept, strict=True) if is_drive(c) and not keep]
     numbers = drives_against_mobility(drives, mobility)

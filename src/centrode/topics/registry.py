@@ -19,6 +19,7 @@ from centrode.topics.topic import (
 )
 
 READ_SCALES = Lazily("centrode.cli.option_values", "read_scales")
+READ_SPEEDS = Lazily("centrode.cli.option_values", "read_speeds")
 READ_PAIRS = Lazily("centrode.cli.option_values", "read_pairs")
 READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_values", "read_pairs_of_bodies")
 READ_RANGES = Lazily("centrode.cli.option_values", "read_ranges")
@@ -230,6 +231,27 @@ SIMULATION = Topic(
             ValueOption("turns", mark("N"), mark("Stop after this many turns of the drive."), float),
             ValueOption("driving", mark("FORMULA"), mark('Moment of the drive in t, q and v: "20 - 2*v".')),
             ValueOption("speed", mark("V"), mark('Initial speed of the drive: "65 rpm".')),
+            ValueOption(
+                "speed_of",
+                mark("PATH=V"),
+                mark('Initial speed of a part: "links.OA=10 rad/s", "points.P=1,0"; may be repeated.'),
+                several=True,
+                parameter="speeds",
+                read=READ_SPEEDS,
+            ),
+            ValueOption(
+                "keep",
+                mark("DRIVE"),
+                mark("Drive that keeps its law while the others are free; may be repeated."),
+                several=True,
+                parameter="keeps",
+            ),
+            ChoiceOption(
+                "equations",
+                ("reduced", "multibody"),
+                mark("Reduced equation of the drive, or equations of all links, which pass dead positions."),
+                has_default=False,
+            ),
             ChoiceOption(
                 "scheme",
                 ("adaptive", "stiff", "runge-kutta-4"),
@@ -237,6 +259,13 @@ SIMULATION = Topic(
                 has_default=False,
             ),
             ValueOption("steps", mark("N"), mark("Number of fixed steps."), int),
+            ValueOption("tolerance", mark("X"), mark("Relative tolerance of the adaptive schemes."), float),
+            ValueOption(
+                "at",
+                mark("T"),
+                mark('Only at this time ("1 s"); may be repeated.'),
+                several=True,
+            ),
             FlagOption("motion", mark("Write the motion of all points and links too.")),
         ),
         extent=Lazily("centrode.dynamics.simulation.results", "simulation_extent"),

@@ -41,6 +41,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views.columns import motion_table, rows_shown
 from centrode.views.motion_plots import over_samples, quantities_panel, quantity_label
+from centrode.views.multibody import multibody_sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -110,6 +111,8 @@ CAPTIONS: dict[str, Text] = {
 def sheet(results: SimulationResults) -> Sheet:
     """Everything there is to say about the motion of a machine under its loads and what drives it."""
     run = results.simulation
+    if run.attrs.get("equations") == "multibody":
+        return multibody_sheet(results)
     points = results.mechanism.moving_points if "position" in run else None
     return Sheet(
         facts=(*_facts(results), *_regime_facts(results)),

@@ -8,306 +8,40 @@ held back by stability (the product of step and damping rate stays at the edge o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from math import copysign, isfinite, tau
+from math import copysign, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import scipy.integrate
 
-from centrode.dynamics.loads import MassesAndLoads
-from centrode.dynamics.masses import share
-from centrode.dynamics.reduction import state_of_nodes
 from centrode.dynamics.simulation.equation_of_motion import (
     CREEP,
     INERTIA,
     RATE,
-    SORTS,
     STATES,
     VALUE,
     DriveForces,
-    Driving,
     Ending,
     Field,
     FieldLeg,
     Occasion,
-    ReducedFunctions,
     Trajectory,
     TrajectoryPiece,
-    sort_load_terms,
     too_far,
     without_value,
 )
-from centrode.dynamics.simulation.equation_of_motion import Array as States
-from centrode.dynamics.simulation.interpolation import Interpolant
-from centrode.dynamics.state import DriveMotion
 from centrode.errors import MotionError
-from centrode.kinematics.machine_code.trace import Untraceable, trace_motion
-from centrode.kinematics.machine_code.variables import PARAMETER, TIME, centre_of, varied_of, winding_of
-from centrode.kinematics.machine_code.variables import RATE as RATE_VARIABLE
-from centrode.kinematics.path import SampleGrid
-from centrode.locale import _, mark
-from centrode.model.simulation import MOST_TURNS
-from centrode.numerics.executors import runner
-from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph
-from centrode.numerics.scans import Scan
+from centrode.locale import _
 from centrode.numerics.search import bisect, root
-
-# The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates.
-
-TOLD = 256
-"""Steps between two reports of progress."""
-
-
-def fixed_steps(
-    field: Field,
-    value: float,
-    rate: float,
-    duration: float,
-    steps: int,
-    tell: Callable[[float], None] | None = None,
-) -> Trajectory:
-    """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
-    step = duration / steps
-    states = np.empty((STATES, steps + 1))
-    y: States = np.array([value, rate, *[0.0] * (STATES - 2)])
-    states[:, 0] = y
-    done = 0
-    ended: Ending = "duration"
-    try:
-        for k in range(steps):
-            y = next_state(field, k * step, y, step)
-            if not np.isfinite(y).all():
-                ended = field.tracks.ending(float(states[VALUE, done]))
-                break
-            if field.is_too_far(float(y[VALUE]), value):
-                raise too_far((k + 1) * step)
-            done = k + 1
-            states[:, done] = y
-            if tell is not None and done % TOLD == 0:
-                tell(done / steps)
-    except KeyboardInterrupt:
-        if not done:
-            raise
-        ended = "interrupted"
-    return trajectory_of_states(field, states[:, : done + 1], step, ended, 4 * steps)
-
-
-def trajectory_of_states(
-    field: Field, found: States, step: float, ended: Ending, evaluations: int
-) -> Trajectory:
-    """States (STATES, steps + 1) at even times as a course; between two steps an interpolant of the same order."""
-    count = found.shape[1] - 1
-    if ended in ("limit", "change point") and count == 0:
-        raise MotionError(
-            "[simulation]",
-            _("the first step passes a limit or a change point"),
-            _("give more steps, or another start"),
-        )
-
-    def slopes(t: float, y: States) -> States:
-        # at the end of the motion the interpolant may look a little beyond it
-        inside = y.copy()
-        inside[VALUE] = min(max(y[VALUE], field.tracks.low), field.tracks.high)
-        return _rates(field, t, inside)
-
-    occasions = []
-    if ended in ("limit", "change point"):
-        last = float(found[VALUE, -1])
-        occasions = [Occasion(ended, count * step, last if ended == "limit" else field.tracks.end(last))]
-    piece = TrajectoryPiece(0.0, count * step, Interpolant(found, step, slopes), 1.0)
-    return Trajectory([piece], occasions, ended, evaluations, "runge-kutta-4")
-
-
-def even_times(course: Trajectory, step: float, samples: int) -> States:
-    """Times of steps, as evenly spaced as may be."""
-    count = round(course.last / step)
-    return np.unique(np.rint(np.linspace(0, count, samples))) * step
-
-
-def next_state(field: Field, t: float, y: States, step: float) -> States:
-    """States (STATES) a step later, NaN where it leads beyond a limit; MotionError where a formula has no value."""
-    k1 = _rates(field, t, y)
-    k2 = _rates(field, t + 0.5 * step, y + 0.5 * step * k1)
-    k3 = _rates(field, t + 0.5 * step, y + 0.5 * step * k2)
-    k4 = _rates(field, t + step, y + step * k3)
-    states = np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
-    # beyond the range there is no mechanism: NaN tells that the last step was one too many
-    return states if field.tracks.low <= states[VALUE] <= field.tracks.high else np.full(STATES, np.nan)
-
-
-def _rates(field: Field, t: float, y: States) -> States:
-    """Slopes of the states; NaN beyond a limit."""
-    value, rate = float(y[0]), float(y[1])
-    tracks = field.tracks
-    if not np.isfinite(value) or not tracks.low <= value <= tracks.high:
-        return np.full(STATES, np.nan)
-    # at rest loads act as they would when the drive sets out in its own sense
-    sense = 1.0 if rate > 0.0 else -1.0 if rate < 0.0 else tracks.rows.sense
-    forces = field.forces(field.leg_at(value, sense), t, value, rate)
-    rates = np.array(
-        [rate, forces.acceleration(rate), forces.driving * rate, forces.friction * rate, forces.other * rate]
-    )
-    if not np.isfinite(rates).all():
-        raise without_value(t, value)
-    return rates
-
-
-# The fixed-step scheme as one scan over expressions: machine code where llvmlite is there.
-#
-# Positions are those of the closed forms, traced at each of the four stages: nothing is represented, so
-# nothing is approximated but by the scheme. That needs a mechanism without events, as sweeps do
-# (`kinematics.machine_code`).
-
-Array: TypeAlias = npt.NDArray[np.float64]
-Number: TypeAlias = Any
-
-NAMES = ("value", "speed", "of drive", "of friction", "of others")
-"""States of the scan, in the order of a course."""
-BEGINNING, STEP = "beginning", "step"
-"""Time at the beginning of a step [s], its length [s]."""
-
-
-@dataclass(frozen=True)
-class Compiled:
-    """A simulation as a scan.
-
-    Attributes
-    ----------
-    scan : one step of the scheme; parameters: its length; inputs: times at which steps begin
-    executor : "machine code" or "arrays"
-    """
-
-    scan: Scan
-    executor: str
-
-    def states(self, value: float, rate: float, duration: float, steps: int) -> Array:
-        """States (STATES, steps + 1) at the ends of all steps."""
-        step = duration / steps
-        times = step * np.arange(steps, dtype=np.float64)
-        start = np.array([value, rate, *[0.0] * (STATES - 2)])
-        known = {BEGINNING: times}
-        inputs = np.stack([known[name] for name in self.scan.inputs]) if self.scan.inputs else None
-        run = runner(self.scan, self.executor)
-        outputs = run([[step]], inputs, start[:, None], steps=None if self.scan.inputs else steps).outputs
-        return np.concatenate([start[:, None], outputs[:, :, 0]], axis=1)
-
-    def course(self, field: Field, value: float, rate: float, duration: float, steps: int) -> Trajectory:
-        """The course of so many steps, up to where the motion ends."""
-        states = self.states(value, rate, duration, steps)
-        # the scan has made all steps: where it went too far, or stopped, is looked up afterwards
-        far = np.flatnonzero(np.abs(states[VALUE] - value) > MOST_TURNS * field.tracks.length)
-        if len(far):
-            raise too_far(duration / steps * int(far[0]))
-        lost = ~np.isfinite(states).all(axis=0)
-        ended: Ending = "duration"
-        if lost.any():
-            done = int(np.argmax(lost)) - 1
-            step = duration / steps
-            next_state(field, done * step, states[:, done], step)  # says which formula has no value
-            states, ended = states[:, : done + 1], "limit"
-        course = trajectory_of_states(field, states, duration / steps, ended, 4 * steps)
-        course.executor = self.executor
-        return course
-
-
-def compile_scan(rows: ReducedFunctions, driving: Driving, executor: str) -> Compiled:
-    """The scan of a mechanism; raises Untraceable, with a reason, where its motion cannot be said by expressions."""
-    _refuse_events(rows)
-    rates = _rate_graph(rows, driving)
-    step = variable(STEP)
-    begun = {name: variable(name) for name in NAMES}
-
-    def at_stage(before: Mapping[str, Operand] | None, share: float) -> dict[str, Node]:
-        moved = begun if before is None else {k: begun[k] + share * step * before[k] for k in NAMES}
-        time = variable(BEGINNING) + share * step
-        places: dict[str, Operand] = {PARAMETER: moved["value"], RATE_VARIABLE: moved["speed"], TIME: time}
-        return dict(rates.substitute(places).outputs)
-
-    k1 = at_stage(None, 0.0)
-    k2 = at_stage(k1, 0.5)
-    k3 = at_stage(k2, 0.5)
-    k4 = at_stage(k3, 1.0)
-    after = {
-        name: as_node(begun[name] + step / 6.0 * (k1[name] + 2.0 * k2[name] + 2.0 * k3[name] + k4[name]))
-        for name in NAMES
-    }
-    used = Graph(after).variables
-    # only times that are used become inputs: others would make every step another one
-    return Compiled(Scan((STEP,), tuple(x for x in (BEGINNING,) if x in used), after, after), executor)
-
-
-def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
-    """Derivatives of the states as expressions of time, value and rate."""
-    reducer = rows.reducer
-    # two samples whose times and rates differ: then these are variables
-    span = SampleGrid(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
-    traced = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
-    if traced.steps:
-        raise Untraceable(mark("groups of higher class"))
-    time, value, rate = (variable(name) for name in (TIME, PARAMETER, RATE_VARIABLE))
-    mechanism = reducer.ready.mechanism
-    burden = MassesAndLoads.of(mechanism, None, EXPRESSIONS)
-    state = state_of_nodes(traced.solved, burden, DriveMotion(time, value, rate))  # type: ignore[arg-type]
-    inertia: Number = rows.added
-    slope: Number = 0.0
-    for mass in burden.masses:
-        inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
-    moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for term in sort_load_terms(burden.loads):
-        along = term.effort.along(state)
-        moments[term.sort] = moments[term.sort] + term.effort.strength(state) * along
-    driven = driving.over(EXPRESSIONS, time, value, rate)
-    total = moments["stored"] + moments["friction"] + moments["other"] + driven
-    powers = {"of drive": driven, "of friction": moments["friction"], "of others": moments["other"]}
-    outputs: dict[str, Number] = {
-        "value": rate,
-        "speed": (total - 0.5 * slope * rate * rate) / inertia,
-        **{name: moment * rate for name, moment in powers.items()},
-    }
-    graph = Graph.of(outputs)
-    return graph.substitute(_turns(rows, graph))
-
-
-def _refuse_events(rows: ReducedFunctions) -> None:
-    """Limits and change points are not followed by expressions."""
-    reducer = rows.reducer
-    path = reducer.ready.kinematics.path
-    if path.driven[0].drive.kind != "angle":
-        raise Untraceable(mark("a drive that does not turn"))
-    if reducer.events(path.initial - tau, path.initial + tau):
-        raise Untraceable(mark("limits or change points within a turn"))
-
-
-def _turns(rows: ReducedFunctions, graph: Graph) -> dict[str, float]:
-    """Centres and windings of the links whose angles matter: from a turn of the drive."""
-    reducer = rows.reducer
-    path = reducer.ready.kinematics.path
-    values = path.initial + np.linspace(0.0, tau, 721)
-    turns: dict[str, float] = {}
-    drive = path.driven[0].drive.id
-    for link in reducer.ready.mechanism.link_names:
-        names = centre_of(link), winding_of(link, drive)
-        if not set(names) & set(graph.variables):
-            continue
-        angle = np.asarray(rows.state(values)[0].angle(link).value).reshape(-1)
-        # angles are taken to turn with the drive as often as they do over one turn
-        winding = round(float(angle[-1] - angle[0]) / tau)
-        rest = angle - winding * values
-        # around a fixed centre only less than half a turn either way is unambiguous
-        if np.ptp(rest) >= tau / 2:
-            raise Untraceable(mark("links that swing by half a turn or more"))
-        turns |= {names[0]: 0.5 * float(np.min(rest) + np.max(rest)), names[1]: float(winding)}
-    return turns
-
 
 # Where a step meets the end of its leg or a standstill, and when a mechanism at rest breaks loose.
 
 State: TypeAlias = npt.NDArray[np.float64]
+Array: TypeAlias = State
 
 REST_SCANS = 2000
 """Instants at which a mechanism at rest is checked for breaking loose, where something depends on time."""

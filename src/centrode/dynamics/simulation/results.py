@@ -7,6 +7,7 @@ from math import tau
 from typing import TYPE_CHECKING, Any
 
 from centrode.dynamics.masses import has_masses_or_loads
+from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, equations_for
 from centrode.dynamics.simulation.simulate import Tell, simulate
 from centrode.dynamics.simulation.steady_state import Regime, steady_regime
 from centrode.errors import CentrodeError, InputError, MotionError
@@ -31,6 +32,8 @@ class SimulationResults:
     simulation : dataset of `simulate`
     regime : steady regime or periodic motion of a drive that has turned all the way round; None without one
     no_regime : why such a drive has none, in a sentence; empty otherwise
+    second : the same by the reduced equation, at the instants that it reaches, where the equations of all links were
+        taken although one drive has all the mobility; None otherwise
     """
 
     mechanism: Mechanism
@@ -38,6 +41,7 @@ class SimulationResults:
     simulation: xr.Dataset
     regime: Regime | None
     no_regime: str
+    second: xr.Dataset | None = None
 
 
 def simulation_results(
@@ -57,7 +61,8 @@ def simulation_results(
     settings : in place of those of the description
     motion : also places, velocities and accelerations of everything
     progress : called with the share that is done
-    changes : `duration`, `turns`, `driving`, `speed`, `scheme`, `steps` in place of those of the settings
+    changes : `duration`, `turns`, `driving`, `speed`, `speeds`, `keeps`, `equations`, `scheme`, `steps`, `tolerance`,
+        `at` in place of those of the settings
 
     Raises
     ------
@@ -82,7 +87,9 @@ def results_of_simulation(mechanism: Mechanism, run: xr.Dataset) -> SimulationRe
 
 
 def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> SimulationResults:
-    """A simulation with the regime of a drive that has turned all the way round."""
+    """A simulation with the regime of a drive that has turned all the way round, or with its second route."""
+    if run.attrs.get("equations") == MULTIBODY:
+        return SimulationResults(mechanism, used, run, None, "", _by_reduced_equation(mechanism, used, run))
     regime, reason = None, ""
     if _has_turned(mechanism, run):
         try:
@@ -90,6 +97,20 @@ def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> Sim
         except CentrodeError as failure:
             reason = failure.what
     return SimulationResults(mechanism, used, run, regime, reason)
+
+
+def _by_reduced_equation(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> xr.Dataset | None:
+    """The same motion by the reduced equation; None where it has none, or where that refuses it."""
+    own = used.model_copy(update={"equations": None, "at": ()})
+    # the reduced equation asks of a law only in which sense the drive sets out
+    mechanism = mechanism.with_drives_held()
+    if equations_for(mechanism, own) == MULTIBODY or int(run.attrs["mobility"]) != 1:
+        return None
+    try:
+        second = simulate(mechanism, own.model_copy(update={"equations": REDUCED}), at=run["time"].values)
+    except CentrodeError:
+        return None
+    return second if second.sizes["sample"] > 1 else None
 
 
 def changed_settings(
@@ -109,6 +130,10 @@ def changed_settings(
         known.pop("duration", None)
     if "duration" in given and "turns" not in given:
         known.pop("turns", None)
+    if "samples" in given and "at" not in given:
+        known.pop("at", None)
+    if "speeds" in given:
+        given["speeds"] = dict(known.pop("speeds", {})) | dict(given["speeds"])
     if not known and not given:
         raise InputError(
             "[simulation]", _("it is missing"), _('add --driving "20 - 2*v" and --duration "10 s"')
@@ -121,7 +146,7 @@ def simulation_extent(mechanism: Mechanism, samples: int | None = None, **option
     options.pop("motion", None)
     settings = changed_settings(mechanism, samples, **options)
     ends = [settings.turns] if settings.turns is not None else []
-    if settings.duration is not None:
+    if settings.duration is not None and mechanism.drives:
         ends.append(abs(settings.speed) * settings.duration / tau)
     return settings.samples, min(ends, default=0.0) if mechanism.motion_parameter.turns else 0.0
 
@@ -136,9 +161,16 @@ def check_ended(results: SimulationResults) -> None:
     run = results.simulation
     if run.attrs["ended"] == "interrupted":
         raise KeyboardInterrupt
+    if run.attrs.get("equations") == MULTIBODY:
+        _check_multibody(run)
+        return
     if run.attrs["ended"] == "limit":
         what = _("it stops at a limit after {time:.6g} s").format(time=float(run["time"].values[-1]))
-        raise MotionError("", what, _("give a shorter time, or change the drive or the dimensions"))
+        repair = _(
+            'give a shorter time, or equations = "multibody" in [simulation] (--equations multibody), for which a '
+            "limit is a place like any other"
+        )
+        raise MotionError("", what, repair)
     if run.attrs["ended"] == "change point":
         what = _(
             "the motion reaches the change point at {value:.9g} {unit} after {time:.6g} s: the assembly mode is "
@@ -150,6 +182,20 @@ def check_ended(results: SimulationResults) -> None:
         )
         repair = _('choose continuation = "smooth" in [assembly], which passes it, or a shorter time')
         raise MotionError("", what, repair)
+
+
+def _check_multibody(run: xr.Dataset) -> None:
+    """Raise MotionError where the equations of all links did not get to the end."""
+    if run.attrs["ended"] == "duration":
+        return
+    time = float(run["time"].values[-1]) if run.sizes["sample"] else 0.0
+    cause = str(run.attrs["cause"])
+    what = {
+        "change point": _("it reaches a change point that it does not pass, after {time:.6g} s: {cause}"),
+        "blow-up": _("the motion grows beyond all bounds after {time:.6g} s: {cause}"),
+    }.get(run.attrs["ended"], _("it is broken off after {time:.6g} s: {cause}"))
+    repair = _("give a shorter time, or look at what acts there: loads, masses, speeds at the start")
+    raise MotionError("", what.format(time=time, cause=cause), repair)
 
 
 def _has_turned(mechanism: Mechanism, run: xr.Dataset) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -32,9 +34,10 @@ from centrode.dynamics.simulation.equation_of_motion import (
     Trajectory,
     of_time,
 )
-from centrode.dynamics.simulation.integrator import Stepper, Until, compile_scan, even_times, fixed_steps
+from centrode.dynamics.simulation.fixed_steps import even_times, fixed_steps
+from centrode.dynamics.simulation.integrator import Stepper, Until
+from centrode.dynamics.simulation.routes import MULTIBODY, equations_for
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
     attributes_of,
     coordinates_along,
@@ -55,7 +58,9 @@ from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
 from centrode.model.simulation import MOST_TURNS, Simulation
-from centrode.numerics.executors import ARRAYS, choose_executor
+
+# the reduced equation needs nothing of the other route
+_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
@@ -186,7 +191,7 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
         raise InputError(
             "[[drives]]",
             _("a simulation needs one drive, the mechanism has {count}").format(count=len(mechanism.drives)),
-            _("tie the drives by a gear"),
+            _('tie the drives by a gear, or write equations = "multibody" in [simulation]'),
         )
     if settings.turns is not None and mechanism.drives[0].kind != "angle":
         raise InputError("[simulation] turns", _("the drive does not turn"), _("give duration"))
@@ -345,7 +350,10 @@ def simulate(
     executor: Executor = "auto",
     progress: Tell | None = None,
 ) -> xr.Dataset:
-    """The motion of a mechanism with one drive under its loads and what drives it.
+    """The motion of a mechanism under its loads and what drives it.
+
+    One drive that has all the mobility moves by the reduced equation; any number of degrees of freedom by the equations
+    of all links with their constraints (`equations="multibody"` of the settings): its result has everything that moves.
 
     Parameters
     ----------
@@ -356,7 +364,7 @@ def simulate(
     motion : bool
         Also positions, velocities and accelerations of everything.
     executor : "auto", "arrays" or "machine code"
-        Of the fixed-step scheme.
+        Of the equations of all links.
     progress : called with the share that is done
 
     Returns
@@ -388,21 +396,33 @@ def simulate(
             _("{name} is not a scheme of integration").format(name=f'"{executor}"'),
             _("use one of {known}").format(known=", ".join(get_args(Executor))),
         )
+    settings = settings or mechanism.simulation
+    if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
+        run: xr.Dataset = _multibody().simulate_multibody(mechanism, settings, at, executor, progress)
+        return run
+    if executor == "machine code":
+        raise InputError(
+            "executor",
+            _("the reduced equation has no machine code"),
+            _('use executor = "auto", or equations = "multibody"'),
+        )
     setting = setting_of(mechanism, settings)
+    if at is None and setting.settings.at:
+        at = setting.settings.at
     count = setting.settings.samples if at is None else np.size(at)
     check_size(layout_of(setting.prepared.kinematics), 1, count)
-    course = trajectory_of(setting, executor, progress)
+    course = trajectory_of(setting, progress)
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
 
 
-def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
+def trajectory_of(setting: Setting, progress: Tell | None = None) -> Trajectory:
     """Integrate by the scheme that is requested."""
     settings, until = setting.settings, setting.until
     if settings.scheme != "runge-kutta-4":
         stepper = Stepper(setting.field, until, settings.tolerance, settings.scheme == "stiff", progress)
         course = stepper.run(setting.start, setting.rate)
     else:
-        course = _by_fixed_steps(setting, executor, progress)
+        course = _by_fixed_steps(setting, progress)
     if course.ended == "change point" and not course.pieces:
         raise MotionError(
             "[simulation]",
@@ -422,7 +442,7 @@ def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell 
     return course
 
 
-def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None) -> Trajectory:
+def _by_fixed_steps(setting: Setting, progress: Tell | None) -> Trajectory:
     settings = setting.settings
     if settings.duration is None or settings.turns is not None:
         raise InputError(
@@ -430,16 +450,9 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
             _("a scheme of fixed steps needs a duration, and no turns"),
             _('give duration, or scheme = "adaptive"'),
         )
-    field = setting.field
-    if choose_executor(executor) != ARRAYS:
-        try:
-            scan = compile_scan(setting.rows, setting.driving, choose_executor(executor))
-        except Untraceable as reason:
-            if executor != "auto":
-                raise InputError("executor", _(reason.reason), _('use executor = "auto"')) from None
-        else:
-            return scan.course(field, setting.start, setting.rate, settings.duration, settings.steps)
-    return fixed_steps(field, setting.start, setting.rate, settings.duration, settings.steps, progress)
+    return fixed_steps(
+        setting.field, setting.start, setting.rate, settings.duration, settings.steps, progress
+    )
 
 
 def _times(setting: Setting, course: Trajectory, at: npt.ArrayLike | None) -> Array:

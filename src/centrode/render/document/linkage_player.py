@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Guide, Mechanism, Rolling
+    from centrode.model.motion_parameter import MotionParameter
 
 # What moves beside the lines of links: slots, blocks on rods, cylinders, wheels, tracks, circles of guides.
 
@@ -187,7 +188,7 @@ DIGITS = 4
 """Of the drive's greatest value."""
 
 
-def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
+def moving_of(mechanism: Mechanism, motion: xarray.Dataset, by_time: bool = False) -> Moving:
     """A motion to be played, in the plane or on the sphere.
 
     Parameters
@@ -195,6 +196,8 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
     mechanism : Mechanism
     motion : Dataset
         Of `motion`; the samples that hang together with the initial position are played.
+    by_time : bool
+        The slider goes through time, as for the motion of a simulation, which may pass a value of the drive again.
 
     Raises
     ------
@@ -203,6 +206,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
     """
     scene = globe_of(mechanism, motion) if mechanism.space == "sphere" else scene_of(mechanism, motion)
     chosen = samples_in_one_piece(scene, motion)
+    parameter = mechanism.motion_parameter.in_time() if by_time else mechanism.motion_parameter
     on_sphere = isinstance(scene, Globe)
     factor = 1.0 if isinstance(scene, Globe) else scene.factor
     fixed = tuple(mechanism.frame.points)
@@ -217,8 +221,8 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
         fixed=fixed,
         guides={name: np.array(line) / factor for name, line in lines.items() if line is not None},
         sliders={guide.point: guide.id for guide in frame_guides},
-        drive=mechanism.motion_parameter.values(motion)[chosen],
-        drive_texts=tuple(drive_texts(mechanism, motion, chosen)),
+        drive=parameter.values(motion)[chosen],
+        drive_texts=tuple(drive_texts(mechanism, motion, chosen, parameter)),
         tracks=tuple(name for name in mechanism.moving_points if name in places),
         still=picture(_still(scene, motion), ""),
         caption=_("Motion of {title}").format(title=shown(_(mechanism.title) or _("the mechanism"))),
@@ -247,9 +251,10 @@ def samples_in_one_piece(scene: LinkageScene | Globe, motion: xarray.Dataset) ->
     return np.unique(np.linspace(low, high - 1, count).round().astype(np.intp))
 
 
-def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[np.intp]) -> list[str]:
-    """The value of the only drive at each sample, else the time, with symbol and unit."""
-    parameter = mechanism.motion_parameter
+def drive_texts(
+    mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[np.intp], parameter: MotionParameter
+) -> list[str]:
+    """The parameter of the motion at each sample, the value of the only drive or the time, with symbol and unit."""
     values, unit, name = parameter.values(motion)[samples], parameter.variable.unit, parameter.variable.symbol
     if not parameter.by_time and not parameter.drives[0].is_chosen:
         name = f"{name} ({mechanism.drives[0].id})"

@@ -1,0 +1,435 @@
+"""Simulation by the equations of all links with their constraints: any number of degrees of freedom, as a dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
+from centrode.dynamics.forward_dynamics.free_motion import STATUSES, FreeMotion, Trajectory, free_motion_of
+from centrode.dynamics.loads import EnergyClass
+from centrode.dynamics.simulation.equation_of_motion import Driving
+from centrode.dynamics.simulation.routes import MULTIBODY
+from centrode.dynamics.state import length_unit
+from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
+from centrode.kinematics.hinge_angles import spherical_coordinates
+from centrode.kinematics.motion import labels_of, vocabulary_variable
+from centrode.kinematics.path import path_of, places_of
+from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
+from centrode.locale import _
+from centrode.model.checks import simulation_problems
+from centrode.model.files import mechanism_text
+from centrode.model.mechanism import Mechanism, kept_by_mechanism
+from centrode.model.motion_parameter import TIME
+from centrode.model.reading import error_at_place
+from centrode.model.simulation import DRIVING_LAW_VARIABLES, Simulation
+from centrode.numerics.text_formula import compile_formula
+from centrode.version import __version__
+
+if TYPE_CHECKING:
+    from centrode.kinematics.motion import Variable
+    from centrode.model.motion_parameter import DriveCoordinate
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+MOST_NUMBERS = 100_000_000
+"""Numbers of a result: with eight bytes each some 0.8 GB."""
+HAPPENINGS = ("crossing", "near miss", "doubtful")
+"""What may happen on the way: it passes a change point, passes near one, or nothing tells how it goes on."""
+
+
+# one mechanism is often simulated again, with other speeds and times: its equations are those that it had
+@kept_by_mechanism(32)
+def _prepared(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMotion:
+    """The equations of a mechanism with drives that keep their laws, and a moment or force along the first drive."""
+    return free_motion_of(mechanism.with_drives_held(), keeps, _efforts(mechanism, law))
+
+
+def _efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
+    """What drives: a force by a formula along the first drive."""
+    if law == "0":
+        return ()
+    if not mechanism.drives:
+        what = _("the coordinate along which the driving moment acts is not given")
+        raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
+    first = mechanism.motion_parameter.drives[0]
+    driving = Driving(
+        compile_formula(law, DRIVING_LAW_VARIABLES, "[simulation] driving"), _sense_of_first_drive(mechanism)
+    )
+
+    def along(m: Any, t: Any, measure: Any, rate: Any) -> Any:
+        # the formula knows the coordinate, with the zero and the sense that its author may have chosen
+        return first.sense * driving.over(m, t, first.value_of(measure), first.sense * rate)
+
+    return (DriveEffort(first.name, along, frozenset(driving.formula.used)),)
+
+
+def _sense_of_first_drive(mechanism: Mechanism) -> float:
+    """Sense of the first drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
+    first = mechanism.drives[0]
+    if not first.has_law:
+        return mechanism.motion_parameter.drives[0].sense
+    return float(path_of(mechanism.model_copy(update={"drives": (first,)}), 1.0).forward)
+
+
+@dataclass(frozen=True)
+class MultibodySetting:
+    """A mechanism and what its simulation asks for, checked: it starts, and its end is known."""
+
+    mechanism: Mechanism
+    settings: Simulation
+
+    @cached_property
+    def free(self) -> FreeMotion:
+        """The mechanism prepared."""
+        return _prepared(self.mechanism, self.settings.keeps, self.settings.law)
+
+    @property
+    def coordinates(self) -> tuple[DriveCoordinate, ...]:
+        """Coordinates of the drives, the first of them that to which speed, start and driving belong."""
+        return self.mechanism.motion_parameter.drives
+
+    @property
+    def sense(self) -> float:
+        """Sense of the first drive along its coordinate."""
+        return _sense_of_first_drive(self.mechanism)
+
+    @property
+    def duration(self) -> float:
+        """How long it runs [s]."""
+        settings = self.settings
+        if settings.turns is not None:
+            what = _("turns end a simulation by the reduced equation alone")
+            raise InputError("[simulation] turns", what, _("give duration, such as 10 s"))
+        if settings.duration is None:
+            what = _("the duration is not given")
+            raise InputError("[simulation]", what, _("give duration, such as 10 s"))
+        return settings.duration
+
+    def instants(self, at: npt.ArrayLike | None) -> Array:
+        """Instants of the result [s] within the duration."""
+        if at is None and not self.settings.at:
+            return np.linspace(0.0, self.duration, self.settings.samples)
+        times = places_of(TIME, self.settings.at if at is None else at)
+        if times.ndim != 1 or not len(times) or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
+            raise InputError("at", _("a one-dimensional array of finite, increasing times is required"))
+        if times[0] < 0.0:
+            raise InputError("at", _("times count from the start of the simulation, at 0 s"))
+        if times[-1] > self.duration * (1.0 + 1e-12):
+            what = _("the instant {time:.6g} s lies behind the end of the simulation at {end:.6g} s")
+            raise InputError(
+                "at", what.format(time=float(times[-1]), end=self.duration), _("give a longer duration")
+            )
+        return times.clip(max=self.duration)
+
+    @property
+    def speeds(self) -> dict[str, Any]:
+        """Initial speeds by path; that of the first drive counts in its own sense."""
+        settings, given = self.settings, dict(self.settings.speeds)
+        if settings.speed:
+            if not self.mechanism.drives:
+                what = _("speed is that of the first drive, and there is none")
+                raise InputError("[simulation] speed", what, _("name parts in [simulation.speeds]"))
+            path = f"drives.{self.mechanism.drives[0].id}"
+            if path in given:
+                what = _("speed and {path} are given together").format(path=path)
+                raise InputError("[simulation] speed", what, _("keep one of them"))
+            given[path] = self.coordinates[0].sense * self.sense * settings.speed
+        return given
+
+    @property
+    def start(self) -> dict[str, float]:
+        """Values of drives at the start in place of those of the description."""
+        if self.settings.start is None:
+            return {}
+        if not self.mechanism.drives:
+            what = _("start is that of the first drive, and there is none")
+            raise InputError("[simulation] start", what, _("give initial angles of links"))
+        first = self.coordinates[0]
+        return {f"drives.{first.name}": first.measure_at(self.settings.start)}
+
+    def run(
+        self,
+        at: npt.ArrayLike | None = None,
+        executor: str = "auto",
+        progress: Callable[[float], None] | None = None,
+    ) -> Trajectory:
+        """Integrate the motion; `progress` is called with the share that is done."""
+        duration, instants = self.duration, self.instants(at)
+        self._check_size(len(instants))
+        start = self.free.initial(self.speeds, self.start)
+        reached = None if progress is None else lambda time: progress(time / duration)
+        return self.free.integrate(
+            start,
+            duration,
+            self.settings.tolerance,
+            at=instants,
+            scheme=self.settings.scheme,
+            executor=executor,
+            progress=reached,
+        )
+
+    def _check_size(self, count: int) -> None:
+        """Refuse a result that would not fit into the memory of an ordinary machine."""
+        mechanism = self.mechanism
+        each = 9 * len(mechanism.points) + 21 * len(mechanism.links) + 3 * len(mechanism.guides) + 20
+        if count * each > MOST_NUMBERS:
+            raise InputError(
+                _("samples"),
+                _("{asked} positions would take {size:.3g} GB of memory").format(
+                    asked=count, size=8e-9 * count * each
+                ),
+                _("give at most {most} samples").format(most=MOST_NUMBERS // each),
+            )
+
+
+def multibody_setting(mechanism: Mechanism, settings: Simulation) -> MultibodySetting:
+    """A simulation by all links; InputError where it names what is not there, or a scheme that is not known."""
+    for problem in simulation_problems(mechanism, settings):
+        raise error_at_place(problem, (), "")
+    if settings.scheme == "runge-kutta-4":
+        what = _("fixed steps are those of the reduced equation")
+        raise InputError("[simulation] scheme", what, _('write scheme = "adaptive"'))
+    if mechanism.machine is not None and mechanism.machine.inertia:
+        what = _("shafts and flywheels that turn with the drive belong to the reduced equation")
+        raise NotComputedYet("[machine]", what, _('write equations = "reduced", or describe them as links'))
+    return MultibodySetting(mechanism, settings)
+
+
+def simulate_multibody(
+    mechanism: Mechanism,
+    settings: Simulation,
+    at: npt.ArrayLike | None = None,
+    executor: str = "auto",
+    progress: Callable[[float], None] | None = None,
+) -> xr.Dataset:
+    """The labelled motion of a mechanism that is left to its loads, with any number of degrees of freedom."""
+    setting = multibody_setting(mechanism, settings)
+    return multibody_dataset(setting, setting.run(at, executor, progress))
+
+
+# The result with names.
+
+
+def multibody_dataset(setting: MultibodySetting, course: Trajectory) -> xr.Dataset:
+    """The labelled result of a course."""
+    variables = {
+        **_coordinates_in_time(setting, course),
+        **_drives_in_time(setting, course),
+        **_links_and_points(setting, course),
+        **_energies(setting, course),
+        **_judgements(setting, course),
+        **_happenings(course),
+    }
+    labels = _labels(setting, course)
+    return xr.Dataset(variables, label_coordinates(labels), _attributes(setting, course, variables))
+
+
+def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
+    """Times, values of the drives, and names."""
+    free, mechanism = setting.free, setting.mechanism
+    units, values = mechanism.motion_parameter.units, _drive_values(setting, course)[0]
+    drive_value = vocabulary_variable(
+        "drive_value", ("sample", "drive"), values, units[0] if units else "rad"
+    )
+    if len(set(units)) > 1:
+        drive_value[2]["units"] = " ".join(units)
+    joints = {"joint": labels_of(free.links)} if mechanism.space == "sphere" else {}
+    return {
+        "time": vocabulary_variable("time", ("sample",), course.time),
+        "drive_value": drive_value,
+        "point": labels_of(free.points),
+        "link": labels_of(free.links),
+        **joints,
+        "guide": labels_of(free.guides),
+        "drive": labels_of(free.drives),
+        "axis": labels_of(("x", "y", "z")[: course.places.shape[-1]]),
+        "coordinate": labels_of(coordinate_names(free)),
+        "source": labels_of(tuple(course.works)),
+        **drive_coordinates(free.drives, values, units),
+    }
+
+
+def _drive_values(setting: MultibodySetting, course: Trajectory) -> tuple[Array, Array, Array]:
+    """Values, speeds and accelerations (n, d) of the coordinates of all drives, of which one alone may be chosen."""
+    senses = np.array([one.sense for one in setting.coordinates])
+    values = course.drives.copy()
+    for number, one in enumerate(setting.coordinates):
+        values[:, number] = one.value_of(values[:, number])
+    return values, course.drive_speeds * senses, course.drive_accelerations * senses
+
+
+def coordinate_names(free: FreeMotion) -> tuple[str, ...]:
+    """Names of the generalised coordinates: a link for its angle, a guide, or a point with an axis."""
+    return tuple(
+        one.name if one.kind in ("angle", "slide") else f"{one.name}.{one.kind}" for one in free.coordinates
+    )
+
+
+def _coordinates_in_time(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    units = [one.unit for one in setting.free.coordinates]
+    found: dict[str, Variable] = {}
+    for name, values, behind in (
+        ("generalised_coordinate", course.coordinates, ""),
+        ("generalised_velocity", course.speeds, "/s"),
+        ("generalised_acceleration", course.accelerations, "/s^2"),
+    ):
+        variable = vocabulary_variable(name, ("sample", "coordinate"), values)
+        variable[2]["units"] = _joined_units([f"{unit}{behind}" for unit in units])
+        found[name] = variable
+    return found
+
+
+def _joined_units(units: list[str]) -> str:
+    """One unit for all, or all of them."""
+    return units[0] if len(set(units)) == 1 else ", ".join(units) or "1"
+
+
+def _drives_in_time(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    found: dict[str, Variable] = {}
+    units = setting.mechanism.motion_parameter.units
+    if not units:
+        return found
+    _values, speeds, accelerations = _drive_values(setting, course)
+    for name, values in (("drive_speed", speeds), ("drive_acceleration", accelerations)):
+        variable = vocabulary_variable(name, ("sample", "drive"), values)
+        variable[2]["units"] = _joined_units(
+            [vocabulary_variable(name, (), 0.0, unit)[2]["units"] for unit in units]
+        )
+        found[name] = variable
+    if course.kept_forces:
+        absent = np.full(len(course.time), np.nan)
+        values = np.column_stack([course.kept_forces.get(name, absent) for name in setting.free.drives])
+        variable = vocabulary_variable("keeping_moment", ("sample", "drive"), values)
+        variable[2]["units"] = _joined_units(
+            [vocabulary_variable("keeping_moment", (), 0.0, unit)[2]["units"] for unit in units]
+        )
+        found["keeping_moment"] = variable
+    return found
+
+
+def _links_and_points(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    unit = length_unit(setting.mechanism)
+    on_sphere = setting.mechanism.space == "sphere"
+    length = "1" if on_sphere else "m"
+    orders: list[tuple[tuple[str, str, str], tuple[str, ...], tuple[Any, Any, Any], float]] = [
+        (
+            ("position", "velocity", "acceleration"),
+            ("point", "axis"),
+            (course.places, course.velocities, course.point_accelerations),
+            unit,
+        ),
+        (
+            ("slide", "slide_velocity", "slide_acceleration"),
+            ("guide",),
+            (course.slides, course.slide_speeds, course.slide_accelerations),
+            1.0,
+        ),
+    ]
+    turning = (course.angles, course.angular_velocities, course.angular_accelerations)
+    if on_sphere:
+        orders.append((("joint_angle", "joint_velocity", "joint_acceleration"), ("joint",), turning, 1.0))
+        assert course.spins is not None
+        orders.append((("", "angular_velocity", ""), ("link", "axis"), (None, course.spins, None), 1.0))
+    else:
+        orders.append((("angle", "angular_velocity", "angular_acceleration"), ("link",), turning, 1.0))
+    found = {
+        name: vocabulary_variable(name, ("sample", *dimensions), values / by, length_unit=length)
+        for names, dimensions, three, by in orders
+        for name, values in zip(names, three, strict=True)
+        if name
+    }
+    if on_sphere:
+        for name, values in zip(
+            ("polar_angle", "azimuth"), spherical_coordinates(course.places / unit), strict=True
+        ):
+            found[name] = vocabulary_variable(name, ("sample", "point"), values)
+    return found
+
+
+def work_sorts(free: FreeMotion) -> dict[str, str]:
+    """Source of work -> "stored", "friction", "other" or "drive"."""
+    sorts = {load.label: str(load.term.amount.energy_class) for load in free.equations.loads}
+    driven = [label for label in sorts if label in {f"drive {name}" for name in free.drives}]
+    return sorts | dict.fromkeys([*driven, *(f"drive {kept.name}" for kept in free.equations.kept)], "drive")
+
+
+def _energies(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    """Energies, works by sort and by source; weights and springs store what they do."""
+    sorts, none = work_sorts(setting.free), np.zeros(len(course.time))
+
+    def of(sort: str) -> Array:
+        return sum((work for name, work in course.works.items() if sorts[name] == sort), none)
+
+    values = {
+        "work_of_drive": of("drive"),
+        "work_of_friction": of(EnergyClass.FRICTION),
+        "work_of_other_loads": of(EnergyClass.OTHER),
+        "kinetic_energy": course.kinetic_energy,
+        "potential_energy": course.potential_energy,
+        "energy_residual": course.energy_residual,
+    }
+    found = {name: vocabulary_variable(name, ("sample",), each) for name, each in values.items()}
+    works = np.column_stack([*course.works.values()]) if course.works else np.zeros((len(course.time), 0))
+    return {**found, "work_part": vocabulary_variable("work_part", ("sample", "source"), works)}
+
+
+def _judgements(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    """Status and residuals of every sample: about a change point a sample is singular."""
+    about = course.statuses != STATUSES.index("ok")
+    status = np.where(about, Status.SINGULAR.value, Status.OK.value).astype(np.int8)
+    dimensions, values, attributes = vocabulary_variable("status", ("sample",), status)
+    attributes["flag_values"] = np.array([one.value for one in STATUSES_OF_MOTION], dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(one.name.lower() for one in STATUSES_OF_MOTION)
+    scale = float(setting.free.equations.numbers.scale)
+    return {
+        "status": (dimensions, values, attributes),
+        "residual": vocabulary_variable("residual", ("sample",), course.position_residual / scale),
+        "velocity_residual": vocabulary_variable(
+            "velocity_residual", ("sample",), course.velocity_residual / scale
+        ),
+    }
+
+
+def _happenings(course: Trajectory) -> dict[str, Variable]:
+    kinds = np.array([HAPPENINGS.index(event.kind) for event in course.events], dtype=np.int8)
+    dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
+    attributes["flag_values"] = np.arange(len(HAPPENINGS), dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in HAPPENINGS)
+    times = np.array([event.time for event in course.events], dtype=np.float64)
+    return {
+        "occasion_time": vocabulary_variable("occasion_time", ("occasion",), times),
+        "occasion_kind": (dimensions, values, attributes),
+    }
+
+
+def _attributes(
+    setting: MultibodySetting, course: Trajectory, variables: Mapping[str, Variable]
+) -> dict[str, Any]:
+    """What holds for the whole course."""
+    mechanism, settings = setting.mechanism, setting.settings
+    given = mechanism.model_copy(update={"simulation": settings.model_copy(update={"equations": MULTIBODY})})
+    return {
+        "topic": "simulate",
+        "title": mechanism.title,
+        "mechanism": mechanism_text(given),
+        "version": __version__,
+        "equations": MULTIBODY,
+        "mobility": setting.free.mobility,
+        "redundant": int(setting.free.redundant),
+        "ended": course.ended,
+        "cause": course.cause or "",
+        "scheme": course.scheme,
+        "executor": course.executor,
+        "steps": course.steps,
+        "driving": settings.law,
+        "work_sorts": " ".join(work_sorts(setting.free)[name] for name in course.works),
+        "worst_residual": float(np.max(variables["residual"][1], initial=0.0)),
+        "worst_energy_residual": float(np.nanmax(np.abs(course.energy_residual), initial=0.0)),
+    }
