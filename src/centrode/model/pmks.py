@@ -114,7 +114,7 @@ def from_pmks(url: str) -> Mechanism:
     -------
     Mechanism
         In the position that is drawn, with the units of the drawing. A slider drives along its slot from the slot's
-        first joint to the second. Masses are left out where every link has those that PMKS+ begins with (one unit).
+        first joint to the second. Masses are omitted where every link has those that PMKS+ begins with (one unit).
 
     Raises
     ------
