@@ -28,6 +28,7 @@ from centrode.locale import LANGUAGES, _, chosen_language, decimal_mark, speakin
 from centrode.model.examples import example_text
 from centrode.model.files import mechanism_text
 from centrode.model.pmks import from_pmks
+from centrode.quantities import UNIT_SYMBOLS, spelled_unit
 from centrode.version import __version__
 
 import numpy as np  # isort: skip
@@ -152,9 +153,10 @@ class Workbench:
             "language": chosen_language(),
             "languages": [{"code": code, "name": LANGUAGE_NAMES[code]} for code in LANGUAGES],
             "words": spoken_words(),
+            "units": {symbol: spelled_unit(symbol) for symbol in UNIT_SYMBOLS},
             "templates": template_list(),
             "file": self.work.first_file(),
-            "folder": True,
+            "folder": digest_of(str(self.work.folder))[:16],
             "topics": topic_list(),
             "exports": export_list(),
             "decimal": decimal_mark(),
