@@ -14,7 +14,7 @@ from centrode.app.documents import TEXT_SIZE, digest_of
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import read_frame
 from centrode.app.server import MESSAGE_SIZE, ServerSettings, server_application
-from centrode.app.workers import DirectRunner, ProcessRunner, answered
+from centrode.app.workers import DirectRunner, ProcessRunner, reply_to
 from centrode.errors import InputError
 from centrode.model.examples import example_names, example_text
 
@@ -230,7 +230,7 @@ def test_mutated_messages_have_answers(tmp_path):
         for _change in range(source.randrange(1, 4)):
             message = mutated(source, message) if message else messages[0]
         before = time.process_time()
-        reply = answered(bench, {"id": 5, **message})
+        reply = reply_to(bench, {"id": 5, **message})
         longest = max(longest, time.process_time() - before)
         if isinstance(reply, str):
             assert "error in centrode" not in reply, (message, reply)

@@ -270,7 +270,7 @@ class Conversation:
         work = [asyncio.create_task(self._work(slow)) for slow in (False, True)]
         try:
             while True:
-                message = await self._received()
+                message = await self._receive()
                 if message is not None and not await self._take(message):
                     break
         except (WebSocketDisconnect, RuntimeError):
@@ -280,7 +280,7 @@ class Conversation:
                 task.cancel()
             await asyncio.gather(*work, return_exceptions=True)
 
-    async def _received(self) -> dict[str, Any] | None:
+    async def _receive(self) -> dict[str, Any] | None:
         got = await self.socket.receive()
         if got["type"] == "websocket.disconnect":
             raise WebSocketDisconnect
@@ -316,9 +316,9 @@ class Conversation:
             arrived.clear()
             while queue:
                 message = queue.popleft()
-                await self._send(await self._answered(runner, message, limit, slow))
+                await self._send(await self._answer(runner, message, limit, slow))
 
-    async def _answered(self, runner: Runner, message: dict[str, Any], limit: float, slow: bool) -> Reply:
+    async def _answer(self, runner: Runner, message: dict[str, Any], limit: float, slow: bool) -> Reply:
         task = asyncio.create_task(runner.answer(message, limit))
         self.running = task if slow else self.running
         try:

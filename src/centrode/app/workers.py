@@ -61,7 +61,7 @@ def serve_messages(connection: Connection, work: WorkFolder) -> None:
             message = json.loads(connection.recv_bytes())
         except (EOFError, OSError, KeyboardInterrupt):
             return
-        reply = answered(bench, message)
+        reply = reply_to(bench, message)
         # half a pair of surrogates is no letter: JSON can hold it, UTF-8 cannot
         content = reply.encode(errors="replace") if isinstance(reply, str) else reply
         try:
@@ -80,7 +80,7 @@ def _end_with_server() -> None:
         os._exit(1)
 
 
-def answered(bench: Any, message: Mapping[str, Any]) -> Reply:
+def reply_to(bench: Any, message: Mapping[str, Any]) -> Reply:
     """The answer of a workbench; a fault of the program is an answer that says so."""
     try:
         return reply_of(bench.answer(message))
@@ -127,7 +127,7 @@ class ProcessRunner:
 
     async def _answer_within(self, content: bytes, limit: float) -> Reply:
         # a process begins in the thread too: the server answers others meanwhile
-        waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
+        waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._exchange_in_turn, content)
         try:
             return await asyncio.wait_for(asyncio.shield(waiting), limit)
         except (TimeoutError, asyncio.CancelledError):
@@ -137,14 +137,14 @@ class ProcessRunner:
                 await waiting
             raise
 
-    def _asked(self, content: bytes) -> Reply:
-        return _exchange(self._started(), content)
+    def _exchange_in_turn(self, content: bytes) -> Reply:
+        return _exchange(self._process_connection(), content)
 
-    def _started(self) -> Connection:
+    def _process_connection(self) -> Connection:
         with self._guard:
-            return self._started_alone()
+            return self._begin_process()
 
-    def _started_alone(self) -> Connection:
+    def _begin_process(self) -> Connection:
         if self._ended:
             raise EOFError
         if self._connection is not None and self._process is not None and self._process.is_alive():
@@ -214,7 +214,7 @@ class DirectRunner:
 
     async def answer(self, message: Mapping[str, Any], limit: float) -> Reply:
         """The answer of a message."""
-        return answered(self._bench, json.loads(json.dumps(message)))
+        return reply_to(self._bench, json.loads(json.dumps(message)))
 
     def stop(self) -> None:
         """Nothing is to be stopped."""

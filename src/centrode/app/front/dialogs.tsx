@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
-import { unpacked } from "./share";
+import { unpack } from "./share";
 import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, options, refused, savedAs, scene, takeTyped, tell, text, token, unsaved } from "./state";
 import { language, say, sentences, spelled, unitText } from "./words";
 
@@ -67,7 +67,7 @@ async function importLink(): Promise<void> {
   const own = LINK.exec(address.value);
   if (own) {
     try {
-      take(await unpacked(own[1]!), null, false);
+      take(await unpack(own[1]!), null, false);
     } catch {
       wrong.value = say("link_damaged");
     }
@@ -172,7 +172,7 @@ function SaveWindow() {
 // --- exports -----------------------------------------------------------------------------------------------------------
 const running = signal("");
 
-async function exported(topicName: string, format: string): Promise<void> {
+async function exportFile(topicName: string, format: string): Promise<void> {
   running.value = `${topicName} ${format}`;
   try {
     const answer = await fetch("/export", {
@@ -180,8 +180,8 @@ async function exported(topicName: string, format: string): Promise<void> {
       body: JSON.stringify({ token, text: text.value, topic: topicName, format, options: options.value[topicName] ?? {}, language: language.value }),
     });
     if (!answer.ok) {
-      const told = await answer.json().catch(() => ({ message: say("server_gone") }));
-      wrong.value = sentences(told.error?.message ?? told.message, told.error?.repair ?? told.repair);
+      const answered = await answer.json().catch(() => ({ message: say("server_gone") }));
+      wrong.value = sentences(answered.error?.message ?? answered.message, answered.error?.repair ?? answered.repair);
       return;
     }
     const name = /filename\*?=(?:UTF-8'')?"?([^";]+)/i.exec(answer.headers.get("Content-Disposition") ?? "")?.[1] ?? `${topicName}.${format}`;
@@ -205,7 +205,7 @@ function ExportWindow() {
         {all.map((one) => (
           <div class="export-row"><span>{one.title}</span>
             <span class="formats">{one.formats.map((format) => (
-              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exported(one.name, format)}>{format.toUpperCase()}</button>
+              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exportFile(one.name, format)}>{format.toUpperCase()}</button>
             ))}</span>
           </div>
         ))}

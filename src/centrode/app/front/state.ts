@@ -4,7 +4,7 @@ import { Connection, type Request, SUPERSEDED } from "./connection";
 import { History, type KeptStep, type TextFile } from "./history";
 import { type Motion, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
-import { packed, unpacked } from "./share";
+import { pack, unpack } from "./share";
 import { decimal, language, say, sentences, units, words } from "./words";
 
 export type Mode = "draw" | "guide" | "edit" | "move";
@@ -253,7 +253,7 @@ interface Kept {
   topic?: string;
 }
 const isStep = (step: any): step is KeptStep => typeof step === "string" || typeof step?.text === "string";
-function restored(): Kept | null {
+function keptState(): Kept | null {
   for (const store of ["sessionStorage", "localStorage"] as const) {
     try {
       const state = JSON.parse(window[store].getItem(STORE) ?? "null");
@@ -268,13 +268,13 @@ function restored(): Kept | null {
 // The token of the address stays here: whoever gets the link pastes it into a workbench of his own.
 export async function link(): Promise<string> {
   takeTyped();
-  return `${location.origin}${location.pathname}#m=${await packed(text.value)}`;
+  return `${location.origin}${location.pathname}#m=${await pack(text.value)}`;
 }
 export const LINK = /#m=([\w-]*)/;
 export async function follow(): Promise<boolean> {
   if (!location.hash.startsWith("#m=")) return false;
   try {
-    const shared = await unpacked(location.hash.slice(3));
+    const shared = await unpack(location.hash.slice(3));
     window.history.replaceState(null, "", location.pathname + location.search);
     load(shared, null, false);
     tell(say("link_read"));
@@ -310,7 +310,7 @@ async function greet(): Promise<void> {
     return;
   }
   begun = true;
-  const kept = restored();
+  const kept = keptState();
   const file = answer.file as { name: string; text: string } | null;
   if (kept?.topic) topic.value = kept.topic;
   const blank = answer.blank ?? BLANK;
