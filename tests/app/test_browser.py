@@ -336,7 +336,7 @@ def test_letters_typed_last_are_kept(running: Any, server: Served) -> None:
 
 
 def test_units_are_those_of_the_language(running: Any, server: Served) -> None:
-    with bench(running, server.address, language="uk") as one:
+    with bench(running, f"{server.address}&language=uk", language=None) as one:
         one.template("crank-rocker")
         one.motion()
         one.page.focus('[data-kind="link"][data-name="AB"]')

@@ -16,6 +16,7 @@ from centrode.app.frames import read_frame
 from centrode.app.server import MESSAGE_SIZE, ServerSettings, server_application
 from centrode.app.workers import DirectRunner, ProcessRunner, reply_to
 from centrode.errors import InputError
+from centrode.locale import speaking
 from centrode.model.examples import example_names, example_text
 
 from .conftest import ORIGIN
@@ -319,6 +320,12 @@ def test_nothing_is_kept_that_a_message_cannot_bring_again(settings, tmp_path):
     assert other.answer({"id": 2, "do": "read", "digest": digest}) == {"id": 2, "unknown": digest}
     again = other.answer({"id": 3, "do": "read", "text": text})
     assert again["scene"] == one.answer({"id": 1, "do": "read", "digest": digest})["scene"]
+
+
+def test_the_address_brings_the_language_of_the_command(settings):
+    assert settings.address == f"{ORIGIN}/?token={settings.token}"
+    with speaking("uk"):
+        assert settings.address == f"{ORIGIN}/?token={settings.token}&language=uk"
 
 
 def test_tokens_differ(tmp_path):

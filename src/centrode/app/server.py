@@ -21,7 +21,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from centrode.app.folders import WorkFolder
 from centrode.app.workers import ProcessRunner, Reply, Runner
-from centrode.locale import LANGUAGES, _, mark, speaking
+from centrode.locale import LANGUAGES, _, chosen_language, mark, speaking
 
 STATIC = Path(__file__).parent / "static"
 MESSAGE_SIZE = 2_000_000
@@ -73,8 +73,10 @@ class ServerSettings:
 
     @property
     def address(self) -> str:
-        """What a browser opens."""
-        return f"http://127.0.0.1:{self.port}/?token={self.token}"
+        """What a browser opens; it brings the chosen language where that is not English."""
+        language = chosen_language()
+        asked = "" if language == "en" else f"&language={language}"
+        return f"http://127.0.0.1:{self.port}/?token={self.token}{asked}"
 
     def is_own_host(self, host: str | None) -> bool:
         """Whether a request came by a name of this machine: another one may point here (DNS rebinding)."""

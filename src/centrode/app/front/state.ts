@@ -297,7 +297,9 @@ async function greet(): Promise<void> {
   } catch {
     // no store: the server's language
   }
-  const answer = await connection.ask({ do: "hello", language: chosen ?? undefined }, "hello");
+  // what was chosen here, else the language of the command, else that of the browser
+  chosen ??= query.get("language") ?? navigator.language.slice(0, 2).toLowerCase();
+  const answer = await connection.ask({ do: "hello", language: chosen }, "hello");
   if (answer === SUPERSEDED || answer.error) return;
   hello.value = answer as Hello;
   words.value = answer.words;
