@@ -134,12 +134,16 @@ class Bench:
 
 
 @contextmanager
-def bench(running: Any, address: str, wide: int = 1280, language: str = "en", **how: Any) -> Iterator[Bench]:
-    """The workbench in a window of its own, with a store of its own."""
+def bench(
+    running: Any, address: str, wide: int = 1280, language: str | None = "en", **how: Any
+) -> Iterator[Bench]:
+    """The workbench in a window of its own, with a store of its own; its language is that of the address with None."""
     context = running.new_context(viewport={"width": wide, "height": 900}, **how)
-    context.add_init_script(
-        f"localStorage.getItem('centrode.language') ?? localStorage.setItem('centrode.language', '{language}')"
-    )
+    if language is not None:
+        context.add_init_script(
+            "localStorage.getItem('centrode.language') ?? "
+            f"localStorage.setItem('centrode.language', '{language}')"
+        )
     yield opened(context, address)
     context.close()
 

@@ -25,7 +25,8 @@ if __name__ == "__main__":
     listener.bind(("127.0.0.1", port))
     listener.listen(16)  # who comes before it answers waits
     print("listening", flush=True)
-    run_server(ServerSettings(work_folder_of(None), port, token=sys.argv[2]), listener, browser=False)
+    work = work_folder_of(Path(sys.argv[3]) if sys.argv[3] else None)
+    run_server(ServerSettings(work, port, token=sys.argv[2]), listener, browser=False)
 """
 
 
@@ -36,6 +37,7 @@ class Served:
     folder: Path
     port: int
     token: str = "0123456789abcdef"
+    file: str = ""
     process: subprocess.Popen[str] | None = None
 
     @property
@@ -48,7 +50,7 @@ class Served:
         script = self.folder / "started.py"
         script.write_text(STARTED, "utf-8")
         self.process = subprocess.Popen(
-            [sys.executable, str(script), str(self.port), self.token],
+            [sys.executable, str(script), str(self.port), self.token, self.file],
             cwd=self.folder,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
             stdout=subprocess.PIPE,

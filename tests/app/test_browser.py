@@ -206,7 +206,10 @@ def test_a_link_holds_the_description(running: Any, server: Served) -> None:
         one.page.click('[data-do="link"]')
         one.wait("document.querySelector('#said').innerText !== ''")
         address = one.page.evaluate("navigator.clipboard.readText()")
-        other.gesture(lambda: other.page.goto(address))
+        assert server.token not in address
+        other.page.click('[data-do="open"]')
+        other.page.fill(LINK_FIELD, address)
+        other.gesture(lambda: other.page.press(LINK_FIELD, "Enter"))
         other.page.reload()
         other.page.wait_for_selector(".bench")
         other.motion()
@@ -224,6 +227,7 @@ def test_a_link_holds_the_description(running: Any, server: Served) -> None:
         assert other.text == one.text
 
 
+LINK_FIELD = "#pmks"
 PACKED = """async (text) => {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
@@ -264,6 +268,79 @@ def test_nothing_is_lost_when_the_server_goes(running: Any, tmp_path_factory: py
         assert again.text == dropped
         again.page.keyboard.press("Control+z")
         assert again.text == before
+
+
+def test_a_drawing_that_was_not_saved_is_one_step_below_the_file_that_opens(
+    running: Any, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """A step back is the text of its own file: it is never saved over another one."""
+    folder = tmp_path_factory.mktemp("files")
+    for name in ("crank-rocker", "double-rocker"):
+        (folder / f"{name}.toml").write_text(example_text(name), "utf-8", newline="")
+    with served(folder) as own:
+        own.kill()
+        own.file = "crank-rocker.toml"
+        own.start()
+        with bench(running, own.address) as one:
+            one.page.focus('[data-kind="link"][data-name="AB"]')
+            one.page.keyboard.press(" ")
+            field = one.page.locator('[data-path="links.AB.length"]')
+            field.fill("3.75")
+            one.gesture(lambda: field.press("Enter"))
+            unsaved = one.text
+            own.kill()
+            own.file = "double-rocker.toml"
+            own.start()
+            again = opened(one.page.context, own.address)
+            assert again.text == example_text("double-rocker")
+            assert "crank-rocker.toml" in again.said()
+            again.gesture(lambda: again.page.keyboard.press("Control+z"))
+            assert again.text == unsaved
+            assert again.page.inner_text(".subtitle").startswith("crank-rocker.toml")
+            again.page.keyboard.press("Control+s")
+            again.until(lambda: (folder / "crank-rocker.toml").read_text("utf-8") == unsaved)
+            again.gesture(lambda: again.page.keyboard.press("Control+y"))
+            assert again.page.inner_text(".subtitle") == "double-rocker.toml"
+    assert (folder / "double-rocker.toml").read_text("utf-8") == example_text("double-rocker")
+
+
+def test_a_text_that_is_too_great_is_refused_and_the_page_goes_on(running: Any, server: Served) -> None:
+    with bench(running, server.address) as one:
+        one.page.click('[data-do="open"]')
+        great = {"name": "great.toml", "mimeType": "text/plain", "buffer": b"#" * 1_100_000}
+        one.gesture(lambda: one.page.locator("dialog input[type=file]").set_input_files(great))
+        one.wait("document.querySelector('#said').classList.contains('bad')")
+        one.gesture(lambda: one.page.keyboard.press("Control+z"))
+        one.template("crank-rocker")
+        one.motion()
+        assert one.page.locator(".lost").count() == 0
+
+
+def test_letters_typed_last_are_kept(running: Any, server: Served) -> None:
+    """The pane closes, and the page is left, in the moment in which letters wait to be read."""
+    with bench(running, server.address, wide=1600) as one:
+        one.page.click('[data-do="text"]')
+        one.page.wait_for_selector(".cm-content")
+        one.page.click(".cm-content")
+        one.page.keyboard.press("Control+End")
+        one.page.evaluate(
+            """() => {
+              document.execCommand("insertText", false, "# last");
+              document.querySelector(".text-pane .plain").click();
+            }"""
+        )
+        one.until(lambda: one.page.locator(".text-pane").count() == 0)
+        assert one.text.endswith("# last")
+
+
+def test_units_are_those_of_the_language(running: Any, server: Served) -> None:
+    with bench(running, f"{server.address}&language=uk", language=None) as one:
+        one.template("crank-rocker")
+        one.motion()
+        one.page.focus('[data-kind="link"][data-name="AB"]')
+        one.page.keyboard.press(" ")
+        one.page.wait_for_selector('[data-path="links.AB.length"]')
+        assert one.page.locator(".side .unit").first.inner_text() == "м"
 
 
 def test_two_browsers_at_once(running: Any, server: Served) -> None:

@@ -14,8 +14,9 @@ from centrode.app.documents import TEXT_SIZE, digest_of
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import read_frame
 from centrode.app.server import MESSAGE_SIZE, ServerSettings, server_application
-from centrode.app.workers import DirectRunner, ProcessRunner, answered
+from centrode.app.workers import DirectRunner, ProcessRunner, reply_to
 from centrode.errors import InputError
+from centrode.locale import speaking
 from centrode.model.examples import example_names, example_text
 
 from .conftest import ORIGIN
@@ -166,10 +167,7 @@ def test_bad_texts_have_problems_at_their_lines(ask):
     assert loose["readiness"]["loose"] == ["A", "B"] and loose["readiness"]["missing"]
 
 
-# a pair of gears may have the name of a linkage
-TEMPLATES = [
-    name for name in (*example_names(), *example_names("cam")) if "gear pair" not in example_text(name)
-]
+TEMPLATES = [*example_names(), *example_names("cam")]
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
@@ -233,7 +231,7 @@ def test_mutated_messages_have_answers(tmp_path):
         for _change in range(source.randrange(1, 4)):
             message = mutated(source, message) if message else messages[0]
         before = time.process_time()
-        reply = answered(bench, {"id": 5, **message})
+        reply = reply_to(bench, {"id": 5, **message})
         longest = max(longest, time.process_time() - before)
         if isinstance(reply, str):
             assert "error in centrode" not in reply, (message, reply)
@@ -253,6 +251,14 @@ def test_a_computation_that_is_stuck_is_stopped_and_the_next_one_answered(tmp_pa
         # the system, or somebody, ends the process: the next message starts another one
         runner._process.kill()
         second = json.loads(await runner.answer(message, 120.0))
+        # JSON can hold half a pair of surrogates, which no text in UTF-8 can
+        process = runner._process
+        halved = json.loads(await runner.answer({"id": 3, "do": "read", "text": 'title = "\ud800"'}, 120.0))
+        assert halved["id"] == 3 and runner._process is process
+        runner.end()
+        with pytest.raises(EOFError):
+            await runner.answer(message, 120.0)
+        assert runner._process is None
         return first, second
 
     try:
@@ -262,6 +268,51 @@ def test_a_computation_that_is_stuck_is_stopped_and_the_next_one_answered(tmp_pa
     assert first == second and first["words"]
 
 
+class FailingRunner(DirectRunner):
+    """Fails at every message but the first, as what takes too long or is stopped."""
+
+    failure: type[Exception] = TimeoutError
+
+    async def answer(self, message, limit):
+        if message.get("id") == 0:
+            return "{}"
+        raise self.failure
+
+
+@pytest.mark.parametrize(
+    ("failure", "words"), [(TimeoutError, "занадто довго"), (EOFError, "обчислення перервано")]
+)
+def test_what_fails_is_said_in_the_language_of_the_page(settings, failure, words, capfd):
+    runner = type("Failing", (FailingRunner,), {"failure": failure})
+    with testing.TestClient(
+        server_application(settings, runner), base_url=ORIGIN, headers={"Origin": ORIGIN}
+    ) as client:
+        with conversation(client, settings) as socket:
+            for number, name in enumerate(("read", "panel"), 1):
+                socket.send_json({"id": number, "do": name, "text": "", "language": "uk"})
+                answer = socket.receive_json()
+                assert answer["id"] == number and words in answer["error"]["message"]
+        body = {"token": settings.token, "text": "", "topic": "model", "format": "xml", "language": "uk"}
+        file = client.post("/export", json=body)
+        assert file.status_code == 503 and words in file.json()["error"]["message"]
+        stranger = client.get("/?token=x", headers={"Accept-Language": "uk-UA,uk;q=0.9"})
+        assert stranger.status_code == 403 and "виводить centrode app" in stranger.text
+        great = client.post("/export", content=b" " * (MESSAGE_SIZE + 1), headers={"Accept-Language": "uk"})
+        assert great.status_code == 413 and "файл" in great.json()["error"]["message"]
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+def test_units_are_spelled_in_the_language(ask):
+    units = {language: ask("hello", language=language)["units"] for language in ("en", "ru", "uk")}
+    assert [units[language]["mm"] for language in ("en", "ru", "uk")] == ["mm", "мм", "мм"]
+    assert units["en"].keys() == units["ru"].keys() == units["uk"].keys()
+
+
+def test_a_folder_that_is_gone_is_said(ask, tmp_path):
+    tmp_path.rmdir()
+    assert "cannot be read" in ask("files")["error"]["message"]
+
+
 def test_nothing_is_kept_that_a_message_cannot_bring_again(settings, tmp_path):
     text = example_text("crank-rocker")
     one, other = Workbench(settings.work), Workbench(settings.work)
@@ -269,6 +320,12 @@ def test_nothing_is_kept_that_a_message_cannot_bring_again(settings, tmp_path):
     assert other.answer({"id": 2, "do": "read", "digest": digest}) == {"id": 2, "unknown": digest}
     again = other.answer({"id": 3, "do": "read", "text": text})
     assert again["scene"] == one.answer({"id": 1, "do": "read", "digest": digest})["scene"]
+
+
+def test_the_address_brings_the_language_of_the_command(settings):
+    assert settings.address == f"{ORIGIN}/?token={settings.token}"
+    with speaking("uk"):
+        assert settings.address == f"{ORIGIN}/?token={settings.token}&language=uk"
 
 
 def test_tokens_differ(tmp_path):

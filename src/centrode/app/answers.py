@@ -28,6 +28,7 @@ from centrode.locale import LANGUAGES, _, chosen_language, decimal_mark, speakin
 from centrode.model.examples import example_text
 from centrode.model.files import mechanism_text
 from centrode.model.pmks import from_pmks
+from centrode.quantities import UNIT_SYMBOLS, spelled_unit
 from centrode.version import __version__
 
 import numpy as np  # isort: skip
@@ -74,7 +75,7 @@ class Workbench:
             "save": self.save,
             "panel": self.panel,
             "complete": self.complete,
-            "import": self.imported,
+            "import": self.import_link,
             "export": self.export,
             "page": self.page,
         }
@@ -152,9 +153,10 @@ class Workbench:
             "language": chosen_language(),
             "languages": [{"code": code, "name": LANGUAGE_NAMES[code]} for code in LANGUAGES],
             "words": spoken_words(),
+            "units": {symbol: spelled_unit(symbol) for symbol in UNIT_SYMBOLS},
             "templates": template_list(),
             "file": self.work.first_file(),
-            "folder": True,
+            "folder": digest_of(str(self.work.folder))[:16],
             "topics": topic_list(),
             "exports": export_list(),
             "decimal": decimal_mark(),
@@ -162,9 +164,9 @@ class Workbench:
 
     def read(self, message: Message) -> Answer:
         """A description as a scene, with its problems and what it lacks to move."""
-        return self._described(self.document(message))
+        return self._description_answer(self.document(message))
 
-    def _described(self, document: Document) -> dict[str, Any]:
+    def _description_answer(self, document: Document) -> dict[str, Any]:
         digest = self._keep(document.text)
         if document.is_cam:
             scene, readiness = cam_scene(document), {"ready": document.cam is not None, **CAM_READINESS}
@@ -188,10 +190,10 @@ class Workbench:
             what = _("{count} operations are given, at most {most} are allowed")
             raise InputError("", what.format(count=len(operations), most=OPERATIONS))
         patch = apply_operations(self._text(message), self.work.folder, operations)
-        return self._patched(patch)
+        return self._patch_answer(patch)
 
-    def _patched(self, patch: Patch) -> Answer:
-        described = self._described(read_document(patch.text, self.work.folder))
+    def _patch_answer(self, patch: Patch) -> Answer:
+        described = self._description_answer(read_document(patch.text, self.work.folder))
         return {**described, "changed": list(dict.fromkeys(patch.changed)), "named": patch.named}
 
     def drag(self, message: Message) -> Answer:
@@ -200,12 +202,12 @@ class Workbench:
         if not isinstance(point, str):
             raise InputError("", _("the message names no point"))
         if message.get("mode") == "move":
-            return self._moved(message, document, point, to)
+            return self._move_answer(message, document, point, to)
         sketch = Sketch(document)
         if message.get("drop"):
             patch = Patch(document.text, self.work.folder)
             patch.apply({"do": "move_point", "point": point, "to": list(to)})
-            return self._patched(patch)
+            return self._patch_answer(patch)
         reshaped = reshape(sketch, point, to, self.work.folder)
         places = [list(reshaped.places.get(name, (math.nan, math.nan))) for name in sketch.points]
         angles = [math.nan] * len(sketch.links)
@@ -214,7 +216,7 @@ class Workbench:
         header = {"id": message.get("id", 0), "values": dict(reshaped.values), "held": reshaped.held or None}
         return frame_bytes({**header, "status": [0]}, {"points": places, "angles": angles})
 
-    def _moved(self, message: Message, document: Document, point: str, to: tuple[float, ...]) -> Answer:
+    def _move_answer(self, message: Message, document: Document, point: str, to: tuple[float, ...]) -> Answer:
         way = way_of(document)
         drive = message.get("drive")
         present = float(drive) if isinstance(drive, int | float) and math.isfinite(drive) else None
@@ -243,7 +245,7 @@ class Workbench:
         text = example_text(name)
         return {"name": name, "text": text, "digest": self._keep(text)}
 
-    def imported(self, message: Message) -> Answer:
+    def import_link(self, message: Message) -> Answer:
         """The text of a description from a link of PMKS+."""
         url = message.get("url")
         if not isinstance(url, str):

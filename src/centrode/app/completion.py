@@ -75,8 +75,8 @@ def _table_at(document: Document, offset: int) -> Place:
 
 def _headings(schema: Schema, document: Document) -> Iterator[dict[str, str]]:
     for key, value in schema["properties"].items():
-        kinds = _resolved(schema, value)
-        if kinds.get("type") == "array" and _resolved(schema, kinds.get("items", {})).get("type") == "object":
+        kinds = _resolve(schema, value)
+        if kinds.get("type") == "array" and _resolve(schema, kinds.get("items", {})).get("type") == "object":
             yield {"label": f"[[{key}]]", "type": "heading"}
         elif kinds.get("type") == "object":
             yield {"label": f"[{key}]" if key != "links" else "[links.", "type": "heading"}
@@ -132,21 +132,21 @@ def _at(schema: Schema, place: Place) -> Schema:
                 found = one["properties"][key]
             elif isinstance(one.get("additionalProperties"), Mapping):
                 found = one["additionalProperties"]
-        inner = _resolved(schema, found)
+        inner = _resolve(schema, found)
     merged: dict[str, Any] = {}
     for one in _alternatives(schema, inner):
         merged |= one.get("properties", {})
     return {**inner, "properties": merged} if merged else inner
 
 
-def _resolved(schema: Schema, value: Schema) -> Schema:
+def _resolve(schema: Schema, value: Schema) -> Schema:
     while "$ref" in value:
         value = schema["$defs"][value["$ref"].rpartition("/")[2]]
     return value
 
 
 def _alternatives(schema: Schema, value: Schema) -> Iterator[Schema]:
-    value = _resolved(schema, value)
+    value = _resolve(schema, value)
     yield value
     for key in ("anyOf", "oneOf", "allOf"):
         for one in value.get(key, ()):
@@ -154,5 +154,5 @@ def _alternatives(schema: Schema, value: Schema) -> Iterator[Schema]:
 
 
 def _detail(schema: Schema, value: Schema) -> str:
-    value = _resolved(schema, value)
+    value = _resolve(schema, value)
     return str(value.get("description", value.get("type", "")))

@@ -125,7 +125,7 @@ def _kept_document(text: str, folder: Path, _language: str) -> Document:
     try:
         tables = toml_tables(text, "")
     except InputError as error:
-        return Document(text, _mended(text), None, None, None, (_at_line(error, text),))
+        return Document(text, _readable_tables(text), None, None, None, (_at_line(error, text),))
     try:
         if tables.get("kind") == "gear pair":
             repair = _("compute it with: centrode gears; in Python with gear_pair")
@@ -186,7 +186,7 @@ def place_named(where: str) -> Place:
     return ()
 
 
-def _mended(text: str) -> Tables:
+def _readable_tables(text: str) -> Tables:
     """Tables of a text that is no TOML, without the lines at which the parser stops."""
     lines = text.split("\n")
     for _attempt in range(MENDED_LINES):

@@ -93,11 +93,11 @@ def exported_file(document: Document, topic: object, kind: object, options: obje
             raise InputError("", _("this topic has no tables here"))
         if len(files) == 1:
             return file_answer(f"{stem}-{files[0].stem}.{kind}", files[0].read_bytes())
-        packed = _packed({path.relative_to(folder).as_posix(): path.read_bytes() for path in files})
+        packed = _archive({path.relative_to(folder).as_posix(): path.read_bytes() for path in files})
     return file_answer(f"{stem}-{chosen.name}.zip", packed)
 
 
-def _packed(files: Mapping[str, bytes]) -> bytes:
+def _archive(files: Mapping[str, bytes]) -> bytes:
     """Files in an archive; the same files give the same bytes."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -46,12 +46,13 @@ class WorkFolder:
 
     def names(self) -> list[str]:
         """Descriptions in the folder, sorted."""
-        found = []
-        with os.scandir(self.folder) as entries:
-            for entry in entries:
-                if _NAME.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
-                    found.append(entry.name)
-        return sorted(found)[:FILES]
+        try:
+            with os.scandir(self.folder) as entries:
+                files = [entry.name for entry in entries if entry.is_file(follow_symlinks=False)]
+        except OSError as error:
+            what = _("the folder cannot be read: {reason}").format(reason=error.strerror)
+            raise InputError("", what) from None
+        return sorted(filter(_NAME.fullmatch, files))[:FILES]
 
     def read(self, name: str) -> str:
         """Text of a file; InputError where there is none, or it is a link, too great or no text."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -21,10 +21,11 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from centrode.app.folders import WorkFolder
 from centrode.app.workers import ProcessRunner, Reply, Runner
+from centrode.locale import LANGUAGES, _, chosen_language, mark, speaking
 
 STATIC = Path(__file__).parent / "static"
-MESSAGE_SIZE = 1_000_000
-"""Bytes of a message."""
+MESSAGE_SIZE = 2_000_000
+"""Bytes of a message; the longest text of a description, its letters escaped, takes 1.8 million."""
 WAITING = 32
 """Messages of a page that wait; of one that sends more, the connection is closed."""
 QUICK, SLOW = 20.0, 180.0
@@ -32,7 +33,15 @@ QUICK, SLOW = 20.0, 180.0
 SLOW_NAMES = ("panel", "export", "page")
 HOSTS = ("127.0.0.1", "localhost")
 WARMING = "[points]\nA = [0, 0]\nB = [1, 0]\n[frame]\npoints = ['A']\n[links.AB]\n[[drives]]\nlink = 'AB'\nspeed = 1\n"
-TIME = "this takes too long: give fewer samples, or a shorter range"
+TOO_LONG = mark("this takes too long"), mark("give fewer samples, or a shorter range")
+INTERRUPTED = mark("the computation was interrupted"), mark("try again")
+NO_MESSAGE = mark("the server does not know this request"), ""
+TOO_LARGE = mark("this file is too large for a description"), ""
+REFUSED = (
+    mark("No workbench runs at this address. Open the address that centrode app prints."),
+    mark("To read a link to a description, paste it into the workbench under Open."),
+)
+"""What is wrong, and its repair."""
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
@@ -64,8 +73,10 @@ class ServerSettings:
 
     @property
     def address(self) -> str:
-        """What a browser opens."""
-        return f"http://127.0.0.1:{self.port}/?token={self.token}"
+        """What a browser opens; it brings the chosen language where that is not English."""
+        language = chosen_language()
+        asked = "" if language == "en" else f"&language={language}"
+        return f"http://127.0.0.1:{self.port}/?token={self.token}{asked}"
 
     def is_own_host(self, host: str | None) -> bool:
         """Whether a request came by a name of this machine: another one may point here (DNS rebinding)."""
@@ -87,10 +98,10 @@ class Lanes:
     quick: Runner
     slow: Runner
 
-    def stop(self) -> None:
-        """Stop both."""
-        self.quick.stop()
-        self.slow.stop()
+    def end(self) -> None:
+        """End both."""
+        self.quick.end()
+        self.slow.end()
 
 
 def server_application(
@@ -114,12 +125,13 @@ def server_application(
             for task in warming:
                 task.cancel()
             await asyncio.gather(*warming, return_exceptions=True)
-            lanes.stop()
+            lanes.end()
 
     async def index(request: Request) -> Response:
         refused = _refusal(settings, request, request.query_params.get("token"))
         if refused is not None:
-            return refused
+            said = _spoken_error(REFUSED, _preferred_language(request))
+            return PlainTextResponse("\n".join(said.values()), refused.status_code, HEADERS)
         if not (STATIC / "index.html").is_file():
             return PlainTextResponse("the page is not built", 500, HEADERS)
         return FileResponse(STATIC / "index.html", headers=HEADERS)
@@ -127,9 +139,14 @@ def server_application(
     async def export(request: Request) -> Response:
         if not settings.is_own_origin(request.headers.get("origin")):
             return _refuse(403)
-        given = await _bounded_json(request)
+        try:
+            given = await _bounded_json(request)
+        except ClientDisconnect:
+            return _refuse(400)
         if given is None:
-            return _refuse(413)
+            return JSONResponse(
+                {"error": _spoken_error(TOO_LARGE, _preferred_language(request))}, 413, HEADERS
+            )
         refused = _refusal(settings, request, given.get("token"))
         if refused is not None:
             return refused
@@ -224,7 +241,9 @@ async def _file(runner: Runner, message: Mapping[str, Any]) -> Response:
     try:
         reply = await runner.answer(message, SLOW)
     except TimeoutError:
-        return JSONResponse({"error": {"message": TIME, "repair": ""}}, 503, HEADERS)
+        return JSONResponse(_error_of(message, TOO_LONG), 503, HEADERS)
+    except (EOFError, OSError):
+        return JSONResponse(_error_of(message, INTERRUPTED), 503, HEADERS)
     if isinstance(reply, str):
         return Response(reply, 422, {**HEADERS, "Content-Type": "application/json"})
     length = int.from_bytes(reply[:4], "little")
@@ -253,7 +272,7 @@ class Conversation:
         work = [asyncio.create_task(self._work(slow)) for slow in (False, True)]
         try:
             while True:
-                message = await self._received()
+                message = await self._receive()
                 if message is not None and not await self._take(message):
                     break
         except (WebSocketDisconnect, RuntimeError):
@@ -263,14 +282,14 @@ class Conversation:
                 task.cancel()
             await asyncio.gather(*work, return_exceptions=True)
 
-    async def _received(self) -> dict[str, Any] | None:
+    async def _receive(self) -> dict[str, Any] | None:
         got = await self.socket.receive()
         if got["type"] == "websocket.disconnect":
             raise WebSocketDisconnect
         content = got.get("text") or got.get("bytes") or ""
         message = message_of(content) if len(content) <= MESSAGE_SIZE else None
         if message is None:
-            await self._send(json.dumps({"id": 0, "error": {"message": "no message", "repair": ""}}))
+            await self._send(json.dumps(_error_of({}, NO_MESSAGE)))
         return message
 
     async def _take(self, message: dict[str, Any]) -> bool:
@@ -299,15 +318,15 @@ class Conversation:
             arrived.clear()
             while queue:
                 message = queue.popleft()
-                await self._send(await self._answered(runner, message, limit, slow))
+                await self._send(await self._answer(runner, message, limit, slow))
 
-    async def _answered(self, runner: Runner, message: dict[str, Any], limit: float, slow: bool) -> Reply:
+    async def _answer(self, runner: Runner, message: dict[str, Any], limit: float, slow: bool) -> Reply:
         task = asyncio.create_task(runner.answer(message, limit))
         self.running = task if slow else self.running
         try:
             return await task
         except TimeoutError:
-            return json.dumps({"id": _number(message), "error": {"message": TIME, "repair": ""}})
+            return json.dumps(_error_of(message, TOO_LONG))
         except asyncio.CancelledError:
             current = asyncio.current_task()
             if current is not None and current.cancelling():
@@ -315,7 +334,7 @@ class Conversation:
                 raise
             return json.dumps({"id": _number(message), "superseded": True})
         except (EOFError, OSError):
-            return json.dumps({"id": _number(message), "error": {"message": "interrupted", "repair": ""}})
+            return json.dumps(_error_of(message, INTERRUPTED))
         finally:
             if slow:
                 self.running = None
@@ -326,6 +345,22 @@ class Conversation:
                 await self.socket.send_text(reply)
             else:
                 await self.socket.send_bytes(reply)
+
+
+def _error_of(message: Mapping[str, Any], error: tuple[str, str]) -> dict[str, Any]:
+    """The answer that says what went wrong with a message, in its language."""
+    return {"id": _number(message), "error": _spoken_error(error, message.get("language"))}
+
+
+def _spoken_error(error: tuple[str, str], language: object) -> dict[str, str]:
+    with speaking(language if isinstance(language, str) and language in LANGUAGES else "en"):
+        what, repair = error
+        return {"message": _(what), "repair": _(repair) if repair else ""}
+
+
+def _preferred_language(request: Request) -> str:
+    """The language that a browser asks for first."""
+    return request.headers.get("accept-language", "")[:2].lower()
 
 
 def _number(message: Mapping[str, Any]) -> int:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
+import warnings
 import webbrowser
 from contextlib import suppress
 from pathlib import Path
@@ -16,6 +18,10 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 LOOPBACK = "127.0.0.1"
+PORTS = range(8765, 8775)
+"""Ports that are tried in turn: a browser keeps its store by port, and finds it again at the same one."""
+WAITING_BROWSERS = 128
+"""Connections that wait until the server accepts them."""
 
 
 def work_folder_of(file: Path | None) -> WorkFolder:
@@ -31,15 +37,34 @@ def work_folder_of(file: Path | None) -> WorkFolder:
     return work
 
 
-def bound_socket(port: int) -> socket.socket:
-    """A socket at a port of this machine, any free one for 0; InputError where it is taken."""
-    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+def bound_socket(port: int | None = None) -> socket.socket:
+    """A socket that listens at a port of this machine, at any free one for 0; InputError where it is taken.
+
+    Without a port it listens at the first free one of PORTS, and at any free one where all are taken.
+    """
+    if port is None:
+        for usual in PORTS:
+            with suppress(OSError):
+                return _listening_socket(usual)
+        port = 0
     try:
-        listener.bind((LOOPBACK, port))
+        return _listening_socket(port)
     except OSError as error:
-        listener.close()
         what = _("port {port} cannot be used: {reason}").format(port=port, reason=error.strerror)
         raise InputError("--port", what, _("choose another one, or leave the option out")) from None
+
+
+def _listening_socket(port: int) -> socket.socket:
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        if os.name == "posix":
+            # the port of a server that has just ended is free at once; on Windows the option would let two share it
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((LOOPBACK, port))
+        listener.listen(WAITING_BROWSERS)
+    except OSError:
+        listener.close()
+        raise
     return listener
 
 
@@ -55,7 +80,10 @@ def run_server(settings: ServerSettings, listener: socket.socket, *, browser: bo
         timeout_graceful_shutdown=1,
     )
     if browser:
-        threading.Timer(0.5, webbrowser.open, (settings.address,)).start()
-    # interrupting it is how it ends
-    with suppress(KeyboardInterrupt):
+        opening = threading.Timer(0.5, webbrowser.open, (settings.address,))
+        opening.daemon = True  # none opens once the server has ended
+        opening.start()
+    # interrupting it is how it ends, even before it has begun to wait for that
+    with warnings.catch_warnings(), suppress(KeyboardInterrupt):
+        warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)
         uvicorn.Server(config).run(sockets=[listener])

@@ -123,7 +123,7 @@ class Sketch:
                 if name != FRAME
             }
             return points, poses
-        return ({}, {}) if self.on_sphere else self._chained()
+        return ({}, {}) if self.on_sphere else self._chain()
 
     @property
     def places(self) -> dict[str, Vector]:
@@ -135,7 +135,7 @@ class Sketch:
         """Origin [m] and angle [rad] of the axes of each link in the initial position, as far as they are known."""
         return self._standing[1]
 
-    def _chained(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
+    def _chain(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
         """Places from coordinates, and along links whose angles are given."""
         places: dict[str, Vector] = {}
         for table in (self.tables.get("points"), _table(self.tables, "frame").get("points")):

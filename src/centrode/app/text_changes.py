@@ -62,7 +62,7 @@ class TextChanges:
     def set(self, place: Place, value: Any) -> None:
         """Give a key a value; a key that is not there is added at the end of its table."""
         expected = copy.deepcopy(self.tables)
-        container = _entered(expected, place[:-1])
+        container = _enter(expected, place[:-1])
         key = place[-1]
         known = key in container if isinstance(container, dict) else True
         container[key] = value
@@ -74,7 +74,7 @@ class TextChanges:
     def remove(self, place: Place) -> None:
         """Take out a key, a table or an entry of a list; tables below it go with it."""
         expected = copy.deepcopy(self.tables)
-        container = _entered(expected, place[:-1])
+        container = _enter(expected, place[:-1])
         del container[place[-1]]
         if place[:-1] and isinstance(container, list) and not container and len(place) == 2:
             del expected[str(place[0])]
@@ -99,7 +99,7 @@ class TextChanges:
     def rename_key(self, place: Place, name: str) -> None:
         """Give a key, or a table with all below it, another name in its place."""
         expected = copy.deepcopy(self.tables)
-        container = _entered(expected, place[:-1])
+        container = _enter(expected, place[:-1])
         renamed = {name if key == place[-1] else key: value for key, value in container.items()}
         container.clear()
         container.update(renamed)
@@ -136,7 +136,7 @@ class TextChanges:
             return self.text
         rest = place[len(statement.place) :]
         if not rest:
-            return self._spliced(statement.value, statement.value_end, spelled_value(value))
+            return self._splice(statement.value, statement.value_end, spelled_value(value))
         return self._within(statement, lambda inner: _put(inner, rest, value))
 
     def _within(self, statement: Statement, change: Callable[[Any], None]) -> str:
@@ -148,7 +148,7 @@ class TextChanges:
             spelled = tomlkit.dumps(document).removeprefix("value = ").removesuffix("\n")
         except (TOMLKitError, KeyError, IndexError, TypeError, AttributeError):
             return self.text
-        return self._spliced(statement.value, statement.value_end, spelled)
+        return self._splice(statement.value, statement.value_end, spelled)
 
     def _with_key(self, place: Place, value: Any) -> str:
         line = f"{spelled_key(str(place[-1]))} = {spelled_value(value)}{self.newline}"
@@ -156,7 +156,7 @@ class TextChanges:
             return self._with_top_key(line)
         heading = self._places.heading(place[:-1])
         if heading is not None:
-            return self._inserted(self._places.section_end(heading), line)
+            return self._insert(self._places.section_end(heading), line)
         statement = self._statement(place[:-1])
         if statement is not None:
             rest = place[len(statement.place) : -1]
@@ -172,7 +172,7 @@ class TextChanges:
             depth = len(last.place) - len(place)
             written = self.text[last.start : last.value].split("=")[0].strip()
             prefix = ".".join(written.split(".")[: -1 - depth])
-            return self._inserted(last.end, f"{prefix}.{line}" if prefix else line)
+            return self._insert(last.end, f"{prefix}.{line}" if prefix else line)
         names = ".".join(spelled_key(str(key)) for key in place[:-1])
         first = next(
             (
@@ -183,7 +183,7 @@ class TextChanges:
             None,
         )
         at = first.start if first is not None else len(self.text)
-        return self._inserted(at, f"[{names}]{self.newline}{line}{self.newline if first else ''}")
+        return self._insert(at, f"[{names}]{self.newline}{line}{self.newline if first else ''}")
 
     def _with_top_key(self, line: str) -> str:
         top = [one for one in self._places.statements]
@@ -197,15 +197,15 @@ class TextChanges:
             before = self.text[:end]
             blank = self.newline if not before.endswith("\n\n") or not before else ""
             return before + line + (self.newline if blank or not before else "") + self.text[end:]
-        return self._inserted(end, line)
+        return self._insert(end, line)
 
-    def _inserted(self, offset: int, lines: str) -> str:
+    def _insert(self, offset: int, lines: str) -> str:
         before, after = self.text[:offset], self.text[offset:]
         if before and not before.endswith("\n"):
             before += self.newline
         return before + lines + after
 
-    def _spliced(self, start: int, end: int, written: str) -> str:
+    def _splice(self, start: int, end: int, written: str) -> str:
         return self.text[:start] + written + self.text[end:]
 
     def _with_section(self, place: Place, heading: str, entries: Mapping[str, Any], *, double: bool) -> str:
@@ -217,19 +217,19 @@ class TextChanges:
             end = self._places.section_end(same[-1])
             # entries of one kind that follow each other without a blank line go on so
             close = not double and self._stand_close(same)
-            return self._inserted(end, section if close else self.newline + section)
+            return self._insert(end, section if close else self.newline + section)
         room = ROOMS.index(place[0]) if place[0] in ROOMS else len(ROOMS)
         before = [one for one in headings if one.place[0] in ROOMS and ROOMS.index(one.place[0]) <= room]
         if before:
-            return self._inserted(self._places.section_end(before[-1]), self.newline + section)
+            return self._insert(self._places.section_end(before[-1]), self.newline + section)
         top = [one for one in self._places.statements if not one.is_heading and len(one.place) == 1]
         if headings and not top:
             start = self._lead(headings[0].start)
-            return self._inserted(start, section + self.newline)
+            return self._insert(start, section + self.newline)
         if headings:
             end = max(one.end for one in self._places.statements if one.start < headings[0].start)
-            return self._inserted(end, self.newline + section)
-        return self._inserted(len(self.text), (self.newline if self.text.strip() else "") + section)
+            return self._insert(end, self.newline + section)
+        return self._insert(len(self.text), (self.newline if self.text.strip() else "") + section)
 
     def _stand_close(self, same: Sequence[Statement]) -> bool:
         """Whether headings of one kind follow each other without a blank line."""
@@ -344,7 +344,7 @@ def _part_end(text: str, at: int) -> int:
     return found.end() if found else at
 
 
-def _entered(tables: Any, place: Place) -> Any:
+def _enter(tables: Any, place: Place) -> Any:
     """The table or list at a place; tables that are not there are made."""
     for key in place:
         tables = tables.setdefault(key, {}) if isinstance(tables, dict) else tables[key]

@@ -108,7 +108,7 @@ def _statements(text: str) -> Iterator[Statement]:
             close = _closing(text, offset, "]")
             keys = _keys(text[offset + 1 + double : close - double])
             end = _line_end(text, close)
-            table = _entered(keys, counts, double)
+            table = _enter(keys, counts, double)
             yield Statement(start, end, offset, close + 1, table, True)
             offset = end
             continue
@@ -127,7 +127,7 @@ def _statements(text: str) -> Iterator[Statement]:
         offset = end
 
 
-def _entered(keys: tuple[str, ...], counts: dict[Place, int], double: bool) -> Place:
+def _enter(keys: tuple[str, ...], counts: dict[Place, int], double: bool) -> Place:
     """Place of a heading: the last entry of each list of tables on its way."""
     place: Place = ()
     for i, key in enumerate(keys):

@@ -127,7 +127,7 @@ WORDS: Mapping[str, str] = {
     "from_files": mark("Files"),
     "from_computer": mark("From this computer…"),
     "too_large": mark("This file is too large for a description."),
-    "pmks_link": mark("Link from PMKS+"),
+    "link_field": mark("Link to a description, also of PMKS+"),
     "import": mark("Import"),
     "templates": mark("Templates"),
     "filter": mark("Filter the templates"),
@@ -156,6 +156,7 @@ WORDS: Mapping[str, str] = {
         "Nothing is lost: the description is kept in this browser. Start the server again; if it "
         "prints another address, open that one."
     ),
+    "kept_below": mark("Undo brings back {name}, which was not saved."),
     "line": mark("line {number}"),
     "keys_modes": mark("Draw, guide, edit, move"),
     "keys_arrows": mark("Move the cross on the drawing, or the joint in focus; with Shift farther"),

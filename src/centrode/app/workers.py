@@ -5,12 +5,15 @@ from __future__ import annotations
 import asyncio
 import json
 import multiprocessing
+import os
+import signal
 import sys
 import threading
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any, Protocol, TypeAlias
 
@@ -29,18 +32,17 @@ ENDING = 2.0
 """Seconds that a process has to end."""
 
 
-class TimedOut(Exception):
-    """A computation took longer than it may."""
-
-
 class Runner(Protocol):
     """What answers messages."""
 
     async def answer(self, message: Mapping[str, Any], limit: float) -> Reply:
-        """The answer of a message; raises TimedOut after so many seconds."""
+        """The answer of a message; raises TimeoutError after so many seconds."""
 
     def stop(self) -> None:
         """Stop what it computes; another message begins afresh."""
+
+    def end(self) -> None:
+        """Stop for good: no message is answered any more."""
 
 
 def reply_of(answer: dict[str, Any] | bytes) -> Reply:
@@ -50,14 +52,18 @@ def reply_of(answer: dict[str, Any] | bytes) -> Reply:
 
 def serve_messages(connection: Connection, work: WorkFolder) -> None:
     """The loop of a process: a message in, an answer out."""
+    # Ctrl-C reaches all processes of a terminal, but the server ends this one
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_server, daemon=True).start()
     bench = WORKBENCH(work)
     while True:
         try:
             message = json.loads(connection.recv_bytes())
         except (EOFError, OSError, KeyboardInterrupt):
             return
-        reply = answered(bench, message)
-        content = reply.encode() if isinstance(reply, str) else reply
+        reply = reply_to(bench, message)
+        # half a pair of surrogates is no letter: JSON can hold it, UTF-8 cannot
+        content = reply.encode(errors="replace") if isinstance(reply, str) else reply
         try:
             connection.send_bytes((b"t" if isinstance(reply, str) else b"b") + content)
         except OSError:
@@ -66,7 +72,15 @@ def serve_messages(connection: Connection, work: WorkFolder) -> None:
             return
 
 
-def answered(bench: Any, message: Mapping[str, Any]) -> Reply:
+def _end_with_server() -> None:
+    """End this process when the server was killed, even in the midst of a computation."""
+    server = multiprocessing.parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)
+
+
+def reply_to(bench: Any, message: Mapping[str, Any]) -> Reply:
     """The answer of a workbench; a fault of the program is an answer that says so."""
     try:
         return reply_of(bench.answer(message))
@@ -91,39 +105,48 @@ class ProcessRunner:
     work: WorkFolder
     _process: Any = None
     _connection: Connection | None = None
+    _ended: bool = False
     _guard: threading.Lock = field(default_factory=threading.Lock)
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _threads: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(max_workers=1))
 
     async def answer(self, message: Mapping[str, Any], limit: float) -> Reply:
-        """The answer of a message; TimedOut after so many seconds, and the process is stopped."""
+        """The answer of a message; TimeoutError after so many seconds, and the process is stopped."""
         async with self._turn:
+            if self._ended:
+                raise EOFError
             content = json.dumps(message).encode()
-            # a process begins in the thread too: the server answers others meanwhile
-            waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
             try:
-                reply = await asyncio.wait_for(asyncio.shield(waiting), limit)
-            except (TimeoutError, asyncio.CancelledError):
-                # a process that is about to begin is waited for, but not by the server
-                await asyncio.shield(asyncio.to_thread(self.stop))
-                with suppress(Exception):
-                    await waiting
+                return await self._answer_within(content, limit)
+            except TimeoutError:
                 raise
             except (EOFError, OSError):
                 # it made room, or the system stopped it: once more in a new one
-                self.stop()
-                waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._asked, content)
-                reply = await asyncio.wait_for(waiting, limit)
-            return reply
+                await asyncio.to_thread(self.stop)
+                return await self._answer_within(content, limit)
 
-    def _asked(self, content: bytes) -> Reply:
-        return _exchange(self._started(), content)
+    async def _answer_within(self, content: bytes, limit: float) -> Reply:
+        # a process begins in the thread too: the server answers others meanwhile
+        waiting = asyncio.get_running_loop().run_in_executor(self._threads, self._exchange_in_turn, content)
+        try:
+            return await asyncio.wait_for(asyncio.shield(waiting), limit)
+        except (TimeoutError, asyncio.CancelledError):
+            # a process that is about to begin is waited for, but not by the server
+            await asyncio.shield(asyncio.to_thread(self.stop))
+            with suppress(Exception):
+                await waiting
+            raise
 
-    def _started(self) -> Connection:
+    def _exchange_in_turn(self, content: bytes) -> Reply:
+        return _exchange(self._process_connection(), content)
+
+    def _process_connection(self) -> Connection:
         with self._guard:
-            return self._started_alone()
+            return self._begin_process()
 
-    def _started_alone(self) -> Connection:
+    def _begin_process(self) -> Connection:
+        if self._ended:
+            raise EOFError
         if self._connection is not None and self._process is not None and self._process.is_alive():
             return self._connection
         self._stop_alone()
@@ -134,7 +157,8 @@ class ProcessRunner:
         here: Connection
         here, there = context.Pipe()
         process = context.Process(target=serve_messages, args=(there, self.work), daemon=True)
-        process.start()
+        with _interrupts_blocked():
+            process.start()
         there.close()
         self._process, self._connection = process, here
         return here
@@ -144,6 +168,13 @@ class ProcessRunner:
         with self._guard:
             self._stop_alone()
 
+    def end(self) -> None:
+        """Stop the process; none is started after it."""
+        with self._guard:
+            self._ended = True
+            self._stop_alone()
+        self._threads.shutdown(wait=False, cancel_futures=True)
+
     def _stop_alone(self) -> None:
         if self._connection is not None:
             with suppress(OSError):
@@ -152,6 +183,21 @@ class ProcessRunner:
             self._process.kill()
             self._process.join(ENDING)
         self._process = self._connection = None
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """What this thread starts meanwhile never meets Ctrl-C, not even while it loads its libraries."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # it lets interrupts through again when it begins: it begins before
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _exchange(connection: Connection, content: bytes) -> Reply:
@@ -168,7 +214,10 @@ class DirectRunner:
 
     async def answer(self, message: Mapping[str, Any], limit: float) -> Reply:
         """The answer of a message."""
-        return answered(self._bench, json.loads(json.dumps(message)))
+        return reply_to(self._bench, json.loads(json.dumps(message)))
 
     def stop(self) -> None:
         """Nothing is to be stopped."""
+
+    def end(self) -> None:
+        """Nothing is to be ended."""

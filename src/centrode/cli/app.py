@@ -17,12 +17,11 @@ from centrode.optional_packages import how_to_install
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),
-    default=0,
     metavar=mark("N"),
-    help=mark("Port of this machine; a free one by default."),
+    help=mark("Port of this machine, 0 for any free one; by default 8765 or the next free one."),
 )
 @click.option("--no-browser", is_flag=True, help=mark("Print the address without opening a browser."))
-def app(file: Path | None, port: int, no_browser: bool) -> None:
+def app(file: Path | None, port: int | None, no_browser: bool) -> None:
     """Serve the workbench at 127.0.0.1 until it is interrupted."""
     try:
         library.run_server.load()

@@ -2,6 +2,7 @@
 // server goes is sent again when it is back, since an answer depends on nothing but its request.
 import { signal } from "@preact/signals";
 import { type Frame, isFrame, readFrame } from "./protocol";
+import { say } from "./words";
 
 export type Request = Record<string, unknown> & { do: string };
 export type Answer = any;
@@ -20,6 +21,9 @@ export const busy = signal(false);
 // What is quick never waits for what is slow: each has its own way to the server.
 const SLOW = new Set(["panel"]);
 type Lane = "quick" | "slow";
+
+// Letters of a request: of a greater one the server would close the connection, again and again.
+const MOST = 600_000;
 
 export class Connection {
   private socket: WebSocket | null = null;
@@ -43,6 +47,7 @@ export class Connection {
 
   ask(request: Request, channel: string | null = null): Promise<Answer> {
     const lane: Lane = SLOW.has(request.do) ? "slow" : "quick", queue = this.queues[lane];
+    if (JSON.stringify(request).length > MOST) return Promise.resolve({ error: { message: say("too_large") } });
     return new Promise((resolve) => {
       const kept = channel ? queue.findIndex((one) => one.channel === channel) : -1;
       if (kept >= 0) queue.splice(kept, 1)[0]!.resolve(SUPERSEDED);

@@ -5,8 +5,9 @@ import { useEffect, useRef } from "preact/hooks";
 import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
-import { BLANK, ask, available, fileName, hello, link, load, options, refused, saved, scene, tell, text, token, unsaved } from "./state";
-import { language, say, sentences, spelled } from "./words";
+import { unpack } from "./share";
+import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, options, refused, savedAs, scene, takeTyped, tell, text, token, unsaved } from "./state";
+import { language, say, sentences, spelled, unitText } from "./words";
 
 export const dialog = signal<"" | "open" | "save" | "export" | "photo" | "keys" | "discard">("");
 let onward: (() => void) | null = null; // what follows when changes may be lost
@@ -31,6 +32,7 @@ function Window({ name, title, children, onClose }: { name: string; title: strin
 
 // Changes of a file that are not saved are not thrown away by the way; undo brings any text back besides.
 const careful = (act: () => void): void => {
+  takeTyped();
   if (!unsaved.value) {
     act();
     return;
@@ -58,10 +60,19 @@ async function example(template: Template): Promise<void> {
 }
 async function openFile(name: string): Promise<void> {
   const answer = await ask({ do: "open", name });
-  if (answer.error) wrong.value = answer.error.message;
+  if (answer.error) wrong.value = sentences(answer.error.message, answer.error.repair);
   else take(answer.text, name, true);
 }
 async function importLink(): Promise<void> {
+  const own = LINK.exec(address.value);
+  if (own) {
+    try {
+      take(await unpack(own[1]!), null, false);
+    } catch {
+      wrong.value = say("link_damaged");
+    }
+    return;
+  }
   const answer = await ask({ do: "import", url: address.value.trim() });
   if (answer.error || answer.missing) wrong.value = sentences(answer.error?.message ?? answer.missing, answer.error?.repair ?? answer.repair);
   else take(answer.text, null, false);
@@ -84,13 +95,13 @@ function OpenWindow() {
           <label class="button file">{say("from_computer")}
             <input type="file" accept=".toml,text/plain" onChange={(event) => {
               const file = event.currentTarget.files?.[0];
-              if (file && file.size < 2_000_000) void file.text().then((content) => take(content, null, false));
+              if (file && file.size < 1_200_000) void file.text().then((content) => take(content, null, false));
               else if (file) wrong.value = say("too_large");
             }} />
           </label>
         </div>
         <form class="line" onSubmit={(event) => { event.preventDefault(); void importLink(); }}>
-          <label for="pmks">{say("pmks_link")}</label>
+          <label for="pmks">{say("link_field")}</label>
           <input id="pmks" type="text" value={address.value} onInput={(event) => { address.value = event.currentTarget.value; }} />
           <button type="submit">{say("import")}</button>
         </form>
@@ -120,15 +131,16 @@ const sha = async (value: string): Promise<string> => {
 };
 
 async function write(name: string): Promise<boolean> {
-  const expected = name === fileName.value && saved.value !== null ? await sha(saved.value) : undefined, sent = text.value;
+  takeTyped();
+  const file = fileNow(), sent = text.value;
+  const expected = name === file.name && file.saved !== null ? await sha(file.saved) : undefined;
   const answer = await ask({ do: "save", name, text: sent, ...(expected ? { expected } : {}) });
   if (answer.error) {
     wrong.value = sentences(answer.error.message, answer.error.repair);
     return false;
   }
-  fileName.value = answer.name ?? name;
-  saved.value = sent;
-  tell(say("saved", { name: fileName.value! }));
+  savedAs(file, answer.name ?? name, sent);
+  tell(say("saved", { name: file.name! }));
   return true;
 }
 export async function saveNow(): Promise<void> {
@@ -160,7 +172,7 @@ function SaveWindow() {
 // --- exports -----------------------------------------------------------------------------------------------------------
 const running = signal("");
 
-async function exported(topicName: string, format: string): Promise<void> {
+async function exportFile(topicName: string, format: string): Promise<void> {
   running.value = `${topicName} ${format}`;
   try {
     const answer = await fetch("/export", {
@@ -168,8 +180,8 @@ async function exported(topicName: string, format: string): Promise<void> {
       body: JSON.stringify({ token, text: text.value, topic: topicName, format, options: options.value[topicName] ?? {}, language: language.value }),
     });
     if (!answer.ok) {
-      const told = await answer.json().catch(() => ({ message: answer.statusText }));
-      wrong.value = sentences(told.error?.message ?? told.message, told.error?.repair ?? told.repair);
+      const answered = await answer.json().catch(() => ({ message: say("server_gone") }));
+      wrong.value = sentences(answered.error?.message ?? answered.message, answered.error?.repair ?? answered.repair);
       return;
     }
     const name = /filename\*?=(?:UTF-8'')?"?([^";]+)/i.exec(answer.headers.get("Content-Disposition") ?? "")?.[1] ?? `${topicName}.${format}`;
@@ -193,7 +205,7 @@ function ExportWindow() {
         {all.map((one) => (
           <div class="export-row"><span>{one.title}</span>
             <span class="formats">{one.formats.map((format) => (
-              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exported(one.name, format)}>{format.toUpperCase()}</button>
+              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exportFile(one.name, format)}>{format.toUpperCase()}</button>
             ))}</span>
           </div>
         ))}
@@ -238,7 +250,7 @@ function PhotoWindow() {
             }}>
               <label for="photo-length">{say("photo_length")}</label>
               <input id="photo-length" type="text" inputMode="decimal" value={length.value} onInput={(event) => { length.value = event.currentTarget.value; }} />
-              <span class="unit">{unit}</span><button type="submit">{say("apply")}</button>
+              <span class="unit">{unitText(unit)}</span><button type="submit">{say("apply")}</button>
             </form>
           ) : (
             <div class="buttons"><button type="button" onClick={() => {

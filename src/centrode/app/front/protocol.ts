@@ -181,7 +181,7 @@ export interface Hello {
   units?: Record<string, string>;
   templates: Template[];
   file: { name: string; text: string } | null;
-  folder?: boolean;
+  folder?: string; // a digest of its path
   topics: Topic[];
   exports?: Export[];
   decimal: string;

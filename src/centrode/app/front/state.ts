@@ -1,10 +1,10 @@
 // The state of the page: the text of a description, and what the server says of it.
 import { computed, effect, signal } from "@preact/signals";
 import { Connection, type Request, SUPERSEDED } from "./connection";
-import { History } from "./history";
+import { History, type KeptStep, type TextFile } from "./history";
 import { type Motion, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
-import { packed, unpacked } from "./share";
+import { pack, unpack } from "./share";
 import { decimal, language, say, sentences, units, words } from "./words";
 
 export type Mode = "draw" | "guide" | "edit" | "move";
@@ -42,6 +42,23 @@ export const arrows = signal<import("./protocol").Block | null>(null);
 export const unsaved = computed(() => saved.value !== null && saved.value !== text.value);
 
 let history = new History("");
+// The file of the text that the page shows.
+const belongs = (file: TextFile): void => {
+  fileName.value = file.name;
+  saved.value = file.saved;
+};
+export const fileNow = (): TextFile => history.file;
+export function savedAs(file: TextFile, name: string, content: string): void {
+  file.name = name;
+  file.saved = content;
+  if (file === history.file) belongs(file);
+  keep();
+}
+
+// What is typed reaches the page a moment later: before it is saved or left, at once.
+let typed: () => void = () => undefined;
+export const typedBy = (taken: () => void): void => { typed = taken; };
+export const takeTyped = (): void => typed();
 
 export const tell = (message: string, bad = false): void => {
   said.value = { text: message, bad };
@@ -103,10 +120,9 @@ export function write(next: string, merge = false): void {
 }
 
 export function load(next: string, name: string | null, onDisk: boolean): void {
-  history.put(next);
+  history.put(next, false, { name, saved: onDisk ? next : null });
   text.value = next;
-  fileName.value = name;
-  saved.value = onDisk ? next : null;
+  belongs(history.file);
   selection.value = [];
   place.value = 0;
   playing.value = false;
@@ -119,12 +135,14 @@ export const fits = signal(0); // counts up when the view has to hold everything
 
 export async function edit(...operations: Record<string, unknown>[]): Promise<Reading | null> {
   reads += 1;
+  takeTyped();
   const before = text.value;
   const answer = await ask({ do: "edit", ...named(), operations });
   if (answer.error) {
     refused(answer.error);
     return null;
   }
+  takeTyped();
   if (text.value !== before) return null; // typed meanwhile: what is typed stands
   accept(answer);
   return answer;
@@ -142,11 +160,18 @@ export function accept(answer: Reading): void {
 function travel(next: string | null): void {
   if (next === null) return;
   text.value = next;
+  belongs(history.file);
   settle();
   void read();
 }
-export const undo = (): void => travel(history.undo());
-export const redo = (): void => travel(history.redo());
+export const undo = (): void => {
+  takeTyped();
+  travel(history.undo());
+};
+export const redo = (): void => {
+  takeTyped();
+  travel(history.redo());
+};
 
 // --- motion and panels -------------------------------------------------------------------------------------------------
 export const SAMPLES = 361;
@@ -201,35 +226,55 @@ function keep(): void {
   soon = window.setTimeout(keepNow, 200);
 }
 export function keepNow(): void {
+  takeTyped();
   clearTimeout(soon);
-  const state = { text: text.value, name: fileName.value, saved: saved.value, before: history.kept(1_000_000), topic: topic.value };
-  try {
-    localStorage.setItem(STORE, JSON.stringify(state));
-  } catch {
+  if (!begun) return; // nothing is shown yet: what an earlier window kept stays
+  const state = { text: text.value, name: fileName.value, saved: saved.value, folder: hello.value?.folder, before: history.kept(1_000_000), topic: topic.value };
+  // that of the tab comes first when it is loaded again: another tab may write the common one
+  for (const store of ["sessionStorage", "localStorage"] as const) {
     try {
-      localStorage.setItem(STORE, JSON.stringify({ ...state, before: [] }));
+      window[store].setItem(STORE, JSON.stringify(state));
     } catch {
-      // a full or a forbidden store: the text is still in the window
+      try {
+        window[store].setItem(STORE, JSON.stringify({ ...state, before: [] }));
+      } catch {
+        // a full or a forbidden store: the text is still in the window
+      }
     }
   }
 }
 addEventListener("pagehide", keepNow);
-const restored = (): { text: string; name: string | null; saved: string | null; before: string[]; topic?: string } | null => {
-  try {
-    const state = JSON.parse(localStorage.getItem(STORE) ?? "null");
-    return state && typeof state.text === "string" ? { ...state, before: Array.isArray(state.before) ? state.before : [] } : null;
-  } catch {
-    return null;
-  }
-};
-
-export async function link(): Promise<string> {
-  return `${location.origin}${location.pathname}${location.search}#m=${await packed(text.value)}`;
+interface Kept {
+  text: string;
+  name: string | null;
+  saved: string | null;
+  folder?: string;
+  before: KeptStep[];
+  topic?: string;
 }
+const isStep = (step: any): step is KeptStep => typeof step === "string" || typeof step?.text === "string";
+function keptState(): Kept | null {
+  for (const store of ["sessionStorage", "localStorage"] as const) {
+    try {
+      const state = JSON.parse(window[store].getItem(STORE) ?? "null");
+      if (state && typeof state.text === "string") return { ...state, before: Array.isArray(state.before) ? state.before.filter(isStep) : [] };
+    } catch {
+      // a forbidden store, or another one's
+    }
+  }
+  return null;
+}
+
+// The token of the address stays here: whoever gets the link pastes it into a workbench of his own.
+export async function link(): Promise<string> {
+  takeTyped();
+  return `${location.origin}${location.pathname}#m=${await pack(text.value)}`;
+}
+export const LINK = /#m=([\w-]*)/;
 export async function follow(): Promise<boolean> {
   if (!location.hash.startsWith("#m=")) return false;
   try {
-    const shared = await unpacked(location.hash.slice(3));
+    const shared = await unpack(location.hash.slice(3));
     window.history.replaceState(null, "", location.pathname + location.search);
     load(shared, null, false);
     tell(say("link_read"));
@@ -252,7 +297,9 @@ async function greet(): Promise<void> {
   } catch {
     // no store: the server's language
   }
-  const answer = await connection.ask({ do: "hello", language: chosen ?? undefined }, "hello");
+  // what was chosen here, else the language of the command, else that of the browser
+  chosen ??= query.get("language") ?? navigator.language.slice(0, 2).toLowerCase();
+  const answer = await connection.ask({ do: "hello", language: chosen }, "hello");
   if (answer === SUPERSEDED || answer.error) return;
   hello.value = answer as Hello;
   words.value = answer.words;
@@ -265,25 +312,32 @@ async function greet(): Promise<void> {
     return;
   }
   begun = true;
-  const kept = restored();
+  const kept = keptState();
   const file = answer.file as { name: string; text: string } | null;
   if (kept?.topic) topic.value = kept.topic;
-  if (await follow()) return;
-  if (file && (!kept || kept.name !== file.name || kept.saved !== file.text)) {
-    load(file.text, file.name, true);
-    history = new History(file.text);
-    settle();
-  } else if (kept) {
-    history = new History(kept.text);
+  const blank = answer.blank ?? BLANK;
+  // a file of another folder may have the same name
+  const own = kept !== null && (kept.folder === undefined || kept.folder === answer.folder);
+  if (kept) {
+    history = new History(kept.text, own ? { name: kept.name, saved: kept.saved } : { name: null, saved: null });
     history.restore(kept.before);
     text.value = kept.text;
-    fileName.value = kept.name;
-    saved.value = kept.saved;
+    belongs(history.file);
+  }
+  const drawn = kept !== null && (kept.saved === null ? kept.text !== blank : kept.text !== kept.saved);
+  if (await follow()) return;
+  if (file && (!kept || !own || kept.name !== file.name || kept.saved !== file.text)) {
+    if (!drawn) {
+      history = new History(file.text);
+      text.value = "";
+    }
+    load(file.text, file.name, true);
+    if (drawn) tell(say("kept_below", { name: kept?.name ?? say("untitled") }));
+  } else if (kept) {
     awaited = true;
     settle();
     void read();
   } else {
-    const blank = answer.blank ?? BLANK;
     history = new History(blank);
     text.value = blank;
     settle();

@@ -3,7 +3,7 @@ import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { TextEditor } from "./editor";
 import type { Completions } from "./protocol";
-import { ask, editing, problems, text, write } from "./state";
+import { ask, editing, problems, takeTyped, text, typedBy, write } from "./state";
 import { say, sentence } from "./words";
 
 let typed = 0;
@@ -19,13 +19,17 @@ export function TextPane() {
       editor = new library.TextEditor(holder.current!, text.value, {
         label: say("text"),
         changed: (value) => {
-          clearTimeout(soon);
           const now = performance.now();
-          soon = window.setTimeout(() => {
+          clearTimeout(soon);
+          const taken = (): void => {
+            clearTimeout(soon);
+            typedBy(() => undefined);
             write(value, typed > 0 && now - last < 1200);
             typed += 1;
             last = performance.now();
-          }, 180);
+          };
+          typedBy(taken);
+          soon = window.setTimeout(taken, 180);
         },
         complete: async (value, line, column) => {
           const answer = await ask({ do: "complete", text: value, line, column }, "complete");
@@ -36,7 +40,7 @@ export function TextPane() {
     });
     return () => {
       gone = true;
-      clearTimeout(soon);
+      takeTyped();
       stops.forEach((stop) => stop());
       editor?.end();
     };

@@ -43,10 +43,10 @@ export const tickText = (value: number, step: number): string => {
 
 export const units = signal<Record<string, string>>({}); // as the reader's language spells them
 export const unitText = (unit?: string | null): string =>
-  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part));
+  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part).replaceAll(" ", "·").replace(/\^(\d)/g, (_whole, power: string) => RAISED[power]!));
 export const withUnit = (text: string, unit?: string | null): string => {
-  const told = unitText(unit);
-  return told ? `${text}${told === "°" ? "" : "\u00a0"}${told}` : text;
+  const label = unitText(unit);
+  return label ? `${text}${label === "°" ? "" : "\u00a0"}${label}` : text;
 };
 
 // A clause of the server's as a sentence.

@@ -1,0 +1,112 @@
+"""The program: at the same port again, with nothing left of it when it ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+from centrode.app import serving
+from centrode.app.serving import LOOPBACK, bound_socket
+from centrode.errors import InputError
+
+from .served import free_port
+
+BUSY = """
+import multiprocessing
+from centrode.app import workers
+
+class Busy:
+    def __init__(self, work):
+        pass
+
+    def answer(self, message):
+        print("busy", flush=True)
+        while True:
+            pass
+
+def serve(connection):
+    workers.WORKBENCH = Busy
+    workers.serve_messages(connection, None)
+
+if __name__ == "__main__":
+    methods = multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+    here, there = context.Pipe()
+    process = context.Process(target=serve, args=(there,), daemon=True)
+    process.start()
+    here.send_bytes(b"{}")
+    process.join()
+"""
+"""A server whose process computes without end."""
+LONGEST = 120.0
+"""Seconds after which what has not ended is a failure."""
+
+
+def begun(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
+    """A program of its own, and all that it starts, which write into its pipes."""
+    return subprocess.Popen(
+        [sys.executable, *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def port_of(listener: socket.socket) -> int:
+    return int(listener.getsockname()[1])
+
+
+def test_a_server_has_the_usual_port_and_the_next_one_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = free_port()
+    monkeypatch.setattr(serving, "PORTS", (first,))
+    with bound_socket() as one, bound_socket() as other:
+        assert port_of(one) == first != port_of(other)  # all usual ones are taken: any
+        with pytest.raises(InputError, match=str(first)):
+            bound_socket(first)
+    with bound_socket() as again:
+        assert port_of(again) == first
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows frees ports at once")
+def test_the_port_of_a_server_that_has_just_ended_is_free() -> None:
+    with bound_socket(0) as listener:
+        port = port_of(listener)
+        with socket.create_connection((LOOPBACK, port)) as browser:
+            accepted, _address = listener.accept()
+            accepted.close()  # who closes first keeps the port for a while
+            assert browser.recv(1) == b""
+    with bound_socket(port) as again:
+        assert port_of(again) == port
+
+
+def test_what_computes_ends_with_a_server_that_is_killed(tmp_path: Path) -> None:
+    (tmp_path / "busy.py").write_text(BUSY, "utf-8")
+    with begun(["busy.py"], tmp_path) as server:
+        assert server.stdout is not None and server.stdout.readline() == "busy\n"
+        server.kill()
+        # the pipe ends when the last process that holds it has ended
+        assert server.communicate(timeout=LONGEST) == ("", "")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no groups of processes to interrupt")
+def test_an_interrupt_ends_the_command_without_a_word(tmp_path: Path) -> None:
+    with begun(["-m", "centrode", "app", "--no-browser", "--port", "0"], tmp_path) as command:
+        assert command.stdout is not None
+        address = command.stdout.readline().split()[-1]
+        assert "Ctrl-C" in command.stdout.readline()
+        # it answers; what computes still loads its libraries then
+        with urllib.request.urlopen(address, timeout=LONGEST) as page:
+            assert page.status == 200
+        os.killpg(command.pid, signal.SIGINT)
+        out, err = command.communicate(timeout=LONGEST)
+        assert (command.returncode, out, err) == (0, "", "")
