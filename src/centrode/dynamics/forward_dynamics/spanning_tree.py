@@ -268,7 +268,7 @@ class SpanningTree:
             step.put(m, numbers, values, at)
         return at
 
-    def moved(
+    def positions_along(
         self, m: Namespace, numbers: Dimensions, values: Values, at: Positions, number: int
     ) -> Positions:
         """Positions whose parts that depend on one coordinate are placed anew, the others being those of `at`."""

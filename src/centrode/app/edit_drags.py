@@ -37,7 +37,7 @@ OTHER_SIDE = {"left": "right", "right": "left", "ahead": "behind", "behind": "ah
 
 
 @dataclass(frozen=True)
-class Reshaped:
+class ReshapedDescription:
     """A description after a drag.
 
     Attributes
@@ -58,7 +58,9 @@ class Reshaped:
     held: str = ""
 
 
-def reshape(sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bool = False) -> Reshaped:
+def reshape(
+    sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bool = False
+) -> ReshapedDescription:
     """The description with a joint at another place, or as near to it as locks and guides let it come.
 
     Raises InputError for a point that cannot be dragged.
@@ -74,7 +76,7 @@ def reshape(sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bo
 
 def reshaped_by(
     sketch: Sketch, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
-) -> Reshaped:
+) -> ReshapedDescription:
     """The description with some points at other places, everything else standing.
 
     Raises InputError where it would not assemble so.
@@ -87,7 +89,7 @@ def reshaped_by(
     tables: Mapping[str, Any] = with_assignments(sketch.tables, assignments)
     if sketch.document.prepared is None:
         places = {**sketch.places, **moved}
-        return Reshaped(assignments, tables, None, places, _values(sketch, places, moved), held)
+        return ReshapedDescription(assignments, tables, None, places, _values(sketch, places, moved), held)
     try:
         prepared, assignments, tables = _assembled(sketch, assignments, tables, moved, folder)
     except CentrodeError:
@@ -97,7 +99,7 @@ def reshaped_by(
         return reshaped_by(sketch, moved, folder, held=held, exactly=True)
     at = prepared.assembled.positions.points
     places = {name: (float(at[name][0]), float(at[name][1])) for name in sketch.points if name in at}
-    return Reshaped(assignments, tables, prepared, places, _values(sketch, places, moved), held)
+    return ReshapedDescription(assignments, tables, prepared, places, _values(sketch, places, moved), held)
 
 
 def _assembled(
