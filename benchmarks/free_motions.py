@@ -65,7 +65,7 @@ def free_motions() -> Iterator[Row]:
     error = float(np.max(np.abs(course.energy_residual)))
     # the steps alone, without what is found out before and after
     rate = free.integration.rate(start)
-    state = np.concatenate([[0.0, 0.01 / rate, 0.0, 0.0], free.integration.carried_at(start)])[:, None]
+    state = np.concatenate([[0.0, 0.01 / rate, 0.0, 0.0], free.integration.carried_values(start)])[:, None]
     rows = np.empty((4096, len(free.integration.problem.carried) + 1))
     kernel, numbers = free.integration.integrator(), free.integration.parameters(DURATION, tolerance, rate)
     times = best_times(

@@ -91,7 +91,7 @@ def reshaped_by(
         places = {**sketch.places, **moved}
         return ReshapedDescription(assignments, tables, None, places, _values(sketch, places, moved), held)
     try:
-        prepared, assignments, tables = _assembled(sketch, assignments, tables, moved, folder)
+        prepared, assignments, tables = _assemble(sketch, assignments, tables, moved, folder)
     except CentrodeError:
         if exactly:
             raise
@@ -102,7 +102,7 @@ def reshaped_by(
     return ReshapedDescription(assignments, tables, prepared, places, _values(sketch, places, moved), held)
 
 
-def _assembled(
+def _assemble(
     sketch: Sketch,
     assignments: tuple[Assignment, ...],
     tables: Mapping[str, Any],
@@ -186,7 +186,7 @@ def follow(sketch: Sketch, path: str, number: float) -> Ready:
             prepared = sketch.document.require_prepared()
             for k in range(1, steps + 1):
                 value = old + (number - old) * k / steps
-                prepared = ready(_changed(prepared, path, value))
+                prepared = ready(_mechanism_with(prepared, path, value))
             return prepared
         except CentrodeError as error:
             failure = error
@@ -194,7 +194,7 @@ def follow(sketch: Sketch, path: str, number: float) -> Ready:
     raise failure
 
 
-def _changed(prepared: Ready, path: str, value: float) -> Mechanism:
+def _mechanism_with(prepared: Ready, path: str, value: float) -> Mechanism:
     """The mechanism of an initial position with another number, its links' angles those of that position."""
     mechanism = prepared.mechanism
     driven = next((link for link in mechanism.links if path == f"drives.{link}.start"), None)

@@ -121,7 +121,7 @@ def integrate_many(
     start = start_of_many(free, equations, speeds)
     lanes = start.coordinates.shape[1]
     parameters = _parameters(free, equations, start, duration, tolerance, lanes)
-    carried = _carried(free, start, parameters, lanes)
+    carried = _carried_values(free, start, parameters, lanes)
     rate = parameters[CONTROLS.index(RATE)]
     first = np.minimum(duration, 0.01 / rate)
     state = np.concatenate([np.zeros((1, lanes)), first[None], np.zeros((2, lanes)), carried])
@@ -170,7 +170,7 @@ def _parameters(
     return own
 
 
-def _carried(free: FreeMotion, start: InitialState, parameters: Array, lanes: int) -> Array:
+def _carried_values(free: FreeMotion, start: InitialState, parameters: Array, lanes: int) -> Array:
     names = free.integration.names
     found: dict[str, Array] = {name: np.zeros(lanes) for name in free.integration.problem.carried}
     found |= dict(zip(names.coordinates, start.coordinates, strict=True))

@@ -104,7 +104,7 @@ def _consistent_speeds(equations: EquationsOfMotion, coordinates: Array, speeds:
     tree, count = equations.tree, len(coordinates)
     values = tree.values(ARRAYS, list(coordinates))
     still = equations.terms(ARRAYS, values, [0.0] * count, 0.0)
-    rows = [_dense(row, count) for row in still.rows]
+    rows = [_dense_row(row, count) for row in still.rows]
     right = [-float(x) for x in still.speeds]
     given = {path: _numbers_of(speed) for path, speed in speeds.items()}
     mass = _mass_matrix(still.mass, count, units_of(tree, equations.numbers))
@@ -164,7 +164,7 @@ def _speed_rows(equations: EquationsOfMotion, coordinates: Array, path: str) -> 
     return list(np.array(columns).T)
 
 
-def _dense(row: Mapping[int, Number], count: int) -> Array:
+def _dense_row(row: Mapping[int, Number], count: int) -> Array:
     found = np.zeros(count)
     for k, x in row.items():
         found[k] = float(x)

@@ -125,7 +125,7 @@ class MotionIntegration:
         rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0)
         return rate if rate > 0.0 else 1.0
 
-    def carried_at(self, start: InitialState) -> Array:
+    def carried_values(self, start: InitialState) -> Array:
         """What the integrator carries (carried), at a state that closes."""
         names = self.names
         found = dict.fromkeys(self.problem.carried, 0.0)
@@ -161,7 +161,7 @@ class MotionIntegration:
         take, rate = self.integrator(executor), self.rate(start)
         parameters = self.parameters(duration, tolerance, rate)
         first = min(duration, 0.01 / rate)
-        state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_at(start)])[:, None]
+        state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_values(start)])[:, None]
         kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
         attempts, steps, room = 0, 0, ROWS
         ended, cause = DURATION, None
@@ -234,7 +234,7 @@ class MotionIntegration:
         """
         followed = PythonIntegration(self.problem)
         parameters = [float(x) for x in self.parameters(duration, tolerance, self.rate(start))[:, 0]]
-        carried = self.carried_at(start)
+        carried = self.carried_values(start)
         names, count = self.names, len(self.problem.followed)
         angles = np.array(self.equations.tree.angles, dtype=np.intp)
         own = [
