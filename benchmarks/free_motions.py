@@ -113,9 +113,11 @@ def free_motions() -> Iterator[Row]:
     chain = squares(LOOPS)
     upright = chain.initial({"points.B0": (1.0, 0.0)})
     begun = time.perf_counter()
-    chain.course(upright, 1.0, 1e-12)
+    chain.integration.explicit_steps(upright, 1.0, 1e-12)
     built = time.perf_counter() - begun
-    taken = best_times({"chain": functools.partial(chain.course, upright, 20.0, 1e-12)}, rounds=1)["chain"]
+    taken = best_times(
+        {"chain": functools.partial(chain.integration.explicit_steps, upright, 20.0, 1e-12)}, rounds=1
+    )["chain"]
     yield Row(
         f"A02, {LOOPS} loops, 20 s, 20 change points",
         {"[s]": taken, "first [s]": built},
