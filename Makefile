@@ -10,8 +10,7 @@ SCHEMES := tests/dynamics/test_simulation_schemes.py
 # "arrays", or nothing of it is compiled or stored, it runs the same with the extras.
 WITHOUT_EXTRAS := tests/sweeps/test_without_extras.py tests/sweeps/test_sweeps.py tests/sweeps/test_refusals.py \
 	tests/sweeps/test_reduced.py tests/sweeps/test_gradients.py tests/numerics/test_scans.py tests/cli/test_sweep.py \
-	$(SCHEMES)::test_a_step_that_is_shown_is_a_step $(SCHEMES)::test_what_cannot_be_compiled_runs_on_arrays \
-	$(SCHEMES)::test_nothing_that_moves_it
+	$(SCHEMES)::test_a_step_that_is_shown_is_a_step $(SCHEMES)::test_nothing_that_moves_it
 
 # Matrices are small, and workers run on every core: threads of the linear algebra would only wait for each other.
 quick tests tests-without-extras samples campaigns snapshots: export OPENBLAS_NUM_THREADS := 1

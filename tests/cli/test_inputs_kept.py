@@ -62,7 +62,7 @@ FILES: dict[str, tuple[str, tuple[str, ...]]] = {
 STUDIES = {"sweep", "variants"}
 """Commands that read a study or a table beside a mechanism; tested below."""
 READ_NO_FILE = {"examples", "schema", "chains"}
-WRITE_NO_FILE = {"check"}
+WRITE_NO_FILE = {"check", "app"}
 
 
 def described(command: str) -> str:

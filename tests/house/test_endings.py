@@ -188,7 +188,7 @@ def test_a_full_disk_is_told() -> None:
         ("--help", ">&- 2>&-", 0, ""),
         ("--nothing", ">&-", 2, "Usage: "),
         pytest.param("examples nothing", "2>/dev/full", 2, "", marks=FULL),
-        pytest.param("examples", "2>/dev/full", 0, "andrews-squeezer", marks=FULL),
+        pytest.param("examples", "2>/dev/full", 0, "andrews-mechanism", marks=FULL),
         pytest.param("--nothing", "2>/dev/full", 2, "", marks=FULL),
         pytest.param("examples", ">/dev/full 2>&1", 2, "", marks=FULL),
         pytest.param("examples", ">/dev/full 2>&-", 2, "", marks=FULL),

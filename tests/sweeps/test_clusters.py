@@ -304,7 +304,7 @@ from centrode.cli.main import main
 from centrode.cli.progress import Progress
 from centrode.sweeps import designs
 if __name__ == "__main__":
-    designs.BLOCK_BYTES = 4_000
+    designs.BLOCK_BYTES, designs.BLOCK_SECONDS = 4_000, 1e-9  # a mechanism a block, however fast they are
     class Interrupting(Progress):
         def say(self, what, done=0, of=0):
             # as a terminal does: to all processes of the group
