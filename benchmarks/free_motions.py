@@ -64,10 +64,10 @@ def free_motions() -> Iterator[Row]:
     first = time.perf_counter() - begun
     error = float(np.max(np.abs(course.energy_residual)))
     # the steps alone, without what is found out before and after
-    rate = free.rate(start)
-    state = np.concatenate([[0.0, 0.01 / rate, 0.0, 0.0], free.carried_at(start)])[:, None]
-    rows = np.empty((4096, len(free.problem.carried) + 1))
-    kernel, numbers = free.integrator(), free.parameters(DURATION, tolerance, rate)
+    rate = free.integration.rate(start)
+    state = np.concatenate([[0.0, 0.01 / rate, 0.0, 0.0], free.integration.carried_values(start)])[:, None]
+    rows = np.empty((4096, len(free.integration.problem.carried) + 1))
+    kernel, numbers = free.integration.integrator(), free.integration.parameters(DURATION, tolerance, rate)
     times = best_times(
         {
             "steps": functools.partial(kernel.run, numbers, state, 1_000_000, rows),
@@ -113,9 +113,11 @@ def free_motions() -> Iterator[Row]:
     chain = squares(LOOPS)
     upright = chain.initial({"points.B0": (1.0, 0.0)})
     begun = time.perf_counter()
-    chain.course(upright, 1.0, 1e-12)
+    chain.integration.explicit_steps(upright, 1.0, 1e-12)
     built = time.perf_counter() - begun
-    taken = best_times({"chain": functools.partial(chain.course, upright, 20.0, 1e-12)}, rounds=1)["chain"]
+    taken = best_times(
+        {"chain": functools.partial(chain.integration.explicit_steps, upright, 20.0, 1e-12)}, rounds=1
+    )["chain"]
     yield Row(
         f"A02, {LOOPS} loops, 20 s, 20 change points",
         {"[s]": taken, "first [s]": built},

@@ -16,7 +16,7 @@ import socket
 import sys
 from pathlib import Path
 from centrode.app.server import ServerSettings
-from centrode.app.serving import run_server, work_folder_of
+from centrode.app.service import run_server, work_folder_of
 if __name__ == "__main__":
     port = int(sys.argv[1])
     listener = socket.socket()

@@ -10,10 +10,10 @@ import pytest
 
 import centrode as ct
 from centrode.app.documents import read_document
+from centrode.app.edit_drags import reshape
 from centrode.app.frames import frame_bytes, read_frame
-from centrode.app.moving import place_on_way, way_of
+from centrode.app.move_drags import place_on_way, way_of
 from centrode.app.operations import Patch
-from centrode.app.reshaping import reshape
 from centrode.app.scene import edit_refusal
 from centrode.app.sketch import Sketch
 from centrode.errors import CentrodeError, InputError

@@ -11,14 +11,14 @@ from typing import Any, TypeAlias
 from centrode.app.cam_scene import cam_scene
 from centrode.app.completion import completions
 from centrode.app.documents import TEXT_SIZE, Document, digest_of, read_document
+from centrode.app.edit_drags import reshape
 from centrode.app.exports import export_list, exported_file
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import frame_bytes
-from centrode.app.moving import motion_answer, place_on_way, way_of
+from centrode.app.move_drags import motion_answer, place_on_way, way_of
 from centrode.app.operations import Patch, apply_operations
 from centrode.app.panels import panel_of, topic_list, topics_of
 from centrode.app.readiness import readiness_of
-from centrode.app.reshaping import reshape
 from centrode.app.scene import scene_of
 from centrode.app.sketch import Sketch
 from centrode.app.templates import template_list

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from centrode.app.edit_drags import value_at_place
 from centrode.app.quantity_texts import plain
-from centrode.app.reshaping import value_at_place
 from centrode.app.sketch import Sketch
 from centrode.errors import InputError
 from centrode.locale import _

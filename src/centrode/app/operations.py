@@ -10,10 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from centrode.app.documents import Document, read_document
-from centrode.app.numbers_of_text import place_of_path, written_like
-from centrode.app.quantity_texts import is_number, read_field, typed_quantity, written_quantity
-from centrode.app.references import key_places, references
-from centrode.app.reshaping import (
+from centrode.app.edit_drags import (
     Assignment,
     follow,
     follows_from_points,
@@ -23,6 +20,9 @@ from centrode.app.reshaping import (
     value_at_place,
     written_position,
 )
+from centrode.app.numbers_of_text import place_of_path, written_like
+from centrode.app.quantity_texts import is_number, read_field, typed_quantity, written_quantity
+from centrode.app.references import key_places, references
 from centrode.app.scene import FORCE, guide_line, guide_name, load_name, rows_of
 from centrode.app.sketch import Sketch, Vector, list_of_tables, marked_names, with_mark
 from centrode.app.text_changes import TextChanges

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from centrode import render
-from centrode.app.moving import way_of
+from centrode.app.move_drags import way_of
 from centrode.app.sketch import Sketch
 from centrode.errors import CentrodeError
 from centrode.kinematics.check import check_of

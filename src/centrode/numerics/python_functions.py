@@ -1,6 +1,7 @@
 """Graphs as functions of Python: for single numbers, real or complex, where no machine code is there or none is wanted.
 
-The text of a function is made from the graph's operations alone: its names are made here, its constants are numbers.
+The text of a function is made from the graph's operations alone: its names are counted here, its constants are written
+as floats are, its operations come from a table. Names of variables, which may hold what a user wrote, do not get there.
 """
 
 from __future__ import annotations
@@ -96,8 +97,15 @@ COMPLEX: dict[str, Callable[..., Number]] = {
 """Functions continued analytically from the real axis; where a formula decides, the real part does."""
 
 
+NUMBERS = {"nan": math.nan, "infinity": math.inf}
+"""Numbers that have no digits, by the names that they have in the text."""
+
+
 def function_text(graph: Graph, arguments: Sequence[str], is_complex: bool) -> str:
-    """The text of `function(given)`, which returns the graph's outputs in order."""
+    """The text of `function(given)`, which returns the graph's outputs in order.
+
+    Raises KeyError for a variable that is no argument, and for an operation that is none.
+    """
     places = {name: f"given[{k}]" for k, name in enumerate(arguments)}
     names: dict[Any, str] = {}
     lines = ["def function(given):"]
@@ -106,8 +114,7 @@ def function_text(graph: Graph, arguments: Sequence[str], is_complex: bool) -> s
             names[node] = f"v{len(names)}"
             lines.append(f" {names[node]} = {places[str(node.detail)]}")
         elif node.operation == CONSTANT:
-            value = float(node.detail)
-            names[node] = f"({value!r})" if math.isfinite(value) else f"float({str(value)!r})"
+            names[node] = _constant_text(float(node.detail))
         else:
             names[node] = f"v{len(names)}"
             lines.append(
@@ -115,6 +122,13 @@ def function_text(graph: Graph, arguments: Sequence[str], is_complex: bool) -> s
             )
     lines.append(f" return ({''.join(names[node] + ', ' for node in graph.outputs.values())})")
     return "\n".join(lines)
+
+
+def _constant_text(value: float) -> str:
+    """A number as its shortest digits that give it back; what has no digits by a name of `NUMBERS`."""
+    if math.isfinite(value):
+        return f"({value!r})"
+    return "nan" if math.isnan(value) else f"({'-' if value < 0.0 else ''}infinity)"
 
 
 def _operation(operation: str, inside: Sequence[str], is_complex: bool) -> str:
@@ -131,15 +145,20 @@ def _operation(operation: str, inside: Sequence[str], is_complex: bool) -> str:
         return f"not {inside[0]}"
     if operation == "where":
         return f"{inside[1]} if {inside[0]} else {inside[2]}"
+    if operation not in REAL:
+        raise KeyError(operation)
     return f"{operation}({', '.join(inside)})"
 
 
 @lru_cache(maxsize=128)
 def _compiled(text: str, is_complex: bool) -> Function:
-    names: dict[str, Any] = dict(COMPLEX if is_complex else REAL)
+    names: dict[str, Any] = {**(COMPLEX if is_complex else REAL), **NUMBERS, "__builtins__": {}}
+    # Nothing that a user writes is in this text. `function_text` is its only source: variables are v0, v1 ... and
+    # given[0], given[1] ... by their order, constants the digits of floats, operations words of a table. So names of
+    # links and the text of formulas cannot run anything. Beyond that no built-in function has a name here.
     exec(compile(text, "<graph>", "exec"), names)
-    made: Function = names["function"]
-    return made
+    function: Function = names["function"]
+    return function
 
 
 def python_function(graph: Graph, arguments: Sequence[str], is_complex: bool = False) -> Function:

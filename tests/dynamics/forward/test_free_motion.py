@@ -11,12 +11,9 @@ import pytest
 import centrode as ct
 from centrode.dynamics.forward_dynamics.batches import integrate_many
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
-from centrode.dynamics.forward_dynamics.free_motion import (
-    FreeMotion,
-    InitialState,
-    Trajectory,
-    free_motion_of,
-)
+from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.initial_state import InitialState
+from centrode.dynamics.forward_dynamics.trajectory import Trajectory
 from centrode.errors import InputError, NotComputedYet
 from dynamics.forward.free_descriptions import (
     GRAVITY,

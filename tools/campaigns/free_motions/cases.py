@@ -8,12 +8,9 @@ from typing import Any
 import numpy as np
 
 import centrode as ct
-from centrode.dynamics.forward_dynamics.free_motion import (
-    FreeMotion,
-    InitialState,
-    Trajectory,
-    free_motion_of,
-)
+from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.initial_state import InitialState
+from centrode.dynamics.forward_dynamics.trajectory import Trajectory
 from tools.campaigns.campaign import Campaign, Outcome, random_of
 from tools.campaigns.grown.higher import grown_higher
 from tools.campaigns.grown.plane import KINDS, grown

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
 from centrode.dynamics.forward_dynamics.free_loads import free_loads_of
-from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, InitialState
-from centrode.dynamics.forward_dynamics.integration import CONTROLS, RATE
+from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
+from centrode.dynamics.forward_dynamics.initial_state import InitialState
+from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS, RATE
 from centrode.dynamics.loads import loads_of
 from centrode.dynamics.masses import masses_of
 from centrode.kinematics.path import DrivenBy
@@ -89,7 +90,7 @@ def start_of_many(
         coordinates = [x + shift.get(k, 0.0) for k, x in enumerate(coordinates)]
     placed = free.tree.values(ARRAYS, coordinates)
     system = started.system(ARRAYS, started.terms(ARRAYS, placed, rest, 0.0))
-    moving = started.changed_to_fit(ARRAYS, placed, rest, 0.0, system)
+    moving = started.consistent_speeds(ARRAYS, placed, rest, 0.0, system)
     lanes = np.broadcast_shapes(*(np.shape(x) for x in (*coordinates, *moving)))
 
     def spread(rows: Sequence[npt.ArrayLike]) -> Array:
@@ -120,11 +121,11 @@ def integrate_many(
     start = start_of_many(free, equations, speeds)
     lanes = start.coordinates.shape[1]
     parameters = _parameters(free, equations, start, duration, tolerance, lanes)
-    carried = _carried(free, start, parameters, lanes)
+    carried = _carried_values(free, start, parameters, lanes)
     rate = parameters[CONTROLS.index(RATE)]
     first = np.minimum(duration, 0.01 / rate)
     state = np.concatenate([np.zeros((1, lanes)), first[None], np.zeros((2, lanes)), carried])
-    integrator = integrator_of(free.problem, executor, width=None)
+    integrator = integrator_of(free.integration.problem, executor, width=None)
     bounds = np.linspace(0, lanes, threads + 1).astype(int)
     with ThreadPoolExecutor(threads) as pool:
         parts = list(
@@ -136,7 +137,7 @@ def integrate_many(
             )
         )
     reached = np.concatenate(parts, axis=1)
-    names = free.names
+    names = free.integration.names
     before, after = (
         [rows[names.part(part)] for part in (names.coordinates, names.speeds)]
         for rows in (carried, reached[HEADER:])
@@ -163,19 +164,21 @@ def _parameters(
 ) -> Array:
     """Controls and numbers (parameters, lanes); speeds are compared with the greatest of all lanes."""
     one = InitialState(start.coordinates[:, 0], np.max(np.abs(start.speeds), axis=1))
-    own = free.parameters(duration, tolerance, free.rate(one), lanes)
-    found = free.variables.values(equations)
+    own = free.integration.parameters(duration, tolerance, free.integration.rate(one), lanes)
+    found = free.integration.variables.values(equations)
     own[len(CONTROLS) :] = np.broadcast_to(found, (len(found), lanes))
     return own
 
 
-def _carried(free: FreeMotion, start: InitialState, parameters: Array, lanes: int) -> Array:
-    names = free.names
-    found: dict[str, Array] = {name: np.zeros(lanes) for name in free.problem.carried}
+def _carried_values(free: FreeMotion, start: InitialState, parameters: Array, lanes: int) -> Array:
+    names = free.integration.names
+    found: dict[str, Array] = {name: np.zeros(lanes) for name in free.integration.problem.carried}
     found |= dict(zip(names.coordinates, start.coordinates, strict=True))
     found |= dict(zip(names.speeds, start.speeds, strict=True))
-    given = dict(zip(free.problem.parameters, parameters, strict=True))
-    closed = evaluate(free.problem.of_closing, found | given | {TIME: np.zeros(1), STEP: np.ones(1)})
+    given = dict(zip(free.integration.problem.parameters, parameters, strict=True))
+    closed = evaluate(
+        free.integration.problem.of_closing, found | given | {TIME: np.zeros(1), STEP: np.ones(1)}
+    )
     kept = (*names.coordinates, *names.speeds, *names.works)
-    rows = [found[name] if name in kept else closed[name] for name in free.problem.carried]
+    rows = [found[name] if name in kept else closed[name] for name in free.integration.problem.carried]
     return np.array([np.broadcast_to(row, lanes) for row in rows], dtype=np.float64)

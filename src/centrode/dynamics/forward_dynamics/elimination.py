@@ -25,7 +25,7 @@ def is_zero(x: Number) -> bool:
     return type(x) is float and x == 0.0
 
 
-def added(vector: dict[Any, Number], key: Any, term: Number) -> None:
+def add_term(vector: dict[Any, Number], key: Any, term: Number) -> None:
     """Add a term to an entry, if it is not the plain zero."""
     if not is_zero(term):
         vector[key] = vector[key] + term if key in vector else term
@@ -58,7 +58,7 @@ def order_of_least_degree(size: int, pattern: set[tuple[int, int]]) -> list[int]
     return order
 
 
-def _divided(_row: int, pivot: Number) -> Number:
+def _reciprocal(_row: int, pivot: Number) -> Number:
     return 1.0 / pivot
 
 
@@ -79,7 +79,7 @@ class Elimination:
     reciprocals: Mapping[int, Number]
 
     @classmethod
-    def of(cls, size: int, entries: Entries, reciprocal: Reciprocal = _divided) -> Elimination:
+    def of(cls, size: int, entries: Entries, reciprocal: Reciprocal = _reciprocal) -> Elimination:
         """The elimination of a matrix."""
         pattern = {key for key, x in entries.items() if not is_zero(x)}
         order = order_of_least_degree(size, pattern)
@@ -113,7 +113,7 @@ class Elimination:
         for row in self.order:
             if row in y:
                 for i, factor in self.columns[row].items():
-                    added(y, i, -times(factor, y[row]))
+                    add_term(y, i, -times(factor, y[row]))
         return y
 
     def backward(self, y: Mapping[int, Number]) -> Vector:
@@ -124,7 +124,7 @@ class Elimination:
                 x[row] = times(y[row], self.reciprocals[row])
             for i, factor in self.columns[row].items():
                 if i in x:
-                    added(x, row, -times(factor, x[i]))
+                    add_term(x, row, -times(factor, x[i]))
         return x
 
     def product(self, one: Mapping[int, Number], other: Mapping[int, Number]) -> Number:

@@ -20,7 +20,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeAlias
 
-from centrode.dynamics.forward_dynamics.elimination import Elimination, Entries, Vector, added, is_zero, times
+from centrode.dynamics.forward_dynamics.elimination import (
+    Elimination,
+    Entries,
+    Vector,
+    add_term,
+    is_zero,
+    times,
+)
 from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     SpanningTree,
@@ -197,7 +204,7 @@ class EquationsOfMotion:
         rotors = dict(values.rotors)
         if number in rotors:
             rotors[number] = rotor_jets(rotors[number], unit)
-        at = self.tree.moved(jets, self.numbers, Values(coordinates, rotors), plain, number)
+        at = self.tree.positions_along(jets, self.numbers, Values(coordinates, rotors), plain, number)
         return self._state(jets, at, time, 1)
 
     def _inertia(self, state: JointState, columns: Sequence[JointState]) -> tuple[Entries, Vector]:
@@ -210,10 +217,10 @@ class EquationsOfMotion:
                 bias = times(2.0, jet.coefficients[2])
                 share = {k: slopes[k][number][1].coefficients[1] for k in sorted(depends)}
                 for i, a in share.items():
-                    added(force, i, -times(factor, times(a, bias)))
+                    add_term(force, i, -times(factor, times(a, bias)))
                     for j, b in share.items():
                         if j <= i:
-                            added(mass, (i, j), times(factor, times(a, b)))
+                            add_term(mass, (i, j), times(factor, times(a, b)))
         return mass, force
 
     def _add_loads(self, state: JointState, columns: Sequence[JointState], force: Vector) -> list[Number]:
@@ -222,7 +229,7 @@ class EquationsOfMotion:
             strength = load.term.strength(state)
             coordinate = load.term.coordinate
             for k in self._reach(coordinate):
-                added(force, k, times(coordinate.slope(columns[k]).value, strength))
+                add_term(force, k, times(coordinate.slope(columns[k]).value, strength))
             powers.append(times(strength, coordinate.slope(state).value))
         return powers
 
@@ -245,7 +252,7 @@ class EquationsOfMotion:
             for k in sorted(self.tree.dependence(constraint)):
                 for number, x in enumerate(constraint.residual(jets, self.numbers, columns[k].at)):
                     slope = x.coefficients[1] if isinstance(x, Jet) else 0.0
-                    added(rows[first + number], k, slope)
+                    add_term(rows[first + number], k, slope)
         return rows, residuals
 
     # what follows from the terms
@@ -255,16 +262,16 @@ class EquationsOfMotion:
         mass, force = dict(terms.mass), dict(terms.force)
         for row, weight, bias in zip(terms.rows, self.weights, terms.bias, strict=False):
             for i, a in row.items():
-                added(force, i, -times(weight, times(a, bias)))
+                add_term(force, i, -times(weight, times(a, bias)))
                 for j, b in row.items():
                     if j <= i:
-                        added(mass, (i, j), times(weight, times(a, b)))
+                        add_term(mass, (i, j), times(weight, times(a, b)))
         of_mass = Elimination.of(self.size, mass)
         solved = [of_mass.forward(row) for row in terms.rows]
         schur: Entries = {}
         for i, one in enumerate(solved):
             for j in range(i + 1):
-                added(schur, (i, j), of_mass.product(one, solved[j]))
+                add_term(schur, (i, j), of_mass.product(one, solved[j]))
         chosen: dict[int, Number] = {}
         own = [schur.get((i, i), 0.0) for i in range(len(solved))]
         diagonal = self.references or own
@@ -298,7 +305,7 @@ class EquationsOfMotion:
         """Change of the coordinates by one step of Newton's method of least change in the measure of M."""
         return system.solve({}, terms.values)[0]
 
-    def changed_to_fit(
+    def consistent_speeds(
         self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number, system: MassSystem
     ) -> list[Number]:
         """Speeds that keep the closures at closed coordinates, changed least in the measure of M."""
@@ -406,10 +413,10 @@ class MassSystem:
         forward = self.mass.forward(force)
         right: Vector = {}
         for i, row in enumerate(self.rows):
-            added(right, i, bias[i])
-            added(right, i, self.mass.product(row, forward))
+            add_term(right, i, bias[i])
+            add_term(right, i, self.mass.product(row, forward))
         forces = self.closures.solve(right)
         for i, size in forces.items():
             for k, x in self.rows[i].items():
-                added(forward, k, -times(x, size))
+                add_term(forward, k, -times(x, size))
         return self.mass.backward(forward), forces

@@ -79,7 +79,7 @@ def residuals_and_rows(
         changed[k] = unit
         if k in rotors:
             rotors[k] = rotor_jets(rotors[k], unit)
-        moved = tree.moved(JETS, numbers, Values(changed, rotors), at, k)
+        moved = tree.positions_along(JETS, numbers, Values(changed, rotors), at, k)
         first = 0
         for constraint, own in zip(constraints, residuals, strict=True):
             if k in tree.dependence(constraint):

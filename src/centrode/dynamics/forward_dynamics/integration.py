@@ -1,233 +1,365 @@
-"""Free motion as an initial value problem: what is followed, how it is closed, how great an error counts.
-
-Followed are coordinates, cosine and sine of the angles among them, speeds and works. The rotors are states like the
-others, so no stage has a function of an angle; after each step that is taken they are computed anew from the angle.
-There the coordinates and speeds are closed too, by one step of Newton's method of least change in the measure of the
-masses.
-"""
+"""The integration of a free motion: steps from a state, explicit or implicit, and what is carried between them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from math import inf, isfinite
 from typing import Any, TypeAlias
 
-from centrode.dynamics.forward_dynamics.elimination import is_zero
-from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Flags
-from centrode.dynamics.forward_dynamics.spanning_tree import Rotor, Values
-from centrode.dynamics.loads import EnergyClass
-from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
-from centrode.numerics.initial_value_problems import (
-    BEFORE,
-    END,
-    OF_FIFTH,
-    OF_THIRD,
-    SMALLEST,
-    STEP,
-    TIME,
-    InitialValueProblem,
+import numpy as np
+import numpy.typing as npt
+from scipy.integrate import OdeSolution, Radau
+
+from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
+from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.initial_position import units_of
+from centrode.dynamics.forward_dynamics.initial_state import InitialState
+from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
+from centrode.dynamics.forward_dynamics.motion_problem import (
+    AHEAD,
+    CONTROLS,
+    FAR,
+    GUARD,
+    INDEPENDENCE,
+    LIMIT,
+    LOOKED,
+    NEVER,
+    MotionNames,
+    motion_problem,
 )
+from centrode.dynamics.forward_dynamics.motion_steps import (
+    BLOW_UP,
+    CHANGE_POINT,
+    CROSSING,
+    DURATION,
+    NEAR_MISS,
+    STEP_SIZE,
+    Event,
+    MotionSteps,
+)
+from centrode.locale import _
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.initial_value_problems import HEADER, SMALLEST, STEP, TIME, InitialValueProblem
+from centrode.numerics.integrators import Integrator, integrator_of
+from centrode.numerics.python_integrations import PythonIntegration
+from centrode.numerics.scans import evaluate
 
+Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
-Namespace: TypeAlias = Any
 
-TOLERANCE, RATE, LENGTH = "tolerance", "rate", "length"
-INDEPENDENCE, AHEAD, LOOKED, LIMIT, GUARD = "independence", "ahead", "looked", "limit", "guard"
-"""Carried beside: how independent closures are, the time until they are not, and what stops the steps there."""
-FLOOR = 0.1
-"""Share of what speeds are compared with that counts where they are zero."""
-SHARE = 0.2
-"""Of the tolerance that a step may err by its estimate: errors of many steps add up."""
-NEAR, FAR = 0.25, 0.4
-"""A change point is looked for where closures are no more independent than this, and the fastest link will turn by
-less
-than this until they lose rank."""
-NEVER = 1e300
-CONTROLS = (END, SMALLEST, TOLERANCE, RATE, LENGTH)
-"""Parameters of a lane: its end, its least step, the error of a step, what speeds and lengths are compared with."""
+ROWS, MOST_ROWS = 1024, 65536
+"""Steps in one call of the integrator: few at first, as room is made for all of them."""
+ATTEMPTS = 200_000
+"""Steps tried in one call of the integrator, so that progress is shown between calls."""
+MOST_STEPS = 5_000_000
+"""Steps of one motion, beyond which it ends."""
+WILD = 1e5
+"""Displacements over the greatest length, and speeds over those at the start, grow without bound beyond this."""
+STALLED = 1e-13
+"""A step below this share of the time reached is none."""
+DOUBTFUL = 1e-3
+"""Closures that come nearer to losing rank than this, and do not, leave it doubtful how the motion goes on."""
+LOST = 1e-4
+"""Closures that are no more independent than this, and no smooth motion through the place where they lose rank."""
+ENERGY = 1e-7
+"""Energies before and behind a change point agree to this share of the kinetic energy."""
 
 
 @dataclass(frozen=True)
-class MotionNames:
-    """Names of what is followed, and of what stays as it is during a step."""
+class MotionIntegration:
+    """Equations of motion as an initial value problem whose steps can be taken.
 
-    coordinates: tuple[str, ...]
-    cosines: tuple[str, ...]
-    sines: tuple[str, ...]
-    speeds: tuple[str, ...]
-    works: tuple[str, ...]
-    flags: tuple[str, ...]
+    Their numbers are parameters of the problem, so that mechanisms of one structure share one kernel.
+    """
 
-    @classmethod
-    def of(cls, equations: EquationsOfMotion) -> MotionNames:
-        """Names by numbers of coordinates and equations."""
-        size, angles = range(equations.size), equations.tree.angles
-        return cls(
-            tuple(f"coordinate {k}" for k in size),
-            tuple(f"cosine {k}" for k in angles),
-            tuple(f"sine {k}" for k in angles),
-            tuple(f"speed {k}" for k in size),
-            tuple(f"work {k}" for k in range(len(worked_loads(equations)) + len(equations.kept))),
-            tuple(f"counts {row}" for row in sorted(equations.dependent)),
+    equations: EquationsOfMotion
+
+    @cached_property
+    def variables(self) -> NumbersAsVariables:
+        """The equations with numbers as variables: one for all mechanisms of this structure."""
+        return NumbersAsVariables.of(self.equations)
+
+    @cached_property
+    def names(self) -> MotionNames:
+        """Names of what is carried from step to step."""
+        return MotionNames.of(self.equations)
+
+    @cached_property
+    def problem(self) -> InitialValueProblem:
+        """The initial value problem, its numbers being parameters."""
+        return motion_problem(self.variables.equations, self.variables.parameters)
+
+    def integrator(self, executor: str = "auto") -> Integrator:
+        """What takes steps of one mechanism, by an executor."""
+        return integrator_of(self.problem, executor)
+
+    def parameters(self, end: Number, tolerance: Number, rate: Number, lanes: int = 1) -> Array:
+        """Values of the parameters (parameters, lanes).
+
+        Parameters
+        ----------
+        end : time at which steps end [s]
+        tolerance : of the error of a step
+        rate : what speeds are compared with [1/s]
+        """
+        smallest = STALLED * np.maximum(np.asarray(end, dtype=np.float64), 1.0 / np.asarray(rate))
+        smallest = np.where(np.isfinite(smallest), smallest, 0.0)
+        controls = dict(
+            zip(CONTROLS, (end, smallest, tolerance, rate, float(self.equations.numbers.scale)), strict=True)
+        )
+        rows = np.array([np.broadcast_to(controls[name], lanes) for name in CONTROLS], dtype=np.float64)
+        numbers = self.variables.values(self.equations)
+        return np.concatenate([rows, np.broadcast_to(numbers, (len(numbers), lanes))])
+
+    def rate(self, start: InitialState) -> float:
+        """What speeds are compared with [1/s]: those at the start, and what the accelerations make of a rest."""
+        units = units_of(self.equations.tree, self.equations.numbers)
+        values = self.equations.tree.values(ARRAYS, list(start.coordinates))
+        with np.errstate(all="ignore"):
+            terms = self.equations.terms(ARRAYS, values, list(start.speeds), 0.0)
+            accelerations, _forces, _flags = self.equations.accelerations(ARRAYS, terms)
+        fast = float(np.max(np.abs(start.speeds) / units, initial=0.0))
+        bent = float(np.max(np.abs(np.array(accelerations, dtype=np.float64)) / units, initial=0.0))
+        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0)
+        return rate if rate > 0.0 else 1.0
+
+    def carried_values(self, start: InitialState) -> Array:
+        """What the integrator carries (carried), at a state that closes."""
+        names = self.names
+        found = dict.fromkeys(self.problem.carried, 0.0)
+        found |= dict(zip(names.coordinates, start.coordinates, strict=True))
+        found |= dict(zip(names.speeds, start.speeds, strict=True))
+        closing = evaluate(
+            self.problem.of_closing,
+            found
+            | {TIME: 0.0, STEP: 1.0}
+            | dict(zip(self.problem.parameters, self.parameters(1.0, 1.0, 1.0)[:, 0], strict=True)),
+        )
+        # rotors and flags are those of the start; the start itself is closed already
+        kept = (*names.coordinates, *names.speeds, *names.works)
+        return np.array(
+            [found[name] if name in kept else float(closing[name]) for name in self.problem.carried]
         )
 
-    @property
-    def followed(self) -> tuple[str, ...]:
-        """All that is followed, in order."""
-        return (*self.coordinates, *self.cosines, *self.sines, *self.speeds, *self.works)
+    def explicit_steps(
+        self,
+        start: InitialState,
+        duration: float,
+        tolerance: float,
+        executor: str = "auto",
+        progress: Callable[[float], None] | None = None,
+    ) -> MotionSteps:
+        """Steps of the explicit scheme from a state to a time; change points on the way are passed.
 
-    def part(self, names: Sequence[str]) -> slice:
-        """Where some of them stand in a row that has all of them."""
-        if not names:
-            return slice(0, 0)
-        first = self.followed.index(names[0])
-        return slice(first, first + len(names))
+        Parameters
+        ----------
+        duration [s], tolerance : of the error of a step, relative to what moves
+        progress : called with the time reached [s]
+        """
+        take, rate = self.integrator(executor), self.rate(start)
+        parameters = self.parameters(duration, tolerance, rate)
+        first = min(duration, 0.01 / rate)
+        state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_values(start)])[:, None]
+        kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
+        attempts, steps, room = 0, 0, ROWS
+        ended, cause = DURATION, None
+        guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
+        events: list[Event] = []
+        detours: list[Detour] = []
+        while float(state[0, 0]) < duration:
+            rows = np.empty((room, len(kept[0][0])))
+            state = take.run(parameters, state, ATTEMPTS, rows)
+            attempts += int(state[2, 0])
+            written = int(state[3, 0])
+            steps += written
+            kept.append(rows[:written])
+            time, size = float(state[0, 0]), float(state[1, 0])
+            if progress is not None:
+                progress(time)
+            if time >= duration:
+                break
+            if guard is not None and state[guard, 0] != 0.0:
+                passed = self._pass_change_point(parameters, state, tolerance)
+                if isinstance(passed, str):
+                    ended, cause = CHANGE_POINT, passed
+                    break
+                detour, event = passed
+                if event is not None and event.kind == NEAR_MISS:
+                    # looked at again and again on the way there, it is one
+                    events = [
+                        one
+                        for one in events
+                        if one.kind != NEAR_MISS or abs(one.time - event.time) > FAR / rate
+                    ]
+                events += [event] if event is not None else []
+                if detour is not None:
+                    detours.append(detour)
+                    kept.append(np.concatenate([[float(state[0, 0])], state[HEADER:, 0]])[None])
+                continue
+            away = self._farthest(state, rate)
+            if away > WILD:
+                ended = BLOW_UP
+                cause = _(
+                    "at {time:.9g} s something had moved {far:.3g} times the greatest length or as fast as that"
+                )
+                cause = cause.format(time=time, far=away)
+                break
+            if not size > parameters[CONTROLS.index(SMALLEST), 0]:
+                wild = not np.all(np.isfinite(state)) or away > WILD
+                ended = BLOW_UP if wild else STEP_SIZE
+                cause = _("at {time:.9g} s the step became as small as {step:.3g} s").format(
+                    time=time, step=size
+                )
+                break
+            if steps >= MOST_STEPS:
+                ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
+                break
+            room = min(4 * room, MOST_ROWS)
+        return MotionSteps(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
 
+    def implicit_steps(
+        self,
+        start: InitialState,
+        duration: float,
+        tolerance: float,
+        executor: str = "auto",
+        progress: Callable[[float], None] | None = None,
+    ) -> MotionSteps:
+        """Steps of SciPy's Radau, for loads so stiff or so strongly damped that they hold explicit steps back.
 
-def worked_loads(equations: EquationsOfMotion) -> tuple[int, ...]:
-    """Numbers of the loads whose work is followed: those without a potential energy."""
-    return tuple(
-        k for k, load in enumerate(equations.loads) if load.term.amount.energy_class != EnergyClass.STORED
-    )
+        Its parameters are those of `explicit_steps`. (E. Hairer and G. Wanner, Solving Ordinary Differential
+        Equations II, 2nd ed., 1996, section IV.8.)
+        """
+        followed = PythonIntegration(self.problem)
+        parameters = [float(x) for x in self.parameters(duration, tolerance, self.rate(start))[:, 0]]
+        carried = self.carried_values(start)
+        names, count = self.names, len(self.problem.followed)
+        angles = np.array(self.equations.tree.angles, dtype=np.intp)
+        own = [
+            *range(*names.part(names.coordinates).indices(count)),
+            *range(*names.part(names.speeds).indices(count)),
+        ]
+        own += range(*names.part(names.works).indices(count))
 
+        def whole(y: Array) -> list[float]:
+            values = carried.copy()
+            values[own] = y
+            turned = values[names.part(names.coordinates)][angles]
+            values[names.part(names.cosines)], values[names.part(names.sines)] = (
+                np.cos(turned),
+                np.sin(turned),
+            )
+            return [float(x) for x in values]
 
-@dataclass(frozen=True)
-class Rates:
-    """Derivatives by time at one state; `flags` say which dependent equations counted."""
+        def rates(t: float, y: Array) -> Array:
+            return np.array(followed.rates([t, *parameters, *whole(y)]))[own]
 
-    accelerations: Sequence[Number]
-    powers: Sequence[Number]
-    flags: Flags
+        solver = Radau(rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance)
+        rows = [np.concatenate([[0.0], carried])]
+        pieces = []
+        ended, cause = DURATION, None
+        while solver.status == "running":
+            solver.step()
+            if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+                ended, cause = STEP_SIZE, _("at {time:.9g} s the step became too small").format(time=solver.t)
+                break
+            step = solver.t - rows[-1][0]
+            pieces.append(solver.dense_output())
+            carried = np.array(followed.closing([solver.t, step, *parameters, *whole(solver.y)]))
+            solver.y = carried[own]
+            rows.append(np.concatenate([[solver.t], carried]))
+            if progress is not None:
+                progress(float(solver.t))
+        reached = np.array(rows).T
+        followed_between = OdeSolution(reached[0], pieces)
 
+        def between(times: Array) -> Array:
+            found = np.zeros((len(carried), len(times)))
+            found[own] = followed_between(times)
+            return found
 
-def rates_of(
-    m: Namespace,
-    equations: EquationsOfMotion,
-    values: Values,
-    speeds: Sequence[Number],
-    time: Number,
-    flags: Flags | None = None,
-) -> Rates:
-    """Accelerations and powers."""
-    terms = equations.terms(m, values, speeds, time)
-    accelerations, forces, chosen = equations.accelerations(m, terms, flags)
-    kept = forces[len(forces) - len(equations.kept) :] if equations.kept else []
-    powers = [terms.powers[k] for k in worked_loads(equations)]
-    # a drive's constraint is its value less the law: what moves the mechanism acts against the row
-    powers += [-(force * rate) for force, rate in zip(kept, terms.rates, strict=True)]
-    return Rates(accelerations, powers, chosen)
+        return MotionSteps(reached, ended, cause, len(rows) - 1, between=between)
 
+    def states_at(self, steps: MotionSteps, times: Array, executor: str = "auto") -> Array:
+        """What is carried at instants (carried, n): one step from the last one before each, as long as is needed."""
+        rows, n = steps.rows, len(times)
+        if steps.between is not None:
+            return steps.between(times)
+        begin = np.clip(np.searchsorted(rows[0], times, side="right") - 1, 0, rows.shape[1] - 1)
+        lanes = rows[:, begin]
+        state = np.concatenate([lanes[:1], np.full((1, n), inf), np.zeros((2, n)), lanes[1:]])
+        if not n:
+            return rows[1:, :0]
+        guarded = [name for name in (LIMIT, GUARD) if name in self.problem.carried]
+        for name in guarded:
+            state[HEADER + self.problem.carried.index(name)] = NEVER if name == LIMIT else 0.0
+        found = self.integrator(executor).run(self.parameters(times, inf, 1.0, n), state, 1)[HEADER:]
+        count = len(self.problem.followed)
+        for detour in steps.detours:
+            inside = (times > detour.begin) & (times < detour.end)
+            found[:count, inside] = detour.at(times[inside])
+        return found
 
-def turned_rotor(rotor: Rotor, by: Number) -> Rotor:
-    """A rotor turned by a small angle, to the second order."""
-    cosine, sine = rotor
-    if is_zero(by):
-        return rotor
-    short = 1.0 - 0.5 * (by * by)
-    return cosine * short - by * sine, sine * short + by * cosine
+    @cached_property
+    def _half_circles(self) -> HalfCircles:
+        return HalfCircles(self.problem)
 
+    def _pass_change_point(
+        self, parameters: Array, state: Array, tolerance: float
+    ) -> tuple[Detour | None, Event | None] | str:
+        """Pass the change point ahead, if it is one; the state is that behind it then.
 
-def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> InitialValueProblem:
-    """The initial value problem of equations whose numbers are variables."""
-    m, names, tree = EXPRESSIONS, MotionNames.of(equations), equations.tree
-    coordinates = [variable(name) for name in names.coordinates]
-    speeds = [variable(name) for name in names.speeds]
-    rotors = {
-        k: (variable(cosine), variable(sine))
-        for k, cosine, sine in zip(tree.angles, names.cosines, names.sines, strict=True)
-    }
-    rows = sorted(equations.dependent)
-    flags = {row: m.less(0.5, variable(name)) for row, name in zip(rows, names.flags, strict=True)}
-    time = variable(TIME)
-    found = rates_of(m, equations, Values(coordinates, rotors), speeds, time, flags or None)
-    rates: dict[str, Number] = dict(zip(names.coordinates, speeds, strict=True))
-    rates |= {name: -(speeds[k] * rotors[k][1]) for k, name in zip(tree.angles, names.cosines, strict=True)}
-    rates |= {name: speeds[k] * rotors[k][0] for k, name in zip(tree.angles, names.sines, strict=True)}
-    rates |= dict(zip(names.speeds, found.accelerations, strict=True))
-    rates |= dict(zip(names.works, found.powers, strict=True))
-    closing = _closing(equations, names, coordinates, speeds, time)
-    watched = GUARD in closing
-    return InitialValueProblem(
-        (*CONTROLS, *parameters),
-        {name: as_node(x) for name, x in rates.items()},
-        closing,
-        as_node(_error(equations, names)),
-        LIMIT if watched else "",
-        GUARD if watched else "",
-    )
+        Returns the detour and the event, or why it is not passed.
+        """
+        carried = list(self.problem.carried)
+        row = {name: HEADER + carried.index(name) for name in (AHEAD, LOOKED, GUARD, LIMIT, INDEPENDENCE)}
+        time, ahead, near = (
+            float(state[0, 0]),
+            float(state[row[AHEAD], 0]),
+            float(state[row[INDEPENDENCE], 0]),
+        )
+        units = units_of(self.equations.tree, self.equations.numbers)
+        measured = [(self.names.part(kind), units) for kind in (self.names.coordinates, self.names.speeds)]
+        detour = self._half_circles.around(parameters[:, 0], time, state[HEADER:, 0], ahead, measured)
+        if not detour.is_passed:
+            if near < LOST:
+                what = _("a change point at {time:.9g} s through which no smooth motion leads")
+                return what.format(time=detour.centre)
+            state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
+            return None, Event(detour.centre, NEAR_MISS, near) if near < DOUBTFUL else None
+        count = len(self.problem.followed)
+        before = self._energy(state[HEADER:, 0], time)
+        landed = detour.at(np.array([detour.end]))[:, 0]
+        values = dict(zip(carried, state[HEADER:, 0], strict=True)) | dict(
+            zip(carried[:count], landed, strict=True)
+        )
+        given = dict(zip(self.problem.parameters, parameters[:, 0], strict=True))
+        values[INDEPENDENCE] = 0.0
+        closed = evaluate(self.problem.of_closing, values | given | {TIME: detour.end, STEP: 1.0})
+        state[HEADER:, 0] = [float(closed[name]) for name in carried]
+        state[0, 0] = detour.end
+        state[1, 0] = 0.25 * ahead
+        after = self._energy(state[HEADER:, 0], detour.end)
+        scale = max(abs(before[0]), abs(after[0]))
+        if abs(sum(after) - sum(before)) > max(ENERGY, 100.0 * tolerance) * scale:
+            what = _("a change point at {time:.9g} s behind which the energy would be another")
+            return what.format(time=detour.centre)
+        return detour, Event(detour.centre, CROSSING, sum(after) - sum(before))
 
+    def _energy(self, carried: Array, time: float) -> tuple[float, float]:
+        """Kinetic energy, and potential energy less the works, of what is carried."""
+        names = self.names
+        q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
+        kinetic, potential = self.equations.energies(ARRAYS, self.equations.tree.values(ARRAYS, q), w, time)
+        return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
 
-def _closing(
-    equations: EquationsOfMotion,
-    names: MotionNames,
-    coordinates: Sequence[Node],
-    speeds: Sequence[Node],
-    time: Node,
-) -> dict[str, Node]:
-    m, tree = EXPRESSIONS, equations.tree
-    values = tree.values(m, coordinates)
-    q, w = list(coordinates), list(speeds)
-    rotors = dict(values.rotors)
-    counted: dict[str, Number] = {}
-    if equations.equations:
-        terms = equations.terms(m, values, speeds, time)
-        system = equations.system(m, terms)
-        shift = equations.shift_to_close(terms, system)
-        q = [x if is_zero(shift.get(k, 0.0)) else x + shift[k] for k, x in enumerate(coordinates)]
-        rotors = {k: turned_rotor(rotors[k], shift.get(k, 0.0)) for k in tree.angles}
-        w = equations.changed_to_fit(m, Values(q, rotors), speeds, time, system)
-        counted = {
-            name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
-            for row, name in zip(sorted(equations.dependent), names.flags, strict=True)
-        }
-        counted |= _watch(equations, system.independence(m), w)
-    closed: dict[str, Number] = dict(zip(names.coordinates, q, strict=True))
-    closed |= {name: rotors[k][0] for k, name in zip(tree.angles, names.cosines, strict=True)}
-    closed |= {name: rotors[k][1] for k, name in zip(tree.angles, names.sines, strict=True)}
-    closed |= dict(zip(names.speeds, w, strict=True))
-    return {name: as_node(x) for name, x in (closed | counted).items()}
-
-
-def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[Number]) -> dict[str, Number]:
-    """What tells of a change point ahead: when the closures lose rank if they go on to as they do."""
-    m = EXPRESSIONS
-    if isinstance(independence, float):
-        return {}
-    lost = (independence - variable(INDEPENDENCE)) / variable(STEP)
-    falls = m.less(lost, 0.0)
-    ahead = m.where(falls, independence / m.where(falls, -lost, 1.0), NEVER)
-    fastest: Number = variable(RATE)
-    for speed, coordinate in zip(speeds, equations.tree.coordinates, strict=True):
-        size = m.abs(speed)
-        fastest = m.max(fastest, size if coordinate.kind == "angle" else size / variable(LENGTH))
-    # until it rises again a place that was looked at is looked at only when it is much nearer
-    looked = m.where(falls, variable(LOOKED), NEAR)
-    near = m.both(m.less(ahead * fastest, FAR), m.less(independence, looked))
-    return {
-        INDEPENDENCE: independence,
-        AHEAD: ahead,
-        LOOKED: looked,
-        LIMIT: m.where(m.less(independence, NEAR), 0.5 * ahead, NEVER),
-        GUARD: m.where(near, 1.0, 0.0),
-    }
-
-
-def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
-    """Hairer's estimate: of angles in rad and displacements over the length, of speeds over what they reach."""
-    m = EXPRESSIONS
-    fifth: Number = 0.0
-    third: Number = 0.0
-    for k, coordinate in enumerate(equations.tree.coordinates):
-        name, speed = names.coordinates[k], names.speeds[k]
-        unit = 1.0 if coordinate.kind == "angle" else variable(LENGTH)
-        reach = unit * FLOOR * variable(RATE) + m.max(m.abs(variable(BEFORE + speed)), m.abs(variable(speed)))
-        for one, scale in ((name, unit), (speed, reach)):
-            parts = [variable(prefix + one) for prefix in (OF_FIFTH, OF_THIRD)]
-            if not isinstance(scale, float):
-                inverse = 1.0 / scale
-                parts = [part * inverse for part in parts]
-            fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
-    together = fifth + 0.01 * third
-    size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(2 * equations.size))
-    # nothing erred, or something has no value
-    return m.where(m.less(0.0, together), size, together) / (SHARE * variable(TOLERANCE))
+    def _farthest(self, state: Array, rate: float) -> float:
+        """The greatest displacement over the greatest length, or speed over what speeds are compared with."""
+        names, units = self.names, units_of(self.equations.tree, self.equations.numbers)
+        values = np.abs(state[HEADER:, 0])
+        slid = np.array([one.kind != "angle" for one in self.equations.tree.coordinates])
+        moved = values[names.part(names.coordinates)] / units
+        fast = values[names.part(names.speeds)] / units / rate
+        return float(max(np.max(moved[slid], initial=0.0), 1e-3 * np.max(fast, initial=0.0)))

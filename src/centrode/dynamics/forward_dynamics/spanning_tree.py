@@ -107,7 +107,7 @@ class TurnedLink:
             at.poses[self.link] = pose_with_point(local[self.pivot], place, rotor)
             at.angles[self.link] = values.coordinates[self.number]
             return
-        second = local[self.second] if self.second else _beside(local[self.pivot])
+        second = local[self.second] if self.second else _place_beside(local[self.pivot])
         inside = tangent_inside(m, local[self.pivot], second)
         there = _reference_place(m, numbers, self.base, self.end, at)
         towards = rotate_tangent(m, place, unit(m, tangent(place, there)), rotor)
@@ -118,7 +118,7 @@ class TurnedLink:
             at.angles[self.link] = values.coordinates[self.number]
 
 
-def _beside(at: tuple[Number, Number]) -> tuple[Number, Number]:
+def _place_beside(at: tuple[Number, Number]) -> tuple[Number, Number]:
     """A place of a link a quarter turn of longitude from its only point."""
     return at[0] + 1.0, at[1]
 
@@ -268,7 +268,7 @@ class SpanningTree:
             step.put(m, numbers, values, at)
         return at
 
-    def moved(
+    def positions_along(
         self, m: Namespace, numbers: Dimensions, values: Values, at: Positions, number: int
     ) -> Positions:
         """Positions whose parts that depend on one coordinate are placed anew, the others being those of `at`."""
@@ -391,7 +391,8 @@ class _Builder:
 
     def _bases(self, link: str) -> list[str]:
         driven = [d.relative_to for d in self.mechanism.drives if d.link == link]
-        return [base for base in (*driven, *self.links) if base in self.links]
+        # in the order of the description: that of a set would be another in every process
+        return [base for base in (*driven, FRAME, *self.mechanism.links) if base in self.links]
 
     def _points_of(self, body: str) -> list[str]:
         return list(self.mechanism.points_of(body))

@@ -12,7 +12,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
-from centrode.dynamics.forward_dynamics.free_motion import STATUSES, FreeMotion, Trajectory, free_motion_of
+from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.equation_of_motion import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY

@@ -62,13 +62,13 @@ class Way:
         layout = samples.layout
         axes = layout.axes
         moving = samples.columns[0, : layout.first_attitude, 0, 0].reshape(-1, axes)
-        fixed = np.array([list(place) for place in _fixed(self.ready).values()], dtype=float).reshape(
+        fixed = np.array([list(place) for place in _frame_points(self.ready).values()], dtype=float).reshape(
             -1, axes
         )
         return np.concatenate([fixed, moving]), samples.angles[0, :, 0, 0], int(samples.status[0, 0])
 
 
-def _fixed(ready: Ready) -> Mapping[str, Vector]:
+def _frame_points(ready: Ready) -> Mapping[str, Vector]:
     """Points of the frame in the initial position."""
     at = ready.assembled.positions.points
     return {name: at[name] for name in ready.structure.dimensions.frame}
@@ -135,7 +135,7 @@ def place_on_way(way: Way, point: str, to: Array, present: float | None) -> floa
     node = int(np.argmin(np.abs(way.places + turns - initial)))
     reach = max(2, round(REACH * count))
     best = _nearest_node(away, node, reach, way.closes)
-    return _refined(way, point, to, best) + _same_turn(way, best, node, turns)
+    return _refine_parameter(way, point, to, best) + _same_turn(way, best, node, turns)
 
 
 def _nearest_node(away: Array, node: int, reach: int, closes: bool) -> int:
@@ -173,7 +173,7 @@ def _same_turn(way: Way, best: int, node: int, turns: float) -> float:
     return turns
 
 
-def _refined(way: Way, point: str, to: Array, node: int) -> float:
+def _refine_parameter(way: Way, point: str, to: Array, node: int) -> float:
     """The parameter of the least distance beside a node, by the Taylor polynomial of second degree about it."""
     k = way.names.index(point)
     step = float(np.abs(way.places[1] - way.places[0])) if len(way.places) > 1 else 0.0

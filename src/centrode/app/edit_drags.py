@@ -37,7 +37,7 @@ OTHER_SIDE = {"left": "right", "right": "left", "ahead": "behind", "behind": "ah
 
 
 @dataclass(frozen=True)
-class Reshaped:
+class ReshapedDescription:
     """A description after a drag.
 
     Attributes
@@ -58,7 +58,9 @@ class Reshaped:
     held: str = ""
 
 
-def reshape(sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bool = False) -> Reshaped:
+def reshape(
+    sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bool = False
+) -> ReshapedDescription:
     """The description with a joint at another place, or as near to it as locks and guides let it come.
 
     Raises InputError for a point that cannot be dragged.
@@ -74,7 +76,7 @@ def reshape(sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bo
 
 def reshaped_by(
     sketch: Sketch, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
-) -> Reshaped:
+) -> ReshapedDescription:
     """The description with some points at other places, everything else standing.
 
     Raises InputError where it would not assemble so.
@@ -87,9 +89,9 @@ def reshaped_by(
     tables: Mapping[str, Any] = with_assignments(sketch.tables, assignments)
     if sketch.document.prepared is None:
         places = {**sketch.places, **moved}
-        return Reshaped(assignments, tables, None, places, _values(sketch, places, moved), held)
+        return ReshapedDescription(assignments, tables, None, places, _values(sketch, places, moved), held)
     try:
-        prepared, assignments, tables = _assembled(sketch, assignments, tables, moved, folder)
+        prepared, assignments, tables = _assemble(sketch, assignments, tables, moved, folder)
     except CentrodeError:
         if exactly:
             raise
@@ -97,10 +99,10 @@ def reshaped_by(
         return reshaped_by(sketch, moved, folder, held=held, exactly=True)
     at = prepared.assembled.positions.points
     places = {name: (float(at[name][0]), float(at[name][1])) for name in sketch.points if name in at}
-    return Reshaped(assignments, tables, prepared, places, _values(sketch, places, moved), held)
+    return ReshapedDescription(assignments, tables, prepared, places, _values(sketch, places, moved), held)
 
 
-def _assembled(
+def _assemble(
     sketch: Sketch,
     assignments: tuple[Assignment, ...],
     tables: Mapping[str, Any],
@@ -184,7 +186,7 @@ def follow(sketch: Sketch, path: str, number: float) -> Ready:
             prepared = sketch.document.require_prepared()
             for k in range(1, steps + 1):
                 value = old + (number - old) * k / steps
-                prepared = ready(_changed(prepared, path, value))
+                prepared = ready(_mechanism_with(prepared, path, value))
             return prepared
         except CentrodeError as error:
             failure = error
@@ -192,7 +194,7 @@ def follow(sketch: Sketch, path: str, number: float) -> Ready:
     raise failure
 
 
-def _changed(prepared: Ready, path: str, value: float) -> Mechanism:
+def _mechanism_with(prepared: Ready, path: str, value: float) -> Mechanism:
     """The mechanism of an initial position with another number, its links' angles those of that position."""
     mechanism = prepared.mechanism
     driven = next((link for link in mechanism.links if path == f"drives.{link}.start"), None)

@@ -1,0 +1,57 @@
+"""The steps of a free motion: what its integration reached after each, where it ended and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.forward_dynamics.change_points import Detour
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+CROSSING, NEAR_MISS = "crossing", "near miss"
+"""Kinds of events: a change point was passed, or the closures only came near to losing rank."""
+DURATION, BLOW_UP, STEP_SIZE, CHANGE_POINT = "duration", "blow-up", "step size", "change point"
+"""Ends of a motion."""
+
+
+class Event(NamedTuple):
+    """Something that happened on the way.
+
+    Attributes
+    ----------
+    time : [s]
+    kind : `CROSSING` or `NEAR_MISS`
+    detail : change of the energy [J] at a crossing, independence of the closures (0 to 1) at a near miss
+    """
+
+    time: float
+    kind: str
+    detail: float
+
+
+@dataclass(frozen=True)
+class MotionSteps:
+    """The steps of an integration: what was reached after each, the start first.
+
+    Attributes
+    ----------
+    rows : (1 + carried, steps + 1), the times first
+    ended : one of the ends of a motion
+    cause : sentence that says why it ended before its duration; None where it did not
+    attempts : steps tried
+    events, detours : near misses and crossings; pieces of motion around the change points that were passed
+    between : times -> what is carried, of an implicit scheme; None where a step of the scheme itself gives it
+    """
+
+    rows: Array
+    ended: str
+    cause: str | None
+    attempts: int
+    events: tuple[Event, ...] = ()
+    detours: tuple[Detour, ...] = ()
+    between: Callable[[Array], Array] | None = None
