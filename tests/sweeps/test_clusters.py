@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import signal
 import subprocess
@@ -151,6 +152,15 @@ ct.sweep(ct.example("crank-rocker"), ct.grid({VARY!r}), {OUTPUTS!r}, 19, store=s
     assert found.attrs["mechanisms_found"] > 5
     swept(tmp_path / "0.zarr")
     assert contents(tmp_path / "1.zarr") == contents(tmp_path / "0.zarr")
+
+
+def test_the_library_of_clusters_writes_nothing_of_its_own(cluster: Any) -> None:
+    """Its client would print a traceback where a scheduler goes away: its loggers have levels of their own."""
+    logger = logging.getLogger("distributed.client")
+    before = logger.level
+    with clusters.open_cluster(cluster.scheduler.address):
+        assert not logger.isEnabledFor(logging.ERROR)
+    assert logger.level == before
 
 
 def test_a_scheduler_that_goes_away_or_was_never_there(

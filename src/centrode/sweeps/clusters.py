@@ -424,10 +424,13 @@ def _close(client: Any) -> None:
 @contextmanager
 def _quiet() -> Iterator[None]:
     """What `distributed` writes of workers that die is no news: it is told where it matters."""
-    log = logging.getLogger("distributed")
-    before = log.level
-    log.setLevel(logging.CRITICAL)
+    _distributed()  # its loggers come with it; some have levels of their own, which that of their parent does not reach
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]
+    before = {name: logging.getLogger(name).level for name in names}
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        log.setLevel(before)
+        for name, level in before.items():
+            logging.getLogger(name).setLevel(level)
