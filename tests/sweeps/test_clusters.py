@@ -314,6 +314,8 @@ from centrode.cli.main import main
 from centrode.cli.progress import Progress
 from centrode.sweeps import designs
 if __name__ == "__main__":
+    # a process that a shell runs in the background begins with Ctrl-C ignored
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     designs.BLOCK_BYTES, designs.BLOCK_SECONDS = 4_000, 1e-9  # a mechanism a block, however fast they are
     class Interrupting(Progress):
         def say(self, what, done=0, of=0):

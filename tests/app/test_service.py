@@ -11,9 +11,9 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from centrode.app.serving import LOOPBACK, bound_socket
 
 from centrode.app import serving
+from centrode.app.service import LOOPBACK, bound_socket
 from centrode.errors import InputError
 
 from .served import free_port
