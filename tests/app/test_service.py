@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from centrode.app import serving
+from centrode.app import service
 from centrode.app.service import LOOPBACK, bound_socket
 from centrode.errors import InputError
 
@@ -68,7 +68,7 @@ def port_of(listener: socket.socket) -> int:
 
 def test_a_server_has_the_usual_port_and_the_next_one_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
     first = free_port()
-    monkeypatch.setattr(serving, "PORTS", (first,))
+    monkeypatch.setattr(service, "PORTS", (first,))
     with bound_socket() as one, bound_socket() as other:
         assert port_of(one) == first != port_of(other)  # all usual ones are taken: any
         with pytest.raises(InputError, match=str(first)):
