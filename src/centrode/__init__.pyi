@@ -9,6 +9,7 @@ from .model.mechanism import Drive as Drive
 from .model.mechanism import Assembly as Assembly
 from .model.mechanism import Study as Study
 from .model.simulation import Simulation as Simulation
+from .model.tolerances import Tolerances as Tolerances
 from .model.cam import Cam as Cam
 from .model.follower_cam import PlateCam as PlateCam
 from .model.gear_pairs import GearPair as GearPair
@@ -83,6 +84,11 @@ from .sweeps.sweep import sweep as sweep
 from .sweeps.solver import solver as solver
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
+
+# Tolerances and play
+from .tolerances.sensitivity import sensitivity as sensitivity
+from .tolerances.results import tolerances as tolerances
+from .tolerances.allocation import allocate_tolerances as allocate_tolerances
 
 # Any result, shown
 from .topics.presentation import summary as summary
