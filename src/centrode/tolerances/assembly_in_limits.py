@@ -8,7 +8,6 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.structure.assur import name_of
 from centrode.tolerances.deviated_mechanisms import DeviatedMechanisms
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -85,4 +84,5 @@ def first_stop(mechanisms: DeviatedMechanisms, stopped: Array) -> Stop | None:
         return Stop(float(high[row]), few[row], float("nan"), "")
     start = float(prepared.kinematics.path.initial)
     event = min(limits, key=lambda e: abs(e.at - start))
-    return Stop(float(high[row]), few[row], event.at, name_of(prepared.structure.groups[event.group]))
+    group = prepared.structure.groups[event.group]
+    return Stop(float(high[row]), few[row], event.at, "-".join(group.links or group.points))

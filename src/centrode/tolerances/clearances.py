@@ -107,13 +107,13 @@ def with_free_joints(mechanism: Mechanism, joints: Sequence[JointPlay]) -> Mecha
             table["through"], table["direction"] = list(mechanism.through(guide)), list(guide.unit)
             if guide.link is not None:
                 table["angle"] = mechanism.guide_turn(guide)
-            continue
-        link = tables["links"][joint.body]
+            if guide.link is None or joint.length is None:
+                continue
+        body = joint.body if joint.point else str(mechanism.guide(joint.name).link)
+        link = tables["links"][body]
         if "length" in link:
             del link["length"]
-            link["points"] = {
-                name: list(place) for name, place in mechanism.links[joint.body].coordinates.items()
-            }
+        link["points"] = {name: list(place) for name, place in mechanism.links[body].coordinates.items()}
     return mechanism_from(tables)
 
 
@@ -171,8 +171,7 @@ def clearance_extents(
     for (name, text), column in zip(sampled.items(), moving.columns, strict=True):
         if not column.of_samples:
             continue
-        slides = {one.id: np.asarray(frame["slide"][:, k]) for k, one in enumerate(mechanism.guides)}
-        moves = _moves(mechanism, joints, paths, slopes[column.name], rotors, slides)
+        moves = _moves(mechanism, joints, paths, slopes[column.name], rotors)
         shares = np.stack([_share(joint, moves) for joint in joints], axis=-1)
         whole = shares.sum(axis=-1)
         bands[name] = values[column.name], whole
@@ -180,9 +179,8 @@ def clearance_extents(
         worst = int(np.nanargmax(whole)) if np.isfinite(whole).any() else 0
         lower = upper = float("nan")
         if name in texts and np.isfinite(whole).any():
-            place = {guide: float(values[worst]) for guide, values in slides.items()}
             at = float(moving.parameter[worst])
-            lower, upper = true_extremes(free, paths, text, joints, moves, rotors, place, at, worst)
+            lower, upper = true_extremes(free, paths, text, joints, moves, rotors, at, worst)
         found[name] = ClearanceExtent(tuple(joints), shares, whole, lower, upper, by_force)
     for name, (fold, _text) in folded.items():
         inner = f"of {name}"
@@ -204,10 +202,35 @@ def _paths(mechanism: Mechanism, joints: Sequence[JointPlay]) -> list[str]:
     paths = []
     for joint in joints:
         place = f"links.{joint.body}.points.{joint.point}" if joint.point else f"guides.{joint.name}.through"
-        paths += [f"{place}.x", f"{place}.y"]
-        if joint.length is not None:
-            paths.append(f"guides.{joint.name}.direction")
+        paths += [path for path in (f"{place}.x", f"{place}.y") if path not in paths]
+        for turned in turned_places(mechanism, joint):
+            paths += [path for path in (turned.x_path, turned.y_path) if path not in paths]
     return paths
+
+
+@dataclass(frozen=True)
+class TurnedPlace:
+    """A place of a slider that turns with it about the point in its guide: paths and arm [m]."""
+
+    x_path: str
+    y_path: str
+    x: float
+    y: float
+
+
+def turned_places(mechanism: Mechanism, joint: JointPlay) -> list[TurnedPlace]:
+    """Places that move where a slider tilts: its points but that in the guide."""
+    guide = mechanism.guide(joint.name) if joint.length is not None else None
+    if guide is None or guide.link is None:
+        return []
+    points = mechanism.links[guide.link].coordinates
+    x0, y0 = points[guide.point]
+    found = []
+    for point, (x, y) in points.items():
+        if point != guide.point:
+            place = f"links.{guide.link}.points.{point}"
+            found.append(TurnedPlace(f"{place}.x", f"{place}.y", x - x0, y - y0))
+    return found
 
 
 def _moves(
@@ -216,7 +239,6 @@ def _moves(
     paths: Sequence[str],
     slopes: Array,
     rotors: Mapping[str, npt.NDArray[np.complex128]],
-    slides: Mapping[str, Array],
 ) -> _Moves:
     by_place, tilting = {}, {}
     for joint in joints:
@@ -230,8 +252,14 @@ def _moves(
             across = (turned * normal.conj()).real
             turned = across * normal
             if joint.length is not None:
-                # the line turns about the point that it passes through; the slider stands farther along
-                tilting[joint.name] = slopes[:, first + 2] - slides[joint.name] * across
+                tilting[joint.name] = sum(
+                    (
+                        one.x * slopes[:, paths.index(one.y_path)]
+                        - one.y * slopes[:, paths.index(one.x_path)]
+                        for one in turned_places(mechanism, joint)
+                    ),
+                    np.zeros(len(slopes)),
+                )
         by_place[joint.name] = np.stack([turned.real, turned.imag], axis=-1)
     return _Moves(by_place, tilting)
 
@@ -287,7 +315,6 @@ def true_extremes(
     joints: Sequence[JointPlay],
     moves: _Moves,
     rotors: Mapping[str, npt.NDArray[np.complex128]],
-    slides: Mapping[str, float],
     at: float,
     sample: int,
 ) -> tuple[float, float]:
@@ -295,7 +322,7 @@ def true_extremes(
     there = differentiated_solver(free, paths, {"output": text}, at=[at])
     own = np.array(there.own)
     nominal = float(np.ravel(there.outputs(list(own)))[0])
-    place = PinPlaces(free.mechanism, tuple(joints), tuple(paths), slides)
+    place = PinPlaces(free.mechanism, tuple(joints), tuple(paths))
     ends = []
     for sense in (-1.0, 1.0):
         start = place.start(moves, rotors, sense, sample)
@@ -323,7 +350,6 @@ class PinPlaces:
     mechanism: Mechanism
     joints: tuple[JointPlay, ...]
     paths: tuple[str, ...]
-    slides: Mapping[str, float]
 
     @property
     def bounds(self) -> list[tuple[float | None, float | None]]:
@@ -342,8 +368,8 @@ class PinPlaces:
             if joint.point:
                 row = self.paths.index(f"links.{joint.body}.points.{joint.point}.x")
                 angle = unknowns[number]
-                values[row : row + 2] = joint.play * np.array([np.cos(angle), np.sin(angle)])
-                slopes[row : row + 2, number] = joint.play * np.array([-np.sin(angle), np.cos(angle)])
+                values[row : row + 2] += joint.play * np.array([np.cos(angle), np.sin(angle)])
+                slopes[row : row + 2, number] += joint.play * np.array([-np.sin(angle), np.cos(angle)])
                 number += 1
                 continue
             row = self.paths.index(f"guides.{joint.name}.through.x")
@@ -351,16 +377,18 @@ class PinPlaces:
             normal = np.array([-guide.unit[1], guide.unit[0]])
             count = 1 if joint.length is None else 2
             ends = unknowns[number : number + count]
-            values[row : row + 2] = joint.play * ends.mean() * normal
-            slopes[row : row + 2, number : number + count] = joint.play * normal[:, None] / count
+            values[row : row + 2] += joint.play * ends.mean() * normal
+            slopes[row : row + 2, number : number + count] += joint.play * normal[:, None] / count
             if joint.length is not None:
-                tilt = joint.play / joint.length * np.array([-1.0, 1.0])
-                values[row + 2] = tilt @ ends
-                slopes[row + 2, number : number + 2] = tilt
-                # the line turns about its point: it is shifted so that it turns about the slider
-                shift = -self.slides[joint.name] * normal[:, None] * tilt
-                values[row : row + 2] += shift @ ends
-                slopes[row : row + 2, number : number + 2] += shift
+                by_ends = joint.play / joint.length * np.array([-1.0, 1.0])
+                tilt = float(by_ends @ ends)
+                cosine, sine = np.cos(tilt), np.sin(tilt)
+                for one in turned_places(self.mechanism, joint):
+                    x, y = self.paths.index(one.x_path), self.paths.index(one.y_path)
+                    values[x] += one.x * (cosine - 1.0) - one.y * sine
+                    values[y] += one.x * sine + one.y * (cosine - 1.0)
+                    slopes[x, number : number + count] += (-one.x * sine - one.y * cosine) * by_ends
+                    slopes[y, number : number + count] += (one.x * cosine - one.y * sine) * by_ends
             number += count
         return values, slopes
 

@@ -104,8 +104,7 @@ class DeviatedMechanisms:
 
     def outputs_of(self, values: Array) -> dict[str, Array]:
         """The outputs of one mechanism by its numbers [SI]."""
-        found = self.solver.split(np.atleast_1d(self.solver.outputs(list(values))))
-        return self._by_name(found)
+        return self._by_name(self.solver.split(self.solver.outputs(list(values))))
 
     def gradients_of(self, values: Array) -> dict[str, Array]:
         """The derivatives of the outputs of one mechanism."""

@@ -25,7 +25,7 @@ from centrode.sheets.sheet import (
     Sheet,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text, Title
+from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text, Title, Unit
 from centrode.views.abscissa import motion_abscissa
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ DISTRIBUTIONS = {
     "uniform": Sentence("uniform"),
     "triangular": Sentence("triangular"),
 }
-LINEAR, TRUE = Sentence("worst case, linear"), Sentence("worst case, true")
+TRUE = Sentence("worst case, true")
 STATISTICAL = Sentence("three standard deviations")
 PLAY = Sentence("play in joints")
 OUTPUT = Sentence("output")
@@ -60,7 +60,7 @@ def sheet(results: ToleranceResults) -> Sheet:
         tables=Deferred(
             {
                 "outputs": lambda: outputs_table(results),
-                "contributions": lambda: contributions_table(results),
+                "contributions": lambda: contributions_table(results, derivatives=True),
                 **({"bands": lambda: _bands_table(results, sampled)} if sampled else {}),
                 **({"histogram": lambda: _histogram_table(single)} if single else {}),
                 **({"play": lambda: _play_table(results)} if _has_play(results) else {}),
@@ -226,7 +226,7 @@ def outputs_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
 
 
 def _unit(unit: str) -> Text:
-    return NOTHING if unit == "1" else Number(1.0, unit)
+    return NOTHING if unit == "1" else Unit(unit)
 
 
 def _abscissa_values(results: ToleranceResults) -> Array:
@@ -235,8 +235,13 @@ def _abscissa_values(results: ToleranceResults) -> Array:
     return np.asarray(results.motion["time"].to_numpy())
 
 
-def contributions_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
-    """Each number with its limits, and what it contributes to the variance of each output."""
+def contributions_table(
+    results: ToleranceResults, caption: Text = NOTHING, *, derivatives: bool = False
+) -> Table:
+    """Each number with its limits, and what it contributes to the variance of each output.
+
+    With `derivatives` also those of the outputs by the numbers.
+    """
     limits = results.limits
     units = tuple(results.units)
     columns = [
@@ -250,20 +255,23 @@ def contributions_table(results: ToleranceResults, caption: Text = NOTHING) -> T
         shown = shares[output.worst] if output.of_samples else shares
         slopes = output.gradient[output.worst] if output.of_samples else output.gradient
         name = Name(output.name)
-        columns += [
-            Column(
-                f"derivative of {output.name}",
-                np.asarray(slopes),
-                head=Sentence("derivative of {output}, SI", output=name),
-                unit_fixed=True,
-            ),
+        if derivatives:
+            columns.append(
+                Column(
+                    f"derivative of {output.name}",
+                    np.asarray(slopes),
+                    head=Sentence("derivative of {output}, SI", output=name),
+                    unit_fixed=True,
+                )
+            )
+        columns.append(
             Column(
                 f"contribution to {output.name}",
                 np.asarray(100.0 * shown),
                 "%",
                 head=Sentence("contribution to {output}", output=name),
-            ),
-        ]
+            )
+        )
     return Table(tuple(columns), caption)
 
 
@@ -376,12 +384,12 @@ def _bands(results: ToleranceResults, sampled: list[OutputAccuracy]) -> Plot:
             Band(STATISTICAL, middle - half, middle + half, 1),
         )
         curves = [
-            Curve(LINEAR, output.linear.upper, 0, approximate=True),
+            Curve(Sentence("linear, upper"), output.linear.upper, 0, approximate=True),
             Curve(Sentence("linear, lower"), output.linear.lower, 0, approximate=True),
         ]
         if output.clearance is not None:
             curves += [
-                Curve(PLAY, output.clearance.first_order, 2),
+                Curve(Sentence("play, upper"), output.clearance.first_order, 2),
                 Curve(Sentence("play, lower"), -output.clearance.first_order, 2),
             ]
             if output.clearance.by_force is not None:

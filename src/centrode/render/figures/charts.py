@@ -170,9 +170,10 @@ def named_bar_figure(chart: NamedBarChart, display: Display) -> Figure:
 def histogram_figure(chart: Histograms, display: Display) -> Figure:
     """Histograms below each other, with marked values."""
     words = PrintSpelling(display)
-    figure = Figure(
-        figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, 1.0 + (BARS + 0.5) * len(chart.panels))), layout="constrained"
-    )
+    names = [words.text(name) for panel in chart.panels for name, _value in panel.levels]
+    above = legend_height(list(dict.fromkeys(names)), inches=BARS)
+    height = 1.0 + (BARS + 0.5 + above) * len(chart.panels)
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
     rows = figure.subplots(len(chart.panels), 1, squeeze=False)[:, 0]
     for axes, panel in zip(rows, chart.panels, strict=True):
         _draw_histogram(axes, panel, display)
@@ -195,8 +196,7 @@ def _draw_histogram(axes: Axes, panel: HistogramPanel, display: Display) -> None
     axes.set_xlabel(label)
     axes.xaxis.set_major_formatter(Decimals())
     axes.set_axisbelow(True)
-    if key:
-        axes.legend(key.values(), [text.replace("$", r"\$") for text in key], loc="upper right")
+    write_legend(axes, [(line, text) for text, line in key.items()], inches=BARS)
 
 
 def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
