@@ -9,7 +9,6 @@ from .model.mechanism import Drive as Drive
 from .model.mechanism import Assembly as Assembly
 from .model.mechanism import Study as Study
 from .model.simulation import Simulation as Simulation
-from .model.tolerances import Tolerances as Tolerances
 from .model.cam import Cam as Cam
 from .model.follower_cam import PlateCam as PlateCam
 from .model.gear_pairs import GearPair as GearPair

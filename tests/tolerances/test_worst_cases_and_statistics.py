@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.model.tolerances import Tolerances
 from centrode.tolerances.dimension_limits import DimensionLimits
 from centrode.tolerances.statistical import draw_deviations, propagated, yield_of
 from centrode.tolerances.worst_case import linear_extent
@@ -111,7 +112,7 @@ def test_linear_extent_and_propagation_by_hand() -> None:
 
 
 def limits_with(distribution: str, coefficient: float | None = None) -> DimensionLimits:
-    tolerances = ct.Tolerances(
+    tolerances = Tolerances(
         dimensions={"links.a.length": [-1.0, 1.0], "links.b.length": [-2.0, 4.0]},
         distribution=distribution,
         correlations=[]

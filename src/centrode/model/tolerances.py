@@ -314,8 +314,8 @@ class Tolerances(DescriptionPart):
 
     Examples
     --------
-    >>> import centrode as ct
-    >>> ct.Tolerances(dimensions={"links.AB.length": "±0.1 mm"}).dimensions["links.AB.length"]
+    >>> from centrode.model.tolerances import Tolerances
+    >>> Tolerances(dimensions={"links.AB.length": "±0.1 mm"}).dimensions["links.AB.length"]
     (-0.0001, 0.0001)
     """
 

@@ -122,8 +122,9 @@ def allocate_tolerances(
     Examples
     --------
     >>> import centrode as ct
-    >>> found = ct.allocate_tolerances("crank-rocker", {"range(angle_DB)": 1e-3}, by=["links.AB.length",
-    "links.DB.length"]) >>> round(found.use["range(angle_DB)"], 9)
+    >>> rods = ["links.AB.length", "links.DB.length"]
+    >>> found = ct.allocate_tolerances("crank-rocker", {"range(angle_DB)": 1e-3}, by=rods)
+    >>> round(found.use["range(angle_DB)"], 9)
     1.0
     """
     mechanism = mechanism_of(mechanism)

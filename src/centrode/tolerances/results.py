@@ -164,7 +164,7 @@ def tolerances(
     -------
     ToleranceResults
         Each output with its linear and true worst case, three standard deviations with the contribution of each number,
-        drawn mechanisms with the share that keeps the bounds, and deviations by play; whether all mechanisms move.
+        drawn mechanisms with the share that satisfies the bounds, and deviations by play; whether all mechanisms move.
 
     Raises
     ------

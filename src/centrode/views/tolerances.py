@@ -27,6 +27,7 @@ from centrode.sheets.sheet import (
 )
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text, Title, Unit
 from centrode.views.abscissa import motion_abscissa
+from centrode.views.columns import drive_units
 
 if TYPE_CHECKING:
     from centrode.model.motion_parameter import MotionVariable
@@ -276,15 +277,11 @@ def contributions_table(
 
 
 def _bands_table(results: ToleranceResults, sampled: list[OutputAccuracy]) -> Table:
-    variable = results.mechanism.motion_parameter.variable
-    columns = [
-        Column(
-            results.mechanism.motion_parameter.drives[0].name or "drive"
-            if results.mechanism.motion_parameter.is_uniform
-            else "time",
-            _abscissa_values(results),
-            variable.unit,
-        )
+    motion = results.motion
+    columns = [Column("time", motion["time"].to_numpy(), "s")]
+    columns += [
+        Column(f"drive_{name}", motion["drive_value"].to_numpy()[:, number], drive_units(motion)[number])
+        for number, name in enumerate(motion["drive"].to_numpy().tolist())
     ]
     for output in sampled:
         numbers = {
