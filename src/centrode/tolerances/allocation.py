@@ -26,6 +26,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.tolerances import is_size, kind_of_dimension
 from centrode.printing import PrintsSummary
+from centrode.sweeps.designs import unit_of
 from centrode.tolerances.deviated_mechanisms import DeviatedMechanisms
 from centrode.tolerances.dimension_limits import SIGMAS, DimensionLimits, check_paths, length_paths
 from centrode.tolerances.sensitivity import Outputs, named_outputs
@@ -82,6 +83,16 @@ class Allocation(PrintsSummary):
     rounded_use: Mapping[str, float]
     method: str
     kind: str
+
+    @property
+    def values(self) -> Array:
+        """Numbers of the description [SI]."""
+        return np.array([value_at(self.mechanism, path) for path in self.paths])
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """SI unit of each number."""
+        return tuple(unit_of(self.mechanism, path) for path in self.paths)
 
 
 def allocate_tolerances(
@@ -367,6 +378,7 @@ def _rounded(mechanism: Mechanism, paths: Sequence[str], halves: Array) -> tuple
             if grade is not None:
                 grades[number], rounded[number] = grade, 0.5 * standard_tolerance(size, grade)
                 continue
-        step = 10.0 ** (np.floor(np.log10(halves[number])) - 1.0)
-        rounded[number] = np.floor(halves[number] / step * (1.0 + 1e-12)) * step
+        digits = 1 - int(np.floor(np.log10(halves[number])))
+        whole = np.floor(halves[number] * 10.0**digits * (1.0 + 1e-12))
+        rounded[number] = round(float(whole) * 10.0**-digits, digits)
     return rounded, tuple(grades)

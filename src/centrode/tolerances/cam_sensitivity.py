@@ -111,11 +111,10 @@ def cam_sensitivity(
         variables[f"gradient.{name}"] = xr.Variable(("sample", "path"), np.stack(columns, axis=-1), described)
     coords = {"path": paths, "cam_angle": ("sample", angles, {"units": "rad"})}
     attributes = {
-        "topic": "sensitivity",
+        "topic": "cam-sensitivity",
         "title": plate.title,
         "cam": cam_text(plate),
         "version": __version__,
-        "outputs": names,
     }
     return xr.Dataset(variables, coords, attrs=attributes)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,11 +21,13 @@ from centrode.errors import InputError, Status
 from centrode.kinematics.machine_code.frame_plan import FreeMechanism
 from centrode.kinematics.machine_code.trace import Traced, Untraceable, trace_motion
 from centrode.kinematics.machine_code.variables import centre_of, inputs_of, winding_of
+from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.path import grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.limits import limits
 from centrode.kinematics.solve import grid_of, solve
 from centrode.locale import _
+from centrode.model.cam_files import AnyCam
 from centrode.model.examples.catalogue import DescriptionSource, description_of
 from centrode.model.files import mechanism_text, value_at
 from centrode.model.mechanism import Mechanism
@@ -146,6 +149,9 @@ def sensitivity(
     coords: dict[str, Any] = {"path": list(paths)}
     span = grid_of(prepared, samples, None, None, at)
     solved = solve(prepared, span)
+    labels = dataset_of(solved)
+    dimensions = {str(dim) for one in variables.values() for dim in one.dims}
+    coords |= {dim: labels[dim].to_numpy() for dim in sorted(dimensions & set(labels.coords))}
     variables["status"] = xr.Variable(("sample",), solved.status[0])
     coords["parameter"] = ("sample", span.parameter, {"units": prepared.parameter.variable.unit})
     attributes = {
@@ -153,9 +159,40 @@ def sensitivity(
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,
-        "outputs": list(texts),
     }
     return xr.Dataset(variables, coords, attrs=attributes)
+
+
+@dataclass(frozen=True)
+class SensitivityResults:
+    """A mechanism with the derivatives of what it gives.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    data : what `sensitivity` gives of it
+    """
+
+    mechanism: Mechanism
+    data: xr.Dataset
+
+
+@dataclass(frozen=True)
+class CamSensitivityResults:
+    """A cam with the derivatives of its pressure angle and lift; `data` is what `sensitivity` gives of it."""
+
+    cam: AnyCam
+    data: xr.Dataset
+
+
+def sensitivity_results(mechanism: Mechanism, *arguments: Any, **options: Any) -> SensitivityResults:
+    """What `sensitivity` gives, with the mechanism."""
+    return SensitivityResults(mechanism, sensitivity(mechanism, *arguments, **options))
+
+
+def cam_sensitivity_results(cam: AnyCam, *arguments: Any, **options: Any) -> CamSensitivityResults:
+    """What `sensitivity` gives of a cam, with the cam."""
+    return CamSensitivityResults(cam, cam_sensitivity(cam, *arguments, **options))
 
 
 def paths_to_differentiate(mechanism: Mechanism, by: Sequence[str] | None) -> tuple[str, ...]:

@@ -1126,6 +1126,30 @@ TOLERANCES = Topic(
     panel=Panel(needs=mark("the description has no [tolerances] with limits")),
 )
 
+SENSITIVITY = Topic(
+    name="sensitivity",
+    compute=Lazily("centrode.tolerances.sensitivity", "sensitivity_results"),
+    result=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
+    restore=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
+    view=Lazily("centrode.views.sensitivity", "sheet"),
+)
+
+CAM_SENSITIVITY = Topic(
+    name="cam-sensitivity",
+    compute=Lazily("centrode.tolerances.sensitivity", "cam_sensitivity_results"),
+    result=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
+    restore=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
+    view=Lazily("centrode.views.sensitivity", "cam_sheet"),
+    subject="cam",
+)
+
+ALLOCATION = Topic(
+    name="allocation",
+    compute=Lazily("centrode.tolerances.allocation", "allocate_tolerances"),
+    result=Lazily("centrode.tolerances.allocation", "Allocation"),
+    view=Lazily("centrode.views.allocation", "sheet"),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1166,6 +1190,9 @@ TOPICS: tuple[Topic, ...] = (
     CAM_CHOICE,
     FOLLOWER_FORCES,
     TOLERANCES,
+    SENSITIVITY,
+    CAM_SENSITIVITY,
+    ALLOCATION,
     EQUATIONS,
 )
 """Every topic."""
