@@ -42,6 +42,8 @@ DISTRIBUTIONS = {
     "triangular": Sentence("triangular"),
 }
 TRUE = Sentence("worst case, true")
+MOST_BARS = 10
+"""Bars of one output: the table has all numbers."""
 STATISTICAL = Sentence("three standard deviations")
 PLAY = Sentence("play in joints")
 OUTPUT = Sentence("output")
@@ -360,7 +362,7 @@ def _contributions(results: ToleranceResults) -> NamedBarChart:
     for output in results.outputs:
         shares = output.statistics.contributions
         shown = 100.0 * (shares[output.worst] if output.of_samples else shares)
-        order = np.argsort(-np.abs(shown), kind="stable")
+        order = np.argsort(-np.abs(shown), kind="stable")[:MOST_BARS]
         names = tuple(Name(results.limits.paths[k]) for k in order)
         panels.append(NamedBars(Name(output.name), names, shown[order]))
     label = AxisLabel(Sentence("contribution to the variance"), unit="%", unit_fixed=True)
