@@ -307,13 +307,10 @@ class _Programme:
 
     def _of_one_row(self, row: Array, costs: Array) -> Array:
         """The closed form; numbers that this row does not bound are left wide."""
-        with np.errstate(divide="ignore"):
-            if self.squares:
-                shape = (costs / row**2) ** (1.0 / 3.0)
-                size = np.sqrt(np.nansum(np.where(row > 0.0, row * shape, 0.0) ** 2))
-            else:
-                shape = np.sqrt(costs / row)
-                size = np.nansum(np.where(row > 0.0, row * shape, 0.0))
+        used = np.where(row > 0.0, row, 1.0)
+        shape = np.cbrt(costs / used**2) if self.squares else np.sqrt(costs / used)
+        parts = np.where(row > 0.0, row * shape, 0.0)
+        size = np.sqrt((parts**2).sum()) if self.squares else parts.sum()
         return np.asarray(np.where(row > 0.0, shape / size, np.inf))
 
     def _of_many_rows(self, rows: Array, costs: Array, start: Array) -> Array:

@@ -143,17 +143,30 @@ class DeviatedMechanisms:
         values = self.limits.values + deviations
         if self.has_reactions:
             return self._one_by_one(values)
+        # the tail of a normal distribution may hold lengths that no link has
+        impossible = (values[:, self.lengths] <= 0.0).any(axis=1)
+        if impossible.any():
+            values = np.where(impossible[:, None], self.limits.values, values)
         found = sweep(
             self.prepared.mechanism,
             dict(zip(self.limits.paths, np.ascontiguousarray(values.T), strict=True)),
             outputs=self.formulas,
             samples=self.samples,
         )
-        moves = found["samples_ok"].to_numpy() >= self.reached
+        moves = (found["samples_ok"].to_numpy() >= self.reached) & ~impossible
         outputs = {
             name: found[label].to_numpy() for name, label in zip(self.texts, self.formulas, strict=True)
         }
         return Evaluated(outputs, moves)
+
+    @cached_property
+    def lengths(self) -> list[int]:
+        """Which of the numbers have to be positive."""
+        return [
+            number
+            for number, path in enumerate(self.limits.paths)
+            if path.rpartition(".")[2] in ("length", "radius", "mass")
+        ]
 
     @cached_property
     def formulas(self) -> dict[str, str]:

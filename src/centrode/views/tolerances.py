@@ -45,7 +45,6 @@ TRUE = Sentence("worst case, true")
 MOST_BARS = 10
 """Bars of one output: the table has all numbers."""
 STATISTICAL = Sentence("three standard deviations")
-PLAY = Sentence("play in joints")
 OUTPUT = Sentence("output")
 REST = Sentence(
     "Play is that of joints at rest: between which positions an output may lie. "
@@ -206,12 +205,12 @@ def outputs_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
     columns = [
         Column("output", tuple(Name(output.name) for output in outputs), head=OUTPUT),
         column("nominal", Sentence("nominal"), of([o.nominal for o in outputs])),
-        column("linear_lower", Sentence("linear worst case, lower"), of([o.linear.lower for o in outputs])),
-        column("linear_upper", Sentence("linear worst case, upper"), of([o.linear.upper for o in outputs])),
-        column("true_lower", Sentence("true worst case, lower"), of([o.true.lower for o in outputs])),
-        column("true_upper", Sentence("true worst case, upper"), of([o.true.upper for o in outputs])),
-        column("three_sigma", STATISTICAL, of([o.statistics.half for o in outputs])),
-        Column("unit", tuple(_unit(output.unit) for output in outputs), head=Sentence("unit of the row")),
+        column("linear_lower", Sentence("linear, lower"), of([o.linear.lower for o in outputs])),
+        column("linear_upper", Sentence("linear, upper"), of([o.linear.upper for o in outputs])),
+        column("true_lower", Sentence("true, lower"), of([o.true.lower for o in outputs])),
+        column("true_upper", Sentence("true, upper"), of([o.true.upper for o in outputs])),
+        column("three_sigma", Sentence("statistical ±"), of([o.statistics.half for o in outputs])),
+        Column("unit", tuple(_unit(output.unit) for output in outputs), head=Sentence("unit")),
     ]
     if any(output.of_samples for output in outputs):
         variable = results.mechanism.motion_parameter.variable
@@ -223,13 +222,15 @@ def outputs_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
             np.array(np.nan) if o.clearance is None else np.asarray(o.clearance.first_order) for o in outputs
         ]
         columns.append(
-            column("play", PLAY, [float(np.nanmax(one)) if one.size else math.nan for one in play])
+            column(
+                "play", Sentence("play ±"), [float(np.nanmax(one)) if one.size else math.nan for one in play]
+            )
         )
     return Table(tuple(columns), caption)
 
 
 def _unit(unit: str) -> Text:
-    return NOTHING if unit == "1" else Unit(unit)
+    return NOTHING if unit == "1" else Unit(unit, shown=True)
 
 
 def _abscissa_values(results: ToleranceResults) -> Array:
