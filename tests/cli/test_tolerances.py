@@ -54,7 +54,16 @@ def test_tables_and_files(centrode: Centrode, folder: Path) -> None:
 
 def test_workbooks(centrode: Centrode, folder: Path) -> None:
     done = centrode(
-        "tolerances", described(folder), "--out", "book", "--xlsx", "--no-figures", "--draws", 50, "--samples", 37
+        "tolerances",
+        described(folder),
+        "--out",
+        "book",
+        "--xlsx",
+        "--no-figures",
+        "--draws",
+        50,
+        "--samples",
+        37,
     )
     assert done.code == 0, done
     assert list((folder / "book").glob("*.xlsx"))
@@ -62,7 +71,18 @@ def test_workbooks(centrode: Centrode, folder: Path) -> None:
 
 def test_outputs_and_draws_of_the_command(centrode: Centrode, folder: Path) -> None:
     path = described(folder)
-    words = ("tolerances", path, "--output", "max(position_B_x)", "--draws", 100, "--seed", 3, "--samples", 37)
+    words = (
+        "tolerances",
+        path,
+        "--output",
+        "max(position_B_x)",
+        "--draws",
+        100,
+        "--seed",
+        3,
+        "--samples",
+        37,
+    )
     first, again = centrode(*words), centrode(*words)
     assert first.code == 0, first
     assert first.out == again.out
@@ -73,7 +93,9 @@ def test_outputs_and_draws_of_the_command(centrode: Centrode, folder: Path) -> N
 def test_what_falls_apart_is_told_with_its_place(centrode: Centrode, folder: Path) -> None:
     """Crank and frame together reach coupler and rocker together at a share of these limits."""
     text = '\n[tolerances]\nlinks.OA.length = "±0.8 m"\nlinks.AB.length = "±0.9 m"\n'
-    done = centrode("tolerances", described(folder, text), "--out", "result", "--no-figures", "--samples", 181)
+    done = centrode(
+        "tolerances", described(folder, text), "--out", "result", "--no-figures", "--samples", 181
+    )
     assert done.code == 3, done
     assert "falls apart" in done.err
     assert "group AB-DB locks at" in done.err
@@ -95,7 +117,9 @@ def test_what_falls_apart_is_told_with_its_place(centrode: Centrode, folder: Pat
         (LIMITS, ("--seed", -1), "seed"),
     ],
 )
-def test_refusals(centrode: Centrode, folder: Path, tolerances: str, words: tuple[object, ...], told: str) -> None:
+def test_refusals(
+    centrode: Centrode, folder: Path, tolerances: str, words: tuple[object, ...], told: str
+) -> None:
     done = centrode("tolerances", described(folder, tolerances), *words, "--out", "result")
     assert done.code == 2, done
     assert told in done.err
