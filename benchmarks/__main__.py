@@ -30,6 +30,7 @@ from benchmarks import (  # noqa: E402
     simulation,
     solver,
     sweeps,
+    tolerances,
     workbench,
 )
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
@@ -65,12 +66,13 @@ SECTIONS: Mapping[str, Section] = {
     "cluster": ("A sweep on two workers of this machine, by the clock", cluster.clusters),
     "page": (f"A page in Node: changed numbers to a motion of {pages.SAMPLES} samples", pages.recomputes),
     "workbench": (f"A joint dragged in the workbench, {workbench.STEPS} steps", workbench.drags),
+    "tolerances": ("Tolerances, one output", tolerances.tolerances),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
 NEED_NODE = {"page"}
 NEED_BROWSER = {"workbench"}
-NEED_COMPILER = {"kernels", "sweeps", "simulation", "cluster"}
+NEED_COMPILER = {"kernels", "sweeps", "tolerances", "simulation", "cluster"}
 
 
 def main(wanted: list[str]) -> int:

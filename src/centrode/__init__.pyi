@@ -84,6 +84,11 @@ from .sweeps.solver import solver as solver
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
 
+# Tolerances and play
+from .tolerances.sensitivity import sensitivity as sensitivity
+from .tolerances.results import tolerances as tolerances
+from .tolerances.allocation import allocate_tolerances as allocate_tolerances
+
 # Any result, shown
 from .topics.presentation import summary as summary
 from .topics.presentation import tables as tables

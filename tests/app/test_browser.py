@@ -387,6 +387,40 @@ def test_the_text_and_the_drawing_follow_each_other(running: Any, server: Served
         assert one.messages == []
 
 
+TOLERANCES = """
+[tolerances]
+default = "±0.1 mm"
+[tolerances.clearances]
+B = "0.05 mm"
+[tolerances.outputs]
+swing = { formula = "range(angle_DB)", deviation = "0.1 deg" }
+rocker = "angle.DB"
+"""
+
+
+def test_tolerances_are_a_panel_with_bars_and_bands(running: Any, server: Served) -> None:
+    """Limits written into the text open a panel: bars of contributions, bands over the cycle, the histogram."""
+    with bench(running, server.address, wide=1600) as one:
+        one.template("crank-rocker")
+        one.motion()
+        tab = one.page.locator('[role="tab"]', has_text="Accuracy of the mechanism")
+        one.page.click('[data-do="text"]')
+        one.page.wait_for_selector(".cm-content")
+        one.page.click(".cm-content")
+        one.page.keyboard.press("Control+End")
+        one.gesture(lambda: one.page.keyboard.insert_text(TOLERANCES))
+        one.motion()
+        tab.click()
+        one.until(lambda: one.page.locator("#panel figure svg").count() == 3)
+        said = one.page.inner_text("#panel")
+        assert "all move: 32 corners" in said
+        assert "links.AB.length" in said
+        assert "kept in the worst case" in said
+        labels = one.page.locator("#panel figure figcaption").all_inner_texts()
+        assert labels == ["Contributions of the numbers", "Deviations within the limits", "Drawn mechanisms"]
+        assert one.messages == []
+
+
 def test_the_profile_follows_the_segments_of_a_cam(running: Any, server: Served) -> None:
     """The greatest lift that the curve shows is the one that was written; the outline is another one."""
     with bench(running, server.address) as one:

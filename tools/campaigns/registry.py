@@ -8,6 +8,7 @@ from tools.campaigns.campaign import Campaign
 from tools.campaigns.cams import cases as cams
 from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
+from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.gaps import cases as gaps
@@ -28,6 +29,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
         clusters.CAMPAIGN,
+        clearances.CAMPAIGN,
         pages.CAMPAIGN,
     )
 }

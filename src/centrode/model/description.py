@@ -34,6 +34,7 @@ from centrode.model.reading import (
 )
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
 from centrode.model.simulation import Simulation
+from centrode.model.tolerances import Tolerances
 from centrode.model.values import (
     READING,
     Placed,
@@ -87,6 +88,7 @@ class Description(DescriptionPart):
     simulation: Simulation | None = None
     study: Study = Study()
     report: ReportWishes = ReportWishes()
+    tolerances: Tolerances | None = None
 
     @model_validator(mode="wrap")
     @classmethod

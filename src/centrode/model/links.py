@@ -383,9 +383,12 @@ class Rolling(DescriptionPart):
 
 def part_tables(part: DescriptionPart) -> dict[str, Any]:
     """Tables of any part of a description."""
-    tables = {}
+    tables: dict[str, Any] = {}
     for key, name in part.keys().items():
         value, field = getattr(part, name), type(part).model_fields[name]
+        if name == type(part).among_keys:
+            tables |= _plain(value)
+            continue
         if field.is_required() or value != field.default or _is_required_key(part, name):
             tables[key] = _plain(value)
     return tables

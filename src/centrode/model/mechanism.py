@@ -17,6 +17,8 @@ from centrode.model.placement import resolve_placement
 from centrode.model.reading import FRAME, Problems
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
 from centrode.model.simulation import Simulation
+from centrode.model.tolerance_checks import tolerance_problems
+from centrode.model.tolerances import Tolerances
 from centrode.model.values import Placed, Vector
 
 __all__ = [
@@ -36,6 +38,7 @@ __all__ = [
     "Rolling",
     "Simulation",
     "Study",
+    "Tolerances",
     "Track",
     "Vector",
 ]
@@ -65,6 +68,7 @@ class Mechanism(Description):
     simulation : Simulation or None
     study : Study
     report : ReportWishes
+    tolerances : Tolerances or None
 
     Raises
     ------
@@ -94,6 +98,10 @@ class Mechanism(Description):
         # The only writes to a frozen description, before anybody has seen it.
         object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "guides", guides)
+        # paths of coordinates lead to numbers only once everything is placed
+        wrong = list(tolerance_problems(self))
+        if wrong:
+            raise Problems(wrong)
         return self
 
 

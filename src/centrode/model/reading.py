@@ -9,7 +9,7 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WrapSerializer, model_validator
 
@@ -66,7 +66,7 @@ Place = tuple[str | int, ...]
 """Keys and indices from the top of the description to the value a problem is about."""
 
 TABLES = (
-    *("display", "frame", "assembly", "machine", "study", "report"),
+    *("display", "frame", "assembly", "machine", "study", "report", "tolerances"),
     *("curvature", "start", "range", "roller", "return", "mover", "contact", "choose"),
     *("cam", "follower", "bounds", "tool"),
 )
@@ -274,6 +274,9 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
         validate_by_alias=True,
         arbitrary_types_allowed=True,
     )
+
+    among_keys: ClassVar[str] = ""
+    """Field of which a file writes the entries among the keys of the part; none if empty."""
 
     @classmethod
     def keys(cls) -> dict[str, str]:

@@ -98,6 +98,15 @@ from centrode.model.settings import (
     Study,
 )
 from centrode.model.simulation import EQUATIONS, MOST_STEPS, SCHEMES, Motor, Simulation
+from centrode.model.tolerances import (
+    DISTRIBUTIONS,
+    MOST_OUTPUTS,
+    MOST_PATHS,
+    Clearance,
+    Correlation,
+    ToleranceOutput,
+    Tolerances,
+)
 from centrode.model.units import KINDS as QUANTITIES
 from centrode.numerics.text_formula import TEXT_LENGTH
 from centrode.quantities import ANGULAR_ACCELERATIONS, ANGULAR_VELOCITIES
@@ -169,6 +178,9 @@ def _object(part: type[DescriptionPart], properties: Mapping[type[DescriptionPar
         if (part, key) not in FOLLOWING
     ]
     schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
+    if part.among_keys:
+        # entries of that field stand among the keys
+        schema["additionalProperties"] = properties[part][part.among_keys]["additionalProperties"]
     return {**schema, "required": required} if required else schema
 
 
@@ -214,6 +226,20 @@ _THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, NAME]}
 _DIRECTION: Schema = {"anyOf": [_PAIR, *quantity_schema("angle")["anyOf"]]}
 _POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, reading.POINTS)]}
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
+
+_LIMITS: Schema = {
+    "anyOf": [
+        {"type": "number", "minimum": 0},
+        {"type": "string", "maxLength": reading.QUANTITY_LENGTH},
+        list_of(AMOUNT, 2, 2),
+    ],
+    "description": 'limits "±0.1 mm" or [lower, upper], or a class of ISO 286 such as "H7"',
+}
+_PATHS_WITH_LIMITS: Schema = {
+    "type": "object",
+    "additionalProperties": {"anyOf": [*_LIMITS["anyOf"], {"type": "object"}]},
+    "maxProperties": MOST_PATHS,
+}
 
 PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Display: {
@@ -423,6 +449,31 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "simulation": reference_to(Simulation),
         "study": reference_to(Study),
         "report": reference_to(ReportWishes),
+        "tolerances": reference_to(Tolerances),
+    },
+    Tolerances: {
+        "default": _LIMITS,
+        "distribution": {"enum": list(DISTRIBUTIONS)},
+        "dimensions": _PATHS_WITH_LIMITS,
+        "clearances": table_of(
+            {"anyOf": [*above_zero("length")["anyOf"], reference_to(Clearance)]}, reading.POINTS
+        ),
+        "correlations": list_of(reference_to(Correlation), 0, MOST_PATHS),
+        "outputs": table_of(
+            {"anyOf": [{"type": "string", "maxLength": TEXT_LENGTH}, reference_to(ToleranceOutput)]},
+            MOST_OUTPUTS,
+        ),
+    },
+    Clearance: {"play": above_zero("length"), "length": above_zero("length")},
+    Correlation: {
+        "paths": list_of(NAME, 2, MOST_PATHS),
+        "value": {"type": "number", "minimum": -1, "maximum": 1},
+    },
+    ToleranceOutput: {
+        "formula": {"type": "string", "minLength": 1, "maxLength": TEXT_LENGTH},
+        "within": list_of(AMOUNT, 2, 2),
+        "deviation": AMOUNT,
+        "unit": TEXT,
     },
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""

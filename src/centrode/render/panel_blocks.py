@@ -187,7 +187,7 @@ class _Writer:
 
     def picture(self, name: str, picture: Picture) -> Iterator[JSON]:
         match picture:
-            case Plot() if picture.sizes_above is None:
+            case Plot() if picture.sizes_above is None and not _has_bands(picture):
                 yield from self._plot(name, picture)
             case CurveDiagram():
                 yield self._diagram(name, picture)
@@ -279,3 +279,8 @@ def _number(value: float) -> float | None:
 
 def _numbers(values: Any) -> list[float | None]:
     return [_number(float(value)) for value in np.asarray(values).ravel()]
+
+
+def _has_bands(plot: Plot) -> bool:
+    """Whether areas lie behind the curves, which a chart of the page does not have."""
+    return any(panel.bands for row in plot.rows for panel in row)

@@ -98,6 +98,73 @@ class BarChart:
     panels: tuple[BarPanel, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class NamedBars:
+    """Bars of one thing beside their names, from the top.
+
+    Attributes
+    ----------
+    label : above the bars: of what these are; nothing where there is one panel
+    names : (n) beside the bars
+    lengths : (n), in the unit of the chart's axis
+    """
+
+    label: Text
+    names: tuple[Text, ...]
+    lengths: Array
+
+
+@dataclass(frozen=True)
+class NamedBarChart:
+    """Panels of bars that lie, below each other, over one axis.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    across : of the axis
+    panels : from the top
+    """
+
+    title: Sentence
+    mechanism: Title
+    across: AxisLabel
+    panels: tuple[NamedBars, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class HistogramPanel:
+    """How often a quantity has its values.
+
+    Attributes
+    ----------
+    x : label of the quantity
+    edges, counts : (n + 1) values between which so many (n) lie, in the unit of the label
+    levels : names in the legend and values that are marked; those of one name have one pen
+    """
+
+    x: AxisLabel
+    edges: Array
+    counts: Array
+    levels: tuple[tuple[Text, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Histograms:
+    """Histograms below each other, each over its own axis.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    up : what is counted
+    panels : from the top
+    """
+
+    title: Sentence
+    mechanism: Title
+    up: Text
+    panels: tuple[HistogramPanel, ...]
+
+
 @dataclass(frozen=True)
 class CarriedDisc:
     """A disc on a link.

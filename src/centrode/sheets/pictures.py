@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from centrode.sheets.chain_atlas import ChainAtlas
-from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
+from centrode.sheets.charts import (
+    BarChart,
+    FrontDiagram,
+    Histograms,
+    Hodograph,
+    LinkageWithDiscs,
+    NamedBarChart,
+)
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
@@ -20,6 +27,8 @@ Picture: TypeAlias = (
     | VectorPage
     | Hodograph
     | BarChart
+    | NamedBarChart
+    | Histograms
     | LinkageWithDiscs
     | AreaDiagram
     | Scene

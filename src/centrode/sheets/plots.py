@@ -103,6 +103,23 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Band:
+    """The area between two curves of a panel.
+
+    Attributes
+    ----------
+    name : in the legend
+    low, high : (sample), in the unit of the panel; NaN is a gap
+    place : as of a curve; the area has its colour, pale
+    """
+
+    name: Text
+    low: Array
+    high: Array
+    place: int
+
+
+@dataclass(frozen=True)
 class CurvePanel:
     """Curves of one quantity.
 
@@ -114,6 +131,7 @@ class CurvePanel:
     legend : whether the names stand beside the panel
     dots : names in the legend and places (abscissa, value) of single values
     from_zero : the axis begins at zero
+    bands : areas behind the curves
     """
 
     label: AxisLabel
@@ -122,6 +140,7 @@ class CurvePanel:
     legend: bool = True
     dots: tuple[tuple[Text, float, float], ...] = ()
     from_zero: bool = False
+    bands: tuple[Band, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
 from centrode.sweeps import designs
-from centrode.sweeps.solver_outputs import Asked, LiveOutputs, SolverOutputs, asked_outputs
+from centrode.sweeps.solver_outputs import Asked, LiveColumn, LiveOutputs, SolverOutputs, asked_outputs
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = Sequence[float | str] | Mapping[str, float | str] | Array
@@ -194,6 +194,11 @@ class Solver:
         """A solver is handed on by its description; the other process makes its own plan."""
         grid, outputs = self._settings
         return _rebuilt, (mechanism_text(self.mechanism), self.free, grid, outputs)
+
+    @property
+    def columns(self) -> tuple[LiveColumn, ...]:
+        """The outputs in their order, with what they are; InputError where there are none."""
+        return self._require_outputs().columns
 
     @property
     def samples(self) -> int:

@@ -118,7 +118,7 @@ class SolverOutputs:
         for column in self.columns:
             count = math.prod(column.shape)
             part = numbers[first : first + count]
-            parts[column.name] = part.reshape(*column.shape, *numbers.shape[1:])
+            parts[column.name] = part.reshape((*column.shape, *numbers.shape[1:]))
             first += count
         return parts
 

@@ -1090,6 +1090,66 @@ GEAR_PAIR = Topic(
     subject="gear pair",
 )
 
+TOLERANCES = Topic(
+    name="tolerances",
+    compute=Lazily("centrode.tolerances.results", "tolerance_results"),
+    result=Lazily("centrode.tolerances.results", "ToleranceResults"),
+    view=Lazily("centrode.views.tolerances", "sheet"),
+    concerns=Lazily("centrode.tolerances.results", "has_tolerances"),
+    command=Command(
+        help=mark("Find how far outputs deviate by tolerances and play."),
+        needs=Lazily("centrode.tolerances.results", "need_tolerances"),
+        options=(
+            ValueOption(
+                "output",
+                mark("OUTPUT"),
+                mark('What deviates: "position.B.x", "range(slide_B)"; may be repeated.'),
+                several=True,
+                parameter="outputs",
+            ),
+            ValueOption("draws", mark("N"), mark("Mechanisms that are drawn (10000 by default)."), int),
+            ValueOption("seed", mark("N"), mark("The same seed draws the same mechanisms."), int),
+        ),
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic(
+                "accuracy",
+                mark("Accuracy of the mechanism"),
+                code="print(ct.summary(ct.tolerances(mechanism)))",
+            ),
+        ),
+        instants=False,
+        may_be_left_out=True,
+    ),
+    panel=Panel(needs=mark("the description has no [tolerances] with limits")),
+)
+
+SENSITIVITY = Topic(
+    name="sensitivity",
+    compute=Lazily("centrode.tolerances.sensitivity", "sensitivity_results"),
+    result=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
+    restore=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
+    view=Lazily("centrode.views.sensitivity", "sheet"),
+)
+
+CAM_SENSITIVITY = Topic(
+    name="cam-sensitivity",
+    compute=Lazily("centrode.tolerances.sensitivity", "cam_sensitivity_results"),
+    result=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
+    restore=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
+    view=Lazily("centrode.views.sensitivity", "cam_sheet"),
+    subject="cam",
+)
+
+ALLOCATION = Topic(
+    name="allocation",
+    compute=Lazily("centrode.tolerances.allocation", "allocate_tolerances"),
+    result=Lazily("centrode.tolerances.allocation", "Allocation"),
+    view=Lazily("centrode.views.allocation", "sheet"),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1129,6 +1189,10 @@ TOPICS: tuple[Topic, ...] = (
     CAM_CONTACT,
     CAM_CHOICE,
     FOLLOWER_FORCES,
+    TOLERANCES,
+    SENSITIVITY,
+    CAM_SENSITIVITY,
+    ALLOCATION,
     EQUATIONS,
 )
 """Every topic."""

@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from matplotlib.ticker import FixedLocator
 from matplotlib.transforms import Bbox
 
 from centrode.locale import _
@@ -207,6 +208,9 @@ def _flatten(figure: Figure) -> None:
     if rows not in FLAT or figure.get_layout_engine() is None:
         return
     if any(one.get_aspect() != "auto" or one.name != "rectilinear" for one in axes):
+        return
+    # bars beside their names need a line for each of them
+    if any(isinstance(one.yaxis.get_major_locator(), FixedLocator) for one in axes):
         return
     figure.set_figheight(min(FLAT[rows] * figure.get_figwidth(), figure.get_figheight()))
     room = int(((figure.get_figheight() - EDGES) / rows - GAP) / LETTER)

@@ -40,15 +40,18 @@ from centrode.sheets.charts import (
     CarriedDisc,
     DesignDot,
     FrontDiagram,
+    HistogramPanel,
+    Histograms,
     Hodograph,
     HodographCurve,
     LinkageWithDiscs,
+    NamedBarChart,
 )
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
 
-Chart: TypeAlias = Hodograph | BarChart | LinkageWithDiscs
+Chart: TypeAlias = Hodograph | BarChart | NamedBarChart | Histograms | LinkageWithDiscs
 TICKS = 20
 """The most positions of bars that have a tick each."""
 BARS = 1.9
@@ -135,6 +138,65 @@ def _draw_bars(axes: Axes, kinds: Sequence[Bars], factor: float, spelling: Figur
     axes.set_xticks(positions if len(positions) <= TICKS else positions[:: -(-len(positions) // TICKS)])
     if not any(one.heights.any() for one in kinds):
         axes.set_ylim(0.0, 1.0)
+
+
+BAR = 0.24
+"""Height of a bar beside its name [inch]."""
+
+
+def named_bar_figure(chart: NamedBarChart, display: Display) -> Figure:
+    """Bars that lie beside their names, those of each panel from the top."""
+    spelling, words = FigureSpelling(display), PrintSpelling(display)
+    factor, label, _unit = spelling.label(chart.across)
+    heights = [BAR * len(panel.names) + 0.35 for panel in chart.panels]
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, sum(heights) + 1.0)), layout="constrained")
+    rows = figure.subplots(len(chart.panels), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
+    for number, (axes, panel) in enumerate(zip(rows, chart.panels, strict=True)):
+        places = np.arange(len(panel.names))
+        axes.barh(places, factor * panel.lengths, 0.7, color=numbered_pen(number).colour)
+        # names are plain text: a dollar sign in one is no formula
+        axes.set_yticks(places, [words.text(name).replace("$", r"\$") for name in panel.names])
+        axes.invert_yaxis()
+        axes.axvline(0.0, color=INK, linewidth=THIN)
+        axes.set_title(spelling.text(panel.label), loc="left", fontsize="medium")
+        axes.xaxis.set_major_formatter(Decimals())
+        axes.grid(visible=False, axis="y")
+        axes.set_axisbelow(True)
+    rows[-1].set_xlabel(label)
+    _write_titles(figure, chart, display)
+    return figure
+
+
+def histogram_figure(chart: Histograms, display: Display) -> Figure:
+    """Histograms below each other, with marked values."""
+    words = PrintSpelling(display)
+    names = [words.text(name) for panel in chart.panels for name, _value in panel.levels]
+    above = legend_height(list(dict.fromkeys(names)), inches=BARS)
+    height = 1.0 + (BARS + 0.5 + above) * len(chart.panels)
+    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
+    rows = figure.subplots(len(chart.panels), 1, squeeze=False)[:, 0]
+    for axes, panel in zip(rows, chart.panels, strict=True):
+        _draw_histogram(axes, panel, display)
+        axes.set_ylabel(words.text(chart.up))
+        wrap_label(axes, BARS - 0.4)
+    _write_titles(figure, chart, display)
+    return figure
+
+
+def _draw_histogram(axes: Axes, panel: HistogramPanel, display: Display) -> None:
+    spelling, words = FigureSpelling(display), PrintSpelling(display)
+    factor, label, _unit = spelling.label(panel.x)
+    axes.stairs(panel.counts, factor * panel.edges, fill=True, color=numbered_pen(0).colour, alpha=0.6)
+    key: dict[str, Artist] = {}
+    for name, value in panel.levels:
+        text = words.text(name)
+        pen = numbered_pen(1 + list(dict.fromkeys([*key, text])).index(text))
+        key[text] = axes.axvline(factor * value, color=pen.colour, linestyle=CENTRE_LINE)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel(label)
+    axes.xaxis.set_major_formatter(Decimals())
+    axes.set_axisbelow(True)
+    write_legend(axes, [(line, text) for text, line in key.items()], inches=BARS)
 
 
 def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:

@@ -13,7 +13,14 @@ from centrode.render.drawing.style import darkened, house_style
 from centrode.render.drawing.walking_wheel import wheel_figure
 from centrode.render.figures.areas import area_figure
 from centrode.render.figures.chain_atlas import atlas_figure
-from centrode.render.figures.charts import bar_figure, front_figure, hodograph_figure, linkage_figure
+from centrode.render.figures.charts import (
+    bar_figure,
+    front_figure,
+    histogram_figure,
+    hodograph_figure,
+    linkage_figure,
+    named_bar_figure,
+)
 from centrode.render.figures.files import save_figures
 from centrode.render.figures.linkages import mechanism_figure, paths_figure
 from centrode.render.figures.outlines import outline_figure, path_figure
@@ -30,7 +37,14 @@ from centrode.render.pages.several_instants import instants_figure
 from centrode.render.pages.vector_diagrams import vector_diagram_figure
 from centrode.render.pages.vectors import vector_page
 from centrode.sheets.chain_atlas import ChainAtlas
-from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
+from centrode.sheets.charts import (
+    BarChart,
+    FrontDiagram,
+    Histograms,
+    Hodograph,
+    LinkageWithDiscs,
+    NamedBarChart,
+)
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
@@ -93,6 +107,10 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return hodograph_figure(picture, display)
             case BarChart():
                 return bar_figure(picture, display)
+            case NamedBarChart():
+                return named_bar_figure(picture, display)
+            case Histograms():
+                return histogram_figure(picture, display)
             case LinkageWithDiscs():
                 return linkage_figure(picture, display)
             case AreaDiagram():

@@ -56,6 +56,8 @@ COLUMNS = 2
 """The most columns of panels."""
 TICKS = 9
 """The most ticks of an angle."""
+PALE = 0.25
+"""Opacity of a band."""
 ROOM = 0.08
 """Share of the panel that the name of a single place takes at its right."""
 
@@ -76,6 +78,7 @@ def plot_figure(plot: Plot, display: Display) -> Figure:
     if plot.overlay is not None:
         _lay_over(figure, plot.overlay, spelling)
     for axes, panel in zip(figure.axes, (panel for row in plot.rows for panel in row), strict=True):
+        _add_bands(axes, panel, abscissa, spelling)
         _add_dots(axes, panel, across, spelling)
         if panel.from_zero:
             axes.set_ylim(bottom=0.0)
@@ -96,6 +99,33 @@ def _turn_columns(plot: Plot) -> Plot:
 
     overlay = plot.overlay and replace(plot.overlay, rows=turn(plot.overlay.rows))
     return replace(plot, rows=turn(plot.rows), overlay=overlay)
+
+
+def _add_bands(axes: Axes, panel: CurvePanel, abscissa: DrawnAbscissa, spelling: FigureSpelling) -> None:
+    """Fill the areas of a panel behind its curves, with their entries in its legend."""
+    up, entries = spelling.label(panel.label)[0], []
+    for band in panel.bands:
+        low, high = (abscissa.parts(up * curve)[0] for curve in (band.low, band.high))
+        # a wide band first: what lies upon it stays visible
+        area = axes.fill_between(
+            abscissa.drawn,
+            low,
+            high,
+            color=numbered_pen(band.place).colour,
+            alpha=PALE,
+            linewidth=0.0,
+            zorder=1.0,
+        )
+        entries.append((area, PrintSpelling(spelling.display).text(band.name)))
+    if entries:
+        axes.relim()
+        heights = np.concatenate([up * curve for band in panel.bands for curve in (band.low, band.high)])
+        known = heights[np.isfinite(heights)]
+        if known.size:
+            bottom, top = axes.get_ylim()
+            room = 0.05 * float(np.ptp(known))
+            axes.set_ylim(min(bottom, float(known.min()) - room), max(top, float(known.max()) + room))
+        write_legend(axes, [*_entries(axes), *entries])
 
 
 def _add_dots(axes: Axes, panel: CurvePanel, across: float, spelling: FigureSpelling) -> None:
