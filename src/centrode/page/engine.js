@@ -23,8 +23,8 @@ const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];
 const SUSPECT = 1e-8, SAFETY = 16;
 /* how much more than their bounds numbers may stray */
 const ROOM = 1 + 1e-6;
-/* nodes of the mesh that a wide cell stands for, and cells that it falls into where that tells nothing */
-const WIDE = 12, NARROWER = 4;
+/* cells of a cover, in steps of the mesh: at first, greatest, least; below which doubt two of them become one */
+const WIDE = 12, WIDEST = 32, NARROWEST = 1 / 16, EASY = 0.12;
 /* greatest change of an angle from one sample to the next at which its turns are counted there */
 const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
@@ -52,7 +52,7 @@ function spacing(x) {
 const sign = (x) => (x > 0 ? 1 : x < 0 ? -1 : x === 0 ? 0 : NaN);
 
 /* whole numbers as NumPy rounds halves: to even */
-function rounded(x) {
+function roundHalfToEven(x) {
   const down = Math.floor(x), rest = x - down;
   if (rest !== 0.5) return rest < 0.5 ? down : down + 1;
   return down % 2 === 0 ? down : down + 1;
@@ -141,16 +141,16 @@ function createMechanism(data) {
   }
 
   function preparePlaces(f, rows, count) {
-    const p = new Float64Array((f.fixed.length + f.parts + f.moving.length) * count);
-    f.fixed.forEach((name, k) => p.set(rows[name], k * count));
-    f.before(v, p, count, p.subarray(f.fixed.length * count));
-    const start = (f.fixed.length + f.parts) * count;
+    const stride = f.stride ?? count, p = new Float64Array((f.fixed.length + f.parts + f.moving.length) * stride);
+    f.fixed.forEach((name, k) => p.set(rows[name], k * stride));
+    const parts = p.subarray(f.fixed.length * stride), o = new Float64Array(f.count * stride);
+    f.before(v, p, count, parts);
+    const start = (f.fixed.length + f.parts) * stride;
     const moving = f.moving.map((name, k) => {
       const [word, of] = wordAndOwner(name);
-      return { word, of, row: p.subarray(start + k * count, start + (k + 1) * count) };
+      return { word, of, row: p.subarray(start + k * stride, start + k * stride + count) };
     });
-    const parts = p.subarray(f.fixed.length * count);
-    return { f, p, parts, count, moving, at: rows.parameter, o: new Float64Array(f.count * count) };
+    return { f, p, parts, count, moving, at: rows.parameter, o, row: (k) => o.subarray(k * stride, k * stride + count) };
   }
 
   /* numbers of a row that moves with the numbers of the mechanism; `nodes` of the mesh next to places, where they are known */
@@ -213,6 +213,23 @@ function createMechanism(data) {
     cells.addParts = (at, half, parts) => {
       for (let q = 0; q < parts; q++) cells.add(at + half * ((2 * q + 1) / parts - 1), half / parts);
     };
+    /* one cell with the last one where both decide easily, and together are not too wide */
+    let easy = false;
+    cells.addOrJoin = (at, half, doubt, widest) => {
+      const before = cells.size - 1, both = before < 0 ? 0 : half + cells.half[before];
+      if (before >= 0 && easy && doubt < EASY && both <= widest(at) && Math.abs(at - cells.at[before] - both) < FINEST * both) {
+        cells.at[before] += half;
+        cells.half[before] = both;
+        easy = false;
+      } else {
+        cells.add(at, half);
+        easy = doubt < EASY;
+      }
+    };
+    cells.sort = () => {
+      const order = Array.from({ length: cells.size }, (_x, k) => k).sort((a, b) => cells.at[a] - cells.at[b]);
+      for (const name of ["at", "half"]) cells[name].set(order.map((k) => cells[name][k]));
+    };
     return cells;
   }
 
@@ -238,15 +255,6 @@ function createMechanism(data) {
   const allNodes = Int32Array.from(mesh, (_x, k) => k);
   const startNode = nearestNode(initial);
 
-  /* wide cells that together cover those of the mesh */
-  const wide = (() => {
-    if (byTime || data.counted.length || mesh.length < 2 * WIDE || !guards.length) return null;
-    const low = mesh[0] - 0.5 * step, high = mesh[mesh.length - 1] + 0.5 * step;
-    const count = Math.ceil((high - low) / (WIDE * step)), half = (0.5 * (high - low)) / count;
-    const at = Float64Array.from({ length: count }, (_x, k) => low + half * (2 * k + 1));
-    const places = preparePlaces(printed.cells, { parameter: at, half: new Float64Array(count).fill(half) }, count);
-    return { low, half, count, places };
-  })();
   const cellsOnMesh = (() => {
     let places = null;
     return () => (places ??= preparePlaces(printed.cells, { parameter: mesh, half: halves }, mesh.length));
@@ -256,51 +264,101 @@ function createMechanism(data) {
 
   const largest = new Map();
 
-  /* nodes at which something may happen, by bounds over wide cells, then over narrower ones where these tell nothing; null
-   * where nothing happens, all of them without such cells */
-  const narrow = cellList(), around = cellList();
-  function nodesToSearch() {
+  /* the path that the motion takes, and the nodes of the mesh along it */
+  let leastDrive = initial, mostDrive = initial;
+  for (const x of drive) { leastDrive = Math.min(leastDrive, x); mostDrive = Math.max(mostDrive, x); }
+  const everything = [0, mesh.length - 1];
+  const along = [nearestNode(leastDrive - WINDOW * unit) - 2, nearestNode(mostDrive + WINDOW * unit) + 2]
+    .map((node) => Math.min(mesh.length - 1, Math.max(0, node)));
+
+  /* Cells that cover a range of the mesh, fine enough to show that nothing happens in them. Numbers change little from
+   * one frame to the next, so the cells of the last one are where the next begins: a cell that decides nothing is
+   * halved, two neighbours that decide easily become one. */
+  function createCover([first, last]) {
+    let cells = cellList(), following = cellList(), parts = cellList(), finer = cellList();
+    let doubts = new Float64Array(0);
+    if (byTime) for (let j = first; j <= last; j++) cells.add(mesh[j], halves[j]);
+    else {
+      const low = mesh[first] - 0.5 * step, high = mesh[last] + 0.5 * step;
+      cells.addParts(0.5 * (low + high), 0.5 * (high - low), Math.ceil((high - low) / (WIDE * step)));
+    }
+    /* laws of time are looked at in cells as wide as those of the mesh */
+    const widest = (x) => (byTime ? halves[nearestNode(x)] : 0.5 * WIDEST * step);
+    const narrowest = (x) => NARROWEST * (byTime ? halves[nearestNode(x)] : 0.5 * step);
+
+    function doubtsOf(some) {
+      const o = cellsAt("cover", some), count = some.size;
+      if (doubts.length < count) doubts = new Float64Array(2 * count);
+      for (let i = 0; i < count; i++) doubts[i] = doubtOfCell(o, count, i, some.half[i]);
+    }
+
+    /* cells in which a guard may pass or touch zero; none where nothing happens */
+    function undecided() {
+      const left = [];
+      let rest = cells, halved = false;
+      following.size = 0;
+      while (rest.size) {
+        doubtsOf(rest);
+        finer.size = 0;
+        for (let i = 0; i < rest.size; i++) {
+          const at = rest.at[i], half = rest.half[i];
+          if (doubts[i] < 1) {
+            following.addOrJoin(at, half, doubts[i], widest);
+          } else if (half > narrowest(at)) finer.addParts(at, half, 2);
+          else {
+            following.addOrJoin(at, half, Infinity, widest);
+            left.push([at, half]);
+          }
+        }
+        halved = halved || finer.size > 0;
+        [parts, finer] = [finer, parts];
+        rest = parts;
+      }
+      if (halved) following.sort();
+      [cells, following] = [following, cells];
+      return left;
+    }
+    return { undecided };
+  }
+
+  /* below 1 where no guard passes or touches zero in a cell; the least such number of a guard counts */
+  function doubtOfCell(o, count, i, half) {
+    let most = 0;
+    for (let k = 0; k < guards.length; k++) {
+      const value = o[3 * k * count + i], slope = o[(3 * k + 1) * count + i], bend = o[(3 * k + 2) * count + i];
+      const size = Math.abs(value), doubt = (ROOM * (Math.abs(slope) + 0.5 * bend * half) * half) / size;
+      const { group, ofRadicand } = guards[k];
+      if (ofRadicand && size > largest.get(group)) largest.set(group, size);
+      if (!(doubt < 1)) return Infinity;
+      if (doubt > most) most = doubt;
+      /* where a group is open all over a cell, those behind it have no value there */
+      if (ofRadicand && value < 0) break;
+    }
+    return most;
+  }
+
+  const covers = new Map();
+
+  /* nodes of a range at which something may happen; null where nothing happens */
+  function nodesToSearch(range) {
     for (const { group, ofRadicand } of guards) if (ofRadicand) largest.set(group, 0);
-    if (wide === null) return guards.length ? allNodes : null;
-    const { low, half, count } = wide;
-    let rough = roughCells(run(wide.places), count, half, true);
-    if (rough === null) return null;
-    narrow.size = 0;
-    for (let i = 0; i < count; i++) if (rough[i]) narrow.addParts(low + half * (2 * i + 1), half, NARROWER);
-    rough = roughCells(cellsAt("narrow", narrow), narrow.size, half / NARROWER, false);
-    if (rough === null) return null;
-    const chosen = new Uint8Array(mesh.length), narrower = half / NARROWER;
+    if (!guards.length) return null;
+    if (data.counted.length) return range === everything ? allNodes : allNodes.subarray(range[0], range[1] + 1);
+    if (!covers.has(range)) covers.set(range, createCover(range));
+    const cells = covers.get(range).undecided();
+    if (!cells.length) return null;
+    const chosen = new Uint8Array(mesh.length);
     let some = 0;
-    for (let i = 0; i < narrow.size; i++) {
-      if (!rough[i]) continue;
-      const from = Math.max(0, Math.floor((narrow.at[i] - narrower - low) / step) - 2);
-      const to = Math.min(mesh.length, Math.ceil((narrow.at[i] + narrower - low) / step) + 2);
-      for (let j = from; j < to; j++) if (!chosen[j]) { chosen[j] = 1; some++; }
+    for (const [at, half] of cells) {
+      const from = Math.max(0, nearestNode(at - half) - 2), to = Math.min(mesh.length - 1, nearestNode(at + half) + 2);
+      for (let j = from; j <= to; j++) if (!chosen[j]) { chosen[j] = 1; some++; }
     }
     const nodes = new Int32Array(some);
     for (let j = 0, k = 0; j < mesh.length; j++) if (chosen[j]) nodes[k++] = j;
     return nodes;
   }
 
-  /* cells of one half width in which a guard may pass or touch zero; null where none does */
-  function roughCells(o, count, half, measures) {
-    const rough = new Uint8Array(count);
-    let some = false;
-    for (let i = 0; i < count; i++) {
-      let closed = true;
-      for (let k = 0; k < guards.length; k++) {
-        const value = o[3 * k * count + i], slope = o[(3 * k + 1) * count + i], bend = o[(3 * k + 2) * count + i];
-        const strays = Math.abs(slope) * half + bend * (0.5 * half * half), size = Math.abs(value);
-        const { group, ofRadicand } = guards[k];
-        if (measures && ofRadicand && size + strays > largest.get(group)) largest.set(group, size + strays < Infinity ? size + strays : size);
-        if (closed && !(size > ROOM * strays)) { rough[i] = 1; some = true; }
-        /* where a group is open all over a cell, those behind it have no value there */
-        if (ofRadicand && value < 0 && size > ROOM * strays) closed = false;
-      }
-    }
-    return some ? rough : null;
-  }
-
+  const around = cellList();
   /* all guards at some nodes of the mesh: a row each of value, slope and bend */
   function guardsAt(nodes) {
     if (nodes.length === mesh.length) return run(cellsOnMesh(), allNodes);
@@ -477,15 +535,18 @@ function createMechanism(data) {
     data.counted.forEach(([key, start], c) => {
       const o = onMesh("counted"), raw = o.slice(c * mesh.length, (c + 1) * mesh.length), angle = unwound.get(key);
       fillGaps(raw);
-      angle[startNode] = raw[startNode] + TURN * rounded((start - raw[startNode]) / TURN);
-      for (let j = startNode + 1; j < mesh.length; j++) angle[j] = raw[j] + TURN * rounded((angle[j - 1] - raw[j]) / TURN);
-      for (let j = startNode - 1; j >= 0; j--) angle[j] = raw[j] + TURN * rounded((angle[j + 1] - raw[j]) / TURN);
+      angle[startNode] = raw[startNode] + TURN * roundHalfToEven((start - raw[startNode]) / TURN);
+      for (let j = startNode + 1; j < mesh.length; j++) angle[j] = raw[j] + TURN * roundHalfToEven((angle[j - 1] - raw[j]) / TURN);
+      for (let j = startNode - 1; j >= 0; j--) angle[j] = raw[j] + TURN * roundHalfToEven((angle[j + 1] - raw[j]) / TURN);
     });
   }
 
   /* gaps filled by the last known value on the way from the start; both rows of directions together */
   function fillGaps(row, other = row) {
     const there = (j) => Number.isFinite(row[j]) && Number.isFinite(other[j]);
+    let whole = true;
+    for (let j = 0; j < row.length && whole; j++) whole = there(j);
+    if (whole) return;
     let known = 0;
     while (known < row.length && !there(known)) known++;
     const [value, beside] = known < row.length ? [row[known], other[known]] : [0, 0];
@@ -499,11 +560,20 @@ function createMechanism(data) {
     }
   }
 
+  /* Beyond the motion only the polynomials beside change points are of interest, which end where something happens. */
+  let changesBefore = false;
   function findEvents() {
+    search(changesBefore ? everything : along);
+    const changes = data.smooth && events.some((event) => event.kind === "change point");
+    if (changes && !changesBefore) search(everything);
+    changesBefore = changes;
+  }
+
+  function search(range) {
     crossings = new Map();
     events = [];
     if (data.counted.length) countAngles();
-    const nodes = nodesToSearch();
+    const nodes = nodesToSearch(range);
     if (nodes === null) return;
     let o = guardsAt(nodes), stale = false;
     for (const guard of guards) {
@@ -536,11 +606,10 @@ function createMechanism(data) {
 
   /* ---- the samples ---- */
 
-  const rows = data.rows.map((_row, k) => atSamples.o.subarray(k * n, (k + 1) * n));
-  const residual = atSamples.o.subarray(rows.length * n, (rows.length + 1) * n);
+  const rows = data.rows.map((_row, k) => atSamples.row(k));
+  const residual = atSamples.row(rows.length);
   const radicands = data.radicands.map((group, k) => {
-    const first = (rows.length + 1 + k) * n;
-    return { group, row: atSamples.o.subarray(first, first + n), guard: guards.findIndex((g) => g.ofRadicand && g.group === group) };
+    return { group, row: atSamples.row(rows.length + 1 + k), guard: guards.findIndex((g) => g.ofRadicand && g.group === group) };
   });
   const signRows = new Map(atSamples.moving.filter((each) => each.word === "sign").map((each) => [each.of, each.row]));
   const turnRows = new Map(atSamples.moving.filter((each) => each.word === "turns").map((each) => [each.of, each.row]));
@@ -550,7 +619,6 @@ function createMechanism(data) {
     if (name.startsWith("turns ") && !turnRows.has(of)) turnRows.set(of, new Float64Array(n));
   }
   const status = new Uint8Array(n);
-  const impossible = new Set(data.impossible);
 
   const nested = (places) => (Array.isArray(places) ? places.map(nested) : rows[places]);
   const quantities = Object.fromEntries(data.quantities.map((each) => [each.name, nested(each.rows)]));
@@ -601,13 +669,6 @@ function createMechanism(data) {
     return again;
   }
 
-  function absent(i, of) {
-    for (let k = 0; k < rows.length; k++) {
-      const [derivative, ofFrame] = data.rows[k];
-      if (of(derivative, ofFrame, rows[k][i])) rows[k][i] = NaN;
-    }
-  }
-
   /* Beside a change point closed forms lose their digits, though the motion runs on smoothly: there it is the polynomial
    * through places on both sides. */
   const nodesAround = Float64Array.from({ length: AROUND }, (_x, q) => Math.cos((Math.PI * (2 * q + 1)) / (2 * AROUND)));
@@ -628,14 +689,16 @@ function createMechanism(data) {
   function mendSample(i, centre, reach) {
     const around = Object.fromEntries(Object.entries(given).map(([name, row]) => [name, new Float64Array(AROUND).fill(row[i])]));
     around.parameter = nodesAround.map((x) => centre + reach * x);
-    const o = run(preparePlaces(printed.motion, around, AROUND)), turning = new Set(data.angles.map(([, place]) => place));
+    const places = preparePlaces(printed.motion, around, AROUND), turning = new Set(data.angles.map(([, place]) => place));
+    run(places);
     const x = (drive[i] - centre) / reach;
-    const mended = rows.map((row, k) => {
+    const smooth = rows.map((_row, k) => {
+      const around = places.row(k);
       let above = 0, below = 0;
       for (let q = 0; q < AROUND; q++) {
-        let value = o[k * AROUND + q];
+        let value = around[q];
         /* angles without turns may jump between two of the places */
-        if (turning.has(k)) value -= TURN * Math.round((value - o[k * AROUND]) / TURN);
+        if (turning.has(k)) value -= TURN * Math.round((value - around[0]) / TURN);
         const share = weights[q] / (x - nodesAround[q]);
         above += share * value;
         below += share;
@@ -643,10 +706,10 @@ function createMechanism(data) {
       const value = above / below;
       return turning.has(k) ? value - TURN * Math.round(value / TURN) : value;
     });
-    if (!mended.every(Number.isFinite)) return;
-    mended.forEach((value, k) => { rows[k][i] = value; });
+    if (!smooth.every(Number.isFinite)) return;
+    smooth.forEach((value, k) => { rows[k][i] = value; });
     /* what the formulas say in a place without digits is no residual of the motion: that of the places around is */
-    residual[i] = o.subarray(rows.length * AROUND, (rows.length + 1) * AROUND).reduce((a, b) => Math.max(a, b));
+    residual[i] = places.row(rows.length).reduce((a, b) => Math.max(a, b));
   }
 
   /* `computed`: whether the rows of the samples are those of these numbers already */
@@ -661,24 +724,33 @@ function createMechanism(data) {
     }
     mend();
     const bound = data.residual_bound;
-    if (events.length || !residual.every((each) => each <= bound)) {
-      for (const row of rows) for (let i = 0; i < n; i++) if (status[i] === OK && !Number.isFinite(row[i])) status[i] = SINGULAR;
+    let closes = true;
+    for (let i = 0; i < n; i++) closes = closes && residual[i] <= bound;
+    if (events.length || !closes) {
+      for (const row of rows) for (let i = 0; i < n; i++) if (!Number.isFinite(row[i]) && status[i] === OK) status[i] = SINGULAR;
     }
-    for (let i = 0; i < n; i++) {
-      if (status[i] !== OPEN && (drive[i] < reach[0] - margins[i] || drive[i] > reach[1] + margins[i])) status[i] = CUT_OFF;
-      if (impossible.has(i)) status[i] = OPEN;
-      if (status[i] !== OPEN && residual[i] > bound) { status[i] = OPEN; residual[i] = NaN; }
+    if (reach[0] > -Infinity || reach[1] < Infinity) {
+      for (let i = 0; i < n; i++) {
+        if (status[i] !== OPEN && (drive[i] < reach[0] - margins[i] || drive[i] > reach[1] + margins[i])) status[i] = CUT_OFF;
+      }
     }
+    for (const i of data.impossible) status[i] = OPEN;
+    if (closes) return;
+    for (let i = 0; i < n; i++) if (status[i] !== OPEN && residual[i] > bound) { status[i] = OPEN; residual[i] = NaN; }
   }
 
   /* absence is NaN: nothing stands in open samples, and no derivatives in singular ones */
   function settle() {
-    for (let i = 0; i < n; i++) {
-      if (status[i] === OK) continue;
-      if (status[i] === OPEN) { absent(i, () => true); residual[i] = NaN; }
-      else {
-        const withoutSlopes = status[i] === SINGULAR;
-        absent(i, (derivative, ofFrame, x) => !ofFrame && ((withoutSlopes && derivative) || !Number.isFinite(x)));
+    let some = false;
+    for (let i = 0; i < n; i++) some = some || status[i] !== OK;
+    if (!some) return;
+    for (let i = 0; i < n; i++) if (status[i] === OPEN) residual[i] = NaN;
+    for (let k = 0; k < rows.length; k++) {
+      const row = rows[k], [derivative, ofFrame] = data.rows[k];
+      for (let i = 0; i < n; i++) {
+        if (status[i] === OK) continue;
+        const absent = !ofFrame && ((derivative && status[i] === SINGULAR) || !Number.isFinite(row[i]));
+        if (absent || status[i] === OPEN) row[i] = NaN;
       }
     }
   }
@@ -700,20 +772,19 @@ function createMechanism(data) {
   }
 
   function unwindBySamples(row, start) {
-    for (const from of [1, -1]) {
-      for (let i = startSample + from; i >= 0 && i < n; i += from) {
-        const change = row[i] - row[i - from];
-        if (Math.abs(change) < MOST_TURN) continue;
-        if (!(Math.abs(change - TURN * Math.round(change / TURN)) < MOST_TURN)) return false;
-      }
+    let jumps = false;
+    for (let i = 1; i < n; i++) {
+      const change = row[i] - row[i - 1];
+      if (Math.abs(change) < MOST_TURN) continue;
+      if (!(Math.abs(change - TURN * Math.round(change / TURN)) < MOST_TURN)) return false;
+      jumps = true;
     }
-    let shift = TURN * rounded((start - row[startSample]) / TURN), moves = shift !== 0;
-    const first = row[startSample];
+    const first = row[startSample], shift = TURN * roundHalfToEven((start - first) / TURN), moves = shift !== 0;
+    if (!jumps && !moves) return true;
     for (const from of [1, -1]) {
       let before = first, turns = 0;
       for (let i = startSample + from; i >= 0 && i < n; i += from) {
-        const raw = row[i];
-        const change = raw - before;
+        const raw = row[i], change = raw - before;
         if (change > Math.PI) turns -= 1; else if (change < -Math.PI) turns += 1;
         before = raw;
         if (turns !== 0 || moves) row[i] = raw + (shift + TURN * turns);
@@ -723,30 +794,30 @@ function createMechanism(data) {
     return true;
   }
 
-  let rotorsKnown = null;
+  let rotorsOnMesh = null;   // of these numbers, once they are needed
+  const turnsOnMesh = new Int32Array(mesh.length);
   function unwindByMesh(link, row, start) {
-    rotorsKnown ??= onMesh("rotors");
-    const which = data.angles.findIndex(([name]) => name === link), size = mesh.length;
-    const cosine = rotorsKnown.slice(2 * which * size, (2 * which + 1) * size);
-    const sine = rotorsKnown.slice((2 * which + 1) * size, (2 * which + 2) * size);
+    const which = data.angles.findIndex(([name]) => name === link), size = mesh.length, turns = turnsOnMesh;
+    rotorsOnMesh ??= onMesh("rotors");
+    const cosine = rotorsOnMesh.subarray(2 * which * size, (2 * which + 1) * size);
+    const sine = rotorsOnMesh.subarray((2 * which + 1) * size, (2 * which + 2) * size);
     fillGaps(cosine, sine);
     /* rotors of hinges are longer or shorter than 1 */
-    for (let j = 0; j < size; j++) {
+    if (data.space === "sphere") for (let j = 0; j < size; j++) {
       const length = Math.sqrt(cosine[j] * cosine[j] + sine[j] * sine[j]);
-      if (length > 0) cosine[j] /= length;
+      if (length > 0) { cosine[j] /= length; sine[j] /= length; }
     }
-    const turns = new Int32Array(size);
-    for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + passed(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
-    const shift = rounded((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];
+    for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + turnChange(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
+    const shift = roundHalfToEven((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];
     for (let i = 0; i < n; i++) {
       const node = nearSamples[i], angle = row[i];
-      const whole = turns[node] + shift + passed(cosine[node], sine[node], Math.cos(angle), angle);
+      const whole = turns[node] + shift + turnChange(cosine[node], sine[node], Math.cos(angle), angle);
       if (whole !== 0) row[i] = angle + TURN * whole;
     }
   }
 
   /* change of the number of turns from one direction to the next: 1 past half a turn, -1 back */
-  function passed(cosine, sine, nextCosine, nextSine) {
+  function turnChange(cosine, sine, nextCosine, nextSine) {
     const below = (x) => (x < 0 || Object.is(x, -0) ? 1 : 0);
     return cosine + nextCosine < 0 ? below(nextSine) - below(sine) : 0;
   }
@@ -765,7 +836,7 @@ function createMechanism(data) {
       return frame;
     }
     printed.numbers(values, v);
-    rotorsKnown = null;
+    rotorsOnMesh = null;
     findEvents();
     findReach(reach);
     fillMoving(atSamples, nearSamples);
@@ -780,8 +851,7 @@ function createMechanism(data) {
     judgeSamples(data.turns_matter && !turnsChanged);
     settle();
     unwind();
-    const low = Math.min(initial, drive[0], drive[n - 1]) - 1e-9 * unit;
-    const high = Math.max(initial, drive[0], drive[n - 1]) + 1e-9 * unit;
+    const low = leastDrive - 1e-9 * unit, high = mostDrive + 1e-9 * unit;
     frame.events = events.filter((event) => low <= event.drive && event.drive <= high);
     frame.signsChange = data.smooth && frame.events.some((event) => event.kind === "change point");
     return frame;
@@ -796,8 +866,7 @@ function createMechanism(data) {
     if (printed.reactions === undefined || forcesKnown) return reactionNames;
     if (forces === null) {
       forces = preparePlaces(printed.reactions, given, n);
-      const row = (k) => forces.o.subarray(k * n, (k + 1) * n);
-      const named = (places) => (Array.isArray(places) ? places.map(named) : row(places));
+      const named = (places) => (Array.isArray(places) ? places.map(named) : forces.row(places));
       for (const each of data.reactions) reactionNames[each.name] = named(each.rows);
     }
     forcesKnown = true;
@@ -806,7 +875,7 @@ function createMechanism(data) {
   }
 
   function computeReactions() {
-    const { f, p, o, moving } = forces, numbers = f.count - 1;
+    const { f, p, o, moving } = forces, numbers = f.count - 1, stride = o.length / f.count;
     fillMoving(forces, nearSamples);
     for (const { word, of, row } of moving) {
       const known = word === "sign" ? signRows.get(of) : word === "turns" ? turnRows.get(of) : undefined;
@@ -816,8 +885,8 @@ function createMechanism(data) {
     for (let i = 0; i < n; i++) {
       /* where the motion is mended by places around, forces are not: they may pass all bounds there */
       const reached = (status[i] === OK || status[i] === CUT_OFF) && !besideAnyChange(drive[i]);
-      if (reached && o[numbers * n + i] < data.largest_gain) continue;
-      for (let k = 0; k < numbers; k++) o[k * n + i] = NaN;
+      if (reached && o[numbers * stride + i] < data.largest_gain) continue;
+      for (let k = 0; k < numbers; k++) o[k * stride + i] = NaN;
     }
   }
 

@@ -136,7 +136,7 @@ def page_program(
     traced = trace_page(prepared, span, varied, paths)
     acting = trace_reactions(traced.solved, paths, traced.quantities)
     try:
-        functions = _functions(traced, acting, free, varied)
+        functions = _functions(traced, acting, free, varied, len(span.parameter))
     except Unwritten as unwritten:
         what = _("the operation {operation} has no words in JavaScript").format(operation=unwritten.operation)
         raise NotComputedYet("page", what) from None
@@ -217,15 +217,25 @@ PLACE = (PARAMETER, TIME, RATE, SECOND_RATE, HALF)
 """Variables of a place that stay when numbers of the mechanism change."""
 
 
-def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, varied: Varied) -> str:
+PLACES_AROUND = 20
+"""Places at which the engine computes a motion beside a change point: its `AROUND`."""
+
+
+def _functions(
+    traced: PageTrace, acting: TracedReactions, free: FreeNumbers, varied: Varied, samples: int
+) -> str:
     """All functions of a page as members of an object."""
     of_mechanism = {name: k for k, name in enumerate(_variables(varied, free.paths))}
     moving = [sign_of(group) for group in traced.at_samples]
     moving += [near_of(key) for key in traced.counted] + [turns_of(link) for link in traced.rotors]
     fixed = PLACE
 
-    def function(name: str, outputs: Sequence[Node], stages: Sequence[int] = ()) -> str:
-        return PlaceFunction(name, of_mechanism, fixed, tuple(moving), tuple(outputs), tuple(stages)).source
+    def function(
+        name: str, outputs: Sequence[Node], stages: Sequence[int] = (), stride: int | None = None
+    ) -> str:
+        return PlaceFunction(
+            name, of_mechanism, fixed, tuple(moving), tuple(outputs), tuple(stages), stride
+        ).source
 
     def of_guards(name: str, numbers: Sequence[Sequence[Node]]) -> str:
         # what looks at one guard computes nothing of those behind it
@@ -233,10 +243,11 @@ def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, va
         stages = [each * (k + 1) for k in range(len(numbers))]
         return function(name, [x for some in numbers for x in some], stages)
 
+    stride = max(samples, PLACES_AROUND)
     motion = [row.node for row in traced.rows] + [traced.residual, *traced.at_samples.values()]
     members = [
         f"numbers: {once(_numbers(free, varied), {path: k for k, path in enumerate(free.paths)})}",
-        function("motion", motion),
+        function("motion", motion, stride=stride),
         of_guards("cells", list(traced.cells.values())),
         of_guards("curves", list(traced.curves.values())),
         of_guards("bounds", list(traced.bounds.values())),
@@ -244,7 +255,7 @@ def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, va
         function("counted", list(traced.counted.values())),
     ]
     if acting.rows:
-        members.append(function("reactions", acting.rows))
+        members.append(function("reactions", acting.rows, stride=stride))
     return ",\n".join(members)
 
 
